@@ -1,0 +1,330 @@
+"""Claims and their certificates: the check every result must pass.  [trusted]
+
+A claim is a relation between two formulas in an environment: `det(sI − A + LC) = φ(s)`.  Checking it needs products
+and a comparison, never the method that met it.  Small claims are evaluated exactly.  Large ones are evaluated at
+random points modulo random 62-bit primes; the probability that a false one passes is bounded by following degrees and
+heights through the same formulas, and the bound is part of the certificate.  Points and primes come from a generator
+seeded by the SHA-256 of the claim, so runs repeat.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import random
+from dataclasses import dataclass
+from math import log2
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import never_zero, sign_of
+from symobs.errors import CertificateRejected
+from symobs.exact import Matrix, Scalar
+from symobs.exact.modular import POINT_BITS, PRIMES_BELOW, Point, VanishingDenominator
+from symobs.formula import (
+    Environment,
+    Exact,
+    Formula,
+    Letter,
+    Literal,
+    Modular,
+    Relation,
+    agree,
+    children,
+    evaluate,
+)
+from symobs.formula.plain import plain_relation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+#: Claims whose values have at most this many terms are checked exactly.
+EXACT_UP_TO = 160
+#: The error bound every certificate at random points stays below.
+ERROR_GOAL = 2.0**-50
+_DRAWS = 20
+#: What a random point can decide: equal, and not identically equal.  `!=` is more: different at every point.
+_AT_POINTS = {"=", "!=="}
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A relation that must hold in an environment; `says` is its text for the reader."""
+
+    relation: Relation
+    environment: Environment
+    says: str = ""
+
+    def __str__(self) -> str:
+        return self.says or plain_relation(self.relation, self.environment.variable)
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """A claim that was checked: how, and the probability with which a false one would have passed."""
+
+    claim: str
+    how: str
+    bound: str
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A rational function's size: degrees and base-2 logarithms of the lengths of its two parts; shape of a matrix."""
+
+    above: float
+    below: float
+    above_bits: float
+    below_bits: float
+    shape: tuple[int, int] | None = None
+
+
+class Bounds:
+    """The arithmetic of sizes: an upper bound for the degree and height of what a formula evaluates to."""
+
+    def __init__(self, environment: Environment) -> None:
+        """Named coefficients enlarge what they stand in."""
+        self.larger = 1.0 + max((_size_of(v).above + _size_of(v).below for v in environment.coefficients.values()), default=0)
+        self.longer = max((_size_of(v).above_bits + _size_of(v).below_bits for v in environment.coefficients.values()), default=0)
+
+    def leaf(self, value: Scalar | Matrix) -> Bound:
+        size = _size_of(value)
+        grown = size.above * self.longer, size.below * self.longer
+        return Bound(
+            size.above * self.larger + size.below * self.larger,
+            size.below * self.larger + size.above * self.larger,
+            size.above_bits + sum(grown),
+            size.below_bits + sum(grown),
+            size.shape,
+        ) if self.larger > 1 else size
+
+    def shape(self, value: Bound) -> tuple[int, int] | None:
+        return value.shape
+
+    def entry(self, value: Bound) -> Bound:
+        return Bound(value.above, value.below, value.above_bits, value.below_bits)
+
+    def add(self, left: Bound, right: Bound) -> Bound:
+        return Bound(
+            max(left.above + right.below, right.above + left.below),
+            left.below + right.below,
+            1 + max(left.above_bits + right.below_bits, right.above_bits + left.below_bits),
+            left.below_bits + right.below_bits,
+            left.shape,
+        )
+
+    def scale(self, value: Bound, factor: Bound) -> Bound:
+        return Bound(
+            value.above + factor.above,
+            value.below + factor.below,
+            value.above_bits + factor.above_bits,
+            value.below_bits + factor.below_bits,
+            value.shape,
+        )
+
+    def matmul(self, left: Bound, right: Bound) -> Bound:
+        inner, outer = left.shape or (1, 1), right.shape or (1, 1)
+        product = self.scale(left, right)
+        return Bound(
+            product.above,
+            product.below,
+            product.above_bits + log2(max(inner[1], 1)),
+            product.below_bits,
+            (inner[0], outer[1]),
+        )
+
+    def _determinant(self, value: Bound, order: int) -> Bound:
+        return Bound(
+            order * value.above,
+            order * value.below,
+            order * (value.above_bits + log2(max(order, 1))),
+            order * value.below_bits,
+        )
+
+    def invert(self, value: Bound) -> Bound:
+        if value.shape is None:
+            return Bound(value.below, value.above, value.below_bits, value.above_bits)
+        whole = self._determinant(value, value.shape[0])
+        return Bound(
+            whole.above + whole.below, whole.above + whole.below, whole.above_bits + whole.below_bits,
+            whole.above_bits + whole.below_bits, value.shape,
+        )
+
+    def transpose(self, value: Bound) -> Bound:
+        rows, columns = value.shape or (1, 1)
+        return Bound(value.above, value.below, value.above_bits, value.below_bits, (columns, rows))
+
+    def apply(self, function: str, value: Bound) -> Bound:
+        rows, columns = value.shape or (1, 1)
+        whole = self._determinant(value, min(rows, columns))
+        if function == "adj":
+            return Bound(whole.above, whole.below, whole.above_bits, whole.below_bits, value.shape)
+        return whole
+
+    def block(self, rows: list[list[Bound]]) -> Bound:
+        """All blocks over one common denominator."""
+        parts = [part for row in rows for part in row]
+        below, below_bits = sum(p.below for p in parts), sum(p.below_bits for p in parts)
+        height = sum((row[0].shape or (1, 1))[0] for row in rows)
+        width = sum((part.shape or (1, 1))[1] for part in rows[0])
+        return Bound(
+            max(p.above for p in parts) + below, below, max(p.above_bits for p in parts) + below_bits, below_bits,
+            (height, width),
+        )
+
+    def equal(self, left: Bound, right: Bound) -> bool:
+        raise AssertionError
+
+
+def _size_of(value: Scalar | Matrix) -> Bound:
+    if isinstance(value, Scalar):
+        return Bound(*value.sizes())
+    return Bound(*value.sizes(), value.shape)
+
+
+def check(claim: Claim) -> Certificate:
+    """Return the certificate of a claim, or raise `CertificateRejected`."""
+    how, error = verify(claim.relation, claim.environment)
+    if how == "":
+        message = f"the claim {claim} does not hold"
+        raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=str(claim))
+    return Certificate(str(claim), how, "0" if error == 0 else f"{error:.1e}")
+
+
+def check_all(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
+    """Check every claim."""
+    return tuple(check(claim) for claim in claims)
+
+
+def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
+    """Return how a relation was found true and the bound of the error; ("", 0) where it is false."""
+    if _terms(relation, environment) <= EXACT_UP_TO or not set(relation.operators) <= _AT_POINTS:
+        return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
+    return _holds_at_points(relation, environment)
+
+
+def _holds_exactly(relation: Relation, environment: Environment) -> bool:
+    arithmetic = Exact(environment)
+    values = [evaluate(member, environment, arithmetic) for member in relation.members]
+    return all(
+        _compare(left, operator, right, environment, arithmetic)
+        for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True)
+    )
+
+
+def _compare(left: Any, operator: str, right: Any, environment: Environment, arithmetic: Exact) -> bool:
+    if operator == "=":
+        return agree(left, right, arithmetic)
+    if operator == "!==":
+        return not agree(left, right, arithmetic)
+    difference = _as_scalar(left) - _as_scalar(right)
+    if operator == "!=":
+        return _excluded_from_zero(difference, environment)
+    sign = sign_of(difference, environment.signs)
+    return sign in {
+        ">": ("positive",),
+        ">=": ("positive", "nonnegative", "zero"),
+        "<": ("negative",),
+        "<=": ("negative", "nonpositive", "zero"),
+    }[operator]
+
+
+def _as_scalar(value: Any) -> Scalar:
+    return value[0, 0] if isinstance(value, Matrix) else value
+
+
+def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
+    """Tell whether declared signs and stated conditions keep a value from 0, factor by factor."""
+    if value.is_zero:
+        return False
+    if never_zero(value, environment.signs):
+        return True
+    assumed = set(environment.assumed)
+    return all(
+        factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1]
+    )
+
+
+def _holds_at_points(relation: Relation, environment: Environment) -> tuple[str, float]:
+    error_once = _error_bound(relation, environment)
+    generator = random.Random(_seed(relation, environment))  # noqa: S311 - repeatable by design
+    error, points, draws = 1.0, 0, 0
+    names = _generators(relation, environment)
+    while error > ERROR_GOAL:
+        draws += 1
+        if draws > _DRAWS:
+            return "", 0.0
+        try:
+            if not _holds_at(relation, environment, Point(names, generator)):
+                return "", 0.0
+        except (VanishingDenominator, ZeroDivisionError):
+            continue
+        points += 1
+        error *= error_once
+    return f"at {points} random point{'s' if points > 1 else ''} modulo 62-bit primes", error
+
+
+def _holds_at(relation: Relation, environment: Environment, point: Point) -> bool:
+    arithmetic = Modular(environment, point)
+    values = [evaluate(member, environment, arithmetic) for member in relation.members]
+    for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True):
+        if agree(left, right, arithmetic) != (operator == "="):
+            return False
+    return True
+
+
+def _error_bound(relation: Relation, environment: Environment) -> float:
+    """Return the probability with which one random point and prime would let a false relation pass."""
+    arithmetic = Bounds(environment)
+    total = 0.0
+    sizes = [evaluate(member, environment, arithmetic) for member in relation.members]
+    for left, right in zip(sizes[:-1], sizes[1:], strict=True):
+        for first, second in _paired(left, right):
+            degree = max(first.above + second.below, second.above + first.below)
+            bits = 1 + max(first.above_bits + second.below_bits, second.above_bits + first.below_bits)
+            total += degree / 2.0**POINT_BITS + bits / 61 / PRIMES_BELOW
+    return min(total, 0.5)
+
+
+def _paired(left: Any, right: Any) -> list[tuple[Bound, Bound]]:
+    if isinstance(left, Bound) and isinstance(right, Bound):
+        return [(left, right)]
+    zero = Bound(0, 0, 0, 0)
+    names = {*left.coefficients, *right.coefficients}
+    return [(left.coefficients.get(name, zero), right.coefficients.get(name, zero)) for name in names]
+
+
+def _leaves(formula: Formula, environment: Environment) -> Iterable[Scalar | Matrix]:
+    match formula:
+        case Letter(name) if name in environment.signals:
+            for other in (environment.signals[name], environment.dynamics.get(name)):
+                if other is not None:
+                    yield from _leaves(other, environment)
+        case Letter(name) if name != "s":
+            yield environment.values[name]
+        case Literal(value):
+            yield value
+        case _:
+            for part in children(formula):
+                yield from _leaves(part, environment)
+
+
+def _distinct(relation: Relation, environment: Environment) -> list[Scalar | Matrix]:
+    leaves = {id(leaf): leaf for member in relation.members for leaf in _leaves(member, environment)}
+    return list(leaves.values())
+
+
+def _terms(relation: Relation, environment: Environment) -> int:
+    return sum(leaf.size for leaf in _distinct(relation, environment))
+
+
+def _generators(relation: Relation, environment: Environment) -> set[str]:
+    names = {environment.variable}
+    for leaf in [*_distinct(relation, environment), *environment.coefficients.values()]:
+        names |= set(leaf.field.names)
+    return names
+
+
+def _seed(relation: Relation, environment: Environment) -> int:
+    digest = hashlib.sha256(plain_relation(relation, environment.variable).encode())
+    for leaf in _distinct(relation, environment):
+        digest.update(leaf.fingerprint().encode())
+    return int.from_bytes(digest.digest(), "big")

@@ -1,0 +1,122 @@
+"""Declared signs, what they imply, and the conditions under which a result holds.
+
+A condition is one relation `expression op 0` on the parameters, of one of four kinds: *domain* (a denominator of the
+plant: where it vanishes there is no plant), *claim* (a denominator of the answer), *existence* (a factor whose vanishing
+costs observability or controllability), *route* (what one method's witness needs).  What the declared signs imply is not repeated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from symobs.exact import Scalar
+
+#: What may be declared of a symbol.  Each implies that the symbol is real.
+SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
+
+_OPPOSITE = {
+    "positive": "negative",
+    "negative": "positive",
+    "nonnegative": "nonpositive",
+    "nonpositive": "nonnegative",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """expression operator 0, of the given kind."""
+
+    kind: str
+    expression: Scalar
+    operator: str = "!="
+
+    def __str__(self) -> str:
+        return f"{self.expression} {self.operator} 0"
+
+
+def _product_sign(left: str, right: str) -> str:
+    if "zero" in (left, right):
+        return "zero"
+    if "real" in (left, right):
+        return "real"
+    if "nonzero" in (left, right):
+        weak = {"nonnegative", "nonpositive"} & {left, right}
+        return "real" if weak else "nonzero"
+    weak = left.startswith("non") or right.startswith("non")
+    down = {"negative", "nonpositive"}
+    negative = (left in down) != (right in down)
+    if weak:
+        return "nonpositive" if negative else "nonnegative"
+    return "negative" if negative else "positive"
+
+
+def _sum_sign(left: str, right: str) -> str:
+    for first, second in ((left, right), (right, left)):
+        if first == "zero":
+            return second
+    if {left, right} <= {"positive", "nonnegative"}:
+        return "positive" if "positive" in (left, right) else "nonnegative"
+    if {left, right} <= {"negative", "nonpositive"}:
+        return "negative" if "negative" in (left, right) else "nonpositive"
+    return "real"
+
+
+def _power_sign(sign: str, exponent: int) -> str:
+    if exponent % 2:
+        return sign
+    return "positive" if sign in {"positive", "negative", "nonzero"} else "nonnegative"
+
+
+def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
+    total = "zero"
+    for coefficient, powers in polynomial.terms():
+        sign = "positive" if coefficient > 0 else "negative"
+        for name, exponent in powers:
+            sign = _product_sign(sign, _power_sign(signs.get(name, "real"), exponent))
+        total = _sum_sign(total, sign)
+        if total == "real":
+            break
+    return total
+
+
+def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
+    """Return what is certain about the sign of a value: one of `SIGNS`, or `zero`.
+
+    `real` means nothing is certain.  Read off the terms of the value, or of its factors where those say more.
+    """
+    if value.is_zero:
+        return "zero"
+    whole = _product_sign(_sum_of_terms(value.numerator, signs), _sum_of_terms(value.denominator, signs))
+    if whole not in {"real", "nonnegative", "nonpositive"}:
+        return whole
+    unit, factors = value.factors()
+    sign = "positive" if unit.fraction() > 0 else "negative"
+    for factor, power in factors:
+        sign = _product_sign(sign, _power_sign(_sum_of_terms(factor, signs), power))
+    return whole if sign == "real" else sign
+
+
+def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
+    """Tell whether the declared signs alone exclude that the value is 0."""
+    return sign_of(value, signs) in {"positive", "negative", "nonzero"}
+
+
+def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return the distinct irreducible factors of numerators that can be 0 under the declared signs."""
+    found: dict[Scalar, None] = {}
+    for value in values:
+        if value.is_constant or never_zero(value, signs):
+            continue
+        for factor, _ in value.numerator.factors()[1]:
+            if not never_zero(factor, signs):
+                found[factor] = None
+    return tuple(found)
+
+
+def opposite(sign: str) -> str:
+    """Return what a sign becomes under x → −x."""
+    return _OPPOSITE.get(sign, sign)

@@ -1,0 +1,102 @@
+"""Every error symobs raises.
+
+One base, `SymobsError`.  An error is made from facts, which stay attributes: what is wrong (`message`), the
+place (`where`), and what to write instead (`repair`).  Each class also derives from the built-in a caller would expect.
+
+A mathematical "no" (not observable, poles not assignable) is never an exception: it is a result with a verdict.
+"""
+
+from __future__ import annotations
+
+
+class SymobsError(Exception):
+    """Base of all errors; `exit_code` is what the command line returns for it."""
+
+    exit_code = 3
+
+    def __init__(self, message: str, *, where: str = "", repair: str = "", **facts: object) -> None:
+        """Keep the facts: what is wrong, where it stands, what to write instead."""
+        super().__init__(message)
+        self.message = message
+        self.where = where
+        self.repair = repair
+        self.facts = facts
+
+    def __str__(self) -> str:
+        """Return `where: message; repair` on one line, leaving out what is not known."""
+        place = f"{self.where}: " if self.where else ""
+        repair = f"; {self.repair}" if self.repair else ""
+        return f"{place}{self.message}{repair}"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by facts, so that an error crosses process borders whole."""
+        return (_rebuild, (type(self), self.message, self.where, self.repair, self.facts))
+
+
+def _rebuild(kind: type[SymobsError], message: str, where: str, repair: str, facts: dict[str, object]) -> SymobsError:
+    return kind(message, where=where, repair=repair, **facts)
+
+
+class InputError(SymobsError, ValueError):
+    """What the caller gave cannot be used."""
+
+
+class ExpressionError(InputError):
+    """A text does not follow the grammar of expressions."""
+
+
+class UnknownName(ExpressionError):
+    """A text uses a name that is not declared."""
+
+
+class BudgetExceeded(ExpressionError):
+    """A text, or what it would build, is larger than the budgets allow."""
+
+
+class InexactInput(InputError, TypeError):
+    """A floating-point number came where exact numbers are needed."""
+
+
+class ShapeMismatch(InputError):
+    """Matrices whose sizes do not fit together, or rows of different lengths."""
+
+
+class ProblemErrors(InputError):
+    """All errors of one problem file together."""
+
+    def __init__(self, errors: tuple[SymobsError, ...], *, where: str = "") -> None:
+        """Keep every error of the file, in the order of the file."""
+        super().__init__(f"{len(errors)} error{'s' if len(errors) != 1 else ''}", where=where)
+        self.errors = errors
+
+    def __str__(self) -> str:
+        """Return one line an error."""
+        return "\n".join(str(error) for error in self.errors)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by the errors it holds."""
+        return (type(self), (self.errors,))
+
+
+class UsageError(SymobsError):
+    """The command line was called in a way it does not know."""
+
+    exit_code = 2
+
+
+class TypesettingError(SymobsError):
+    """TeX is missing, failed, or ran out of time."""
+
+    exit_code = 6
+
+
+class CertificateRejected(SymobsError):
+    """A result does not meet its own claim: always a bug of symobs, never of the input."""
+
+    exit_code = 1
+
+
+class DerivationRejected(SymobsError):
+    """A line of a derivation is not true: always a bug of symobs, never of the input."""
+
+    exit_code = 1

@@ -1,0 +1,166 @@
+"""Matrices over the ring Z[generators], without denominators: plain functions on rows of polynomials.
+
+`Table` is `fmpz_mat` where there is no generator and a tuple of rows of `fmpz_mpoly` otherwise; FLINT does the
+numeric case, the functions here the parametric one.  Everything is fraction-free.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from flint import fmpz_mat, fmpz_mpoly
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symobs.exact.field import Field
+
+Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
+
+#: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
+MINORS_UP_TO = 8
+
+
+def dot(left: Sequence[fmpz_mpoly], right: Sequence[fmpz_mpoly], zero: fmpz_mpoly) -> fmpz_mpoly:
+    """Return Σ left_k right_k."""
+    total = zero
+    for a, b in zip(left, right, strict=True):
+        if a and b:
+            total = total + a * b
+    return total
+
+
+def product(left: Rows, right: Rows, zero: fmpz_mpoly) -> Rows:
+    """Return the matrix product."""
+    columns = transpose(right)
+    return tuple(tuple(dot(row, column, zero) for column in columns) for row in left)
+
+
+def transpose(rows: Rows) -> Rows:
+    """Return the transpose."""
+    return tuple(zip(*rows, strict=True))
+
+
+def determinant(rows: Rows, field: Field) -> fmpz_mpoly:
+    """Return the determinant, by minors for small orders and by Bareiss' elimination beyond."""
+    if not rows:
+        return field.one
+    content, rows = strip_row_contents(rows, field)
+    value = _by_minors(rows, field) if len(rows) <= MINORS_UP_TO else _by_elimination(rows, field)
+    return value * content
+
+
+def strip_row_contents(rows: Rows, field: Field) -> tuple[fmpz_mpoly, Rows]:
+    """Divide each row by the monomial and integer its entries share; return their product and the rows."""
+    total = field.one
+    stripped = []
+    for row in rows:
+        shared = None
+        for entry in row:
+            if entry:
+                shared = entry.term_content() if shared is None else shared.gcd(entry.term_content())
+                if shared.is_one():
+                    break
+        if shared is None or shared.is_one():
+            stripped.append(row)
+        else:
+            total = total * shared
+            stripped.append(tuple(entry / shared for entry in row))
+    return total, tuple(stripped)
+
+
+def _by_minors(rows: Rows, field: Field) -> fmpz_mpoly:
+    """Expand along the rows from the bottom, keeping every minor of the lower rows."""
+    order = len(rows)
+    minors: dict[tuple[int, ...], fmpz_mpoly] = {(): field.one}
+    for row in reversed(rows):
+        larger: dict[tuple[int, ...], fmpz_mpoly] = {}
+        for columns, minor in minors.items():
+            if not minor:
+                continue
+            for column in range(order):
+                entry = row[column]
+                if column in columns or not entry:
+                    continue
+                position = sum(other < column for other in columns)
+                chosen = (*columns[:position], column, *columns[position:])
+                term = entry * minor
+                known = larger.get(chosen)
+                if position % 2:
+                    larger[chosen] = -term if known is None else known - term
+                else:
+                    larger[chosen] = term if known is None else known + term
+        minors = larger
+    return minors.get(tuple(range(order)), field.zero)
+
+
+def _by_elimination(rows: Rows, field: Field) -> fmpz_mpoly:
+    work = [list(row) for row in rows]
+    order, previous, sign = len(work), field.one, 1
+    for k in range(order - 1):
+        pivot = next((i for i in range(k, order) if work[i][k]), None)
+        if pivot is None:
+            return field.zero
+        if pivot != k:
+            work[k], work[pivot], sign = work[pivot], work[k], -sign
+        for i in range(k + 1, order):
+            for j in range(k + 1, order):
+                work[i][j] = (work[i][j] * work[k][k] - work[i][k] * work[k][j]) / previous
+        previous = work[k][k]
+    return work[-1][-1] if sign > 0 else -work[-1][-1]
+
+
+def cofactor(rows: Rows, row: int, column: int, field: Field) -> fmpz_mpoly:
+    """Return (−1)^(row+column) times the minor without that row and column."""
+    rest = tuple(
+        tuple(entry for j, entry in enumerate(line) if j != column) for i, line in enumerate(rows) if i != row
+    )
+    value = determinant(rest, field)
+    return -value if (row + column) % 2 else value
+
+
+def echelon(rows: Rows, vanishes: Callable[[fmpz_mpoly], bool]) -> tuple[list[int], list[list[fmpz_mpoly]]]:
+    """Return (pivot columns, reduced rows): elimination without fractions, `vanishes` deciding what counts as zero.
+
+    In the reduced rows each pivot column is zero but at its own pivot.  Pivots are the simplest entries available:
+    constants first, then fewest terms, so that a witness holds as widely as possible.
+    """
+    work = [list(row) for row in rows]
+    pivots: list[int] = []
+    columns = len(work[0]) if work else 0
+    for column in range(columns):
+        rank = len(pivots)
+        candidates = [i for i in range(rank, len(work)) if not vanishes(work[i][column])]
+        if not candidates:
+            continue
+        best = min(candidates, key=lambda i: (work[i][column].total_degree(), len(work[i][column])))
+        work[rank], work[best] = work[best], work[rank]
+        lead = work[rank][column]
+        for i, line in enumerate(work):
+            if i != rank and not vanishes(line[column]):
+                factor = line[column]
+                work[i] = _primitive([lead * a - factor * b for a, b in zip(line, work[rank], strict=True)], vanishes)
+        pivots.append(column)
+        if len(pivots) == len(work):
+            break
+    return pivots, work[: len(pivots)]
+
+
+def _primitive(line: list[fmpz_mpoly], vanishes: Callable[[fmpz_mpoly], bool]) -> list[fmpz_mpoly]:
+    shared = None
+    for entry in line:
+        if entry and not vanishes(entry):
+            shared = entry if shared is None else shared.gcd(entry)
+            if shared.is_one():
+                return line
+    if shared is None or vanishes(shared):
+        return line
+    if any(entry and (entry % shared) for entry in line):
+        return line
+    return [entry / shared for entry in line]
+
+
+def rows_of(table: fmpz_mat, field: Field) -> Rows:
+    """Return a numeric table as rows of polynomials of `field`."""
+    constant = field.context.constant
+    return tuple(tuple(constant(entry) for entry in row) for row in table.tolist())

@@ -1,0 +1,92 @@
+"""SymPy in and out.  Imported only when SymPy objects come in or are asked for."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import sympy
+
+from symobs.errors import InexactInput, InputError
+from symobs.exact.complex import Complex
+from symobs.exact.matrix import Matrix
+from symobs.exact.scalar import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> sympy.Expr:
+    """Return the SymPy expression of a scalar; `objects` gives the Symbol a name stands for."""
+    known = dict(objects or {})
+
+    def polynomial(part: Scalar) -> sympy.Expr:
+        terms = []
+        for coefficient, powers in part.terms():
+            factors = [known.setdefault(name, sympy.Symbol(name)) ** power for name, power in powers]
+            terms.append(sympy.Mul(sympy.Integer(coefficient), *factors))
+        return sympy.Add(*terms)
+
+    below = value.denominator
+    if below.is_one:
+        return polynomial(value.numerator)
+    return polynomial(value.numerator) / polynomial(below)
+
+
+def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:
+    """Return the `ImmutableMatrix` of a matrix."""
+    return sympy.ImmutableMatrix(*value.shape, [scalar_to_sympy(entry, objects) for entry in value.entries])
+
+
+def complex_from_sympy(expression: Any, where: str) -> Complex:
+    """Return the exact value of a SymPy expression built from numbers, symbols, i and the four operations."""
+    if isinstance(expression, (int, Fraction)):
+        return Complex.of(expression)
+    if not isinstance(expression, sympy.Expr):
+        message = f"{type(expression).__name__} is not an exact expression"
+        raise InputError(message, where=where)
+    if expression.is_Integer or expression.is_Rational:
+        return Complex.of(Fraction(int(expression.p), int(expression.q)))
+    if expression.is_Float:
+        message = f"{expression} is a floating-point number"
+        raise InexactInput(message, where=where, repair="write an exact value such as Rational(1, 10)")
+    if expression is sympy.I:
+        return Complex(Scalar.of(0), Scalar.of(1))
+    if expression.is_Symbol:
+        return Complex.of(Scalar.symbol(str(expression)))
+    arguments = expression.args
+    if expression.is_Add or expression.is_Mul:
+        total = complex_from_sympy(arguments[0], where)
+        for argument in arguments[1:]:
+            value = complex_from_sympy(argument, where)
+            total = total + value if expression.is_Add else total * value
+        return total
+    if expression.is_Pow and expression.exp.is_Integer:
+        return complex_from_sympy(expression.base, where) ** int(expression.exp)
+    message = f"{expression} is not a rational expression"
+    raise InputError(message, where=where, repair="use numbers, symbols and + - * / with integer powers")
+
+
+def scalar_from_sympy(expression: Any, where: str) -> Scalar:
+    """Return the scalar of a real SymPy expression."""
+    value = complex_from_sympy(expression, where)
+    if not value.is_real:
+        message = f"{expression} is not real"
+        raise InputError(message, where=where)
+    return value.real
+
+
+def matrix_from_sympy(matrix: Any, where: str) -> Matrix:
+    """Return the exact matrix of a SymPy matrix."""
+    rows, columns = matrix.shape
+    return Matrix.of(
+        [[scalar_from_sympy(matrix[i, j], f"{where}[{i}][{j}]") for j in range(columns)] for i in range(rows)], columns
+    )
+
+
+def sign_from_assumptions(symbol: Any) -> str:
+    """Return the sign a caller's Symbol declares by its assumptions."""
+    for sign in ("positive", "negative", "nonnegative", "nonpositive"):
+        if getattr(symbol, f"is_{sign}"):
+            return sign
+    return "nonzero" if symbol.is_nonzero else "real"

@@ -1,0 +1,361 @@
+"""What a formula is worth: evaluation in an environment, in any arithmetic.
+
+One function, `evaluate`, walks the tree; an arithmetic supplies the operations.  `Exact` computes in the kernel,
+`Modular` at a random point modulo a prime, and `certificate` adds one that only bounds degrees and heights.
+A signal's value is its row of matrix coefficients over the free signals; d/dt follows the dynamics of the environment.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.modular import block, scaled
+from symobs.formula.nodes import (
+    Apply,
+    Block,
+    Derivative,
+    Formula,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    Transpose,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact.modular import Point
+
+
+@dataclass(frozen=True)
+class Environment:
+    """What the letters mean.
+
+    values      letter → exact scalar or matrix
+    signals     signal → its formula in other signals, or None for a free one
+    sizes       free signal → number of components
+    dynamics    free signal → the formula of its derivative (or shift)
+    coefficients   a generator that stands for a longer scalar → that scalar
+    signs       parameter → declared sign
+    assumed     polynomials in the parameters that a stated condition keeps from 0
+    """
+
+    variable: str = "s"
+    values: Mapping[str, Scalar | Matrix] = field(default_factory=dict)
+    signals: Mapping[str, Formula | None] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    dynamics: Mapping[str, Formula] = field(default_factory=dict)
+    coefficients: Mapping[str, Scalar] = field(default_factory=dict)
+    signs: Mapping[str, str] = field(default_factory=dict)
+    assumed: tuple[Scalar, ...] = ()
+
+    def knows(self, name: str) -> bool:
+        """Whether a letter is established."""
+        return name in self.values or name in self.signals or name == "s"
+
+    def value(self, name: str) -> Scalar | Matrix:
+        """Return the value of a letter."""
+        return Scalar.symbol(self.variable) if name == "s" else self.values[name]
+
+    def having(self, **updates: Mapping[str, object]) -> Environment:
+        """Return an environment with entries added to the named mappings."""
+        return replace(self, **{key: {**getattr(self, key), **new} for key, new in updates.items()})
+
+
+@dataclass(frozen=True)
+class Signal:
+    """Σ coefficient · free signal, with `size` components; coefficients are matrices of the arithmetic in use."""
+
+    size: int
+    coefficients: Mapping[str, Any]
+
+
+class Arithmetic(Protocol):
+    """The operations a formula is made of; scalars and matrices are whatever the arithmetic says they are."""
+
+    def leaf(self, value: Scalar | Matrix) -> Any:
+        """Bring an exact value into the arithmetic."""
+
+    def shape(self, value: Any) -> tuple[int, int] | None:
+        """Return a matrix's shape, None for a scalar."""
+
+    def entry(self, value: Any) -> Any:
+        """Return the entry of a 1×1 matrix as a scalar."""
+
+    def add(self, left: Any, right: Any) -> Any:
+        """Return left + right of equal kind and shape."""
+
+    def scale(self, value: Any, factor: Any) -> Any:
+        """Return a scalar or matrix times a scalar."""
+
+    def matmul(self, left: Any, right: Any) -> Any:
+        """Return the product of two matrices."""
+
+    def invert(self, value: Any) -> Any:
+        """Return the inverse of a scalar or matrix."""
+
+    def transpose(self, value: Any) -> Any:
+        """Return the transpose of a matrix."""
+
+    def apply(self, function: str, value: Any) -> Any:
+        """Return det, adj or rank of a matrix."""
+
+    def block(self, rows: list[list[Any]]) -> Any:
+        """Return the matrix of blocks."""
+
+    def equal(self, left: Any, right: Any) -> bool:
+        """Tell whether two values of equal kind agree."""
+
+
+class Exact:
+    """The exact kernel."""
+
+    def __init__(self, environment: Environment) -> None:
+        """Replace named coefficients by what they stand for whenever a value enters."""
+        self.coefficients = environment.coefficients
+
+    def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
+        return value.substitute(self.coefficients) if self.coefficients else value
+
+    def shape(self, value: Scalar | Matrix) -> tuple[int, int] | None:
+        return value.shape if isinstance(value, Matrix) else None
+
+    def entry(self, value: Matrix) -> Scalar:
+        return value[0, 0]
+
+    def add(self, left: Any, right: Any) -> Any:
+        return left + right
+
+    def scale(self, value: Any, factor: Scalar) -> Any:
+        return value * factor
+
+    def matmul(self, left: Matrix, right: Matrix) -> Matrix:
+        return left @ right
+
+    def invert(self, value: Any) -> Any:
+        return value.inverse() if isinstance(value, Matrix) else 1 / value
+
+    def transpose(self, value: Matrix) -> Matrix:
+        return value.T
+
+    def apply(self, function: str, value: Matrix) -> Any:
+        if function == "det":
+            return value.determinant()
+        if function == "adj":
+            return value.adjugate()
+        return Scalar.of(value.rank())
+
+    def block(self, rows: list[list[Any]]) -> Matrix:
+        return Matrix.block([[e if isinstance(e, Matrix) else Matrix.of([[e]]) for e in row] for row in rows])
+
+    def equal(self, left: Any, right: Any) -> bool:
+        return bool(left == right)
+
+
+class Modular:
+    """Residues at a random point modulo a prime: integers for scalars, FLINT's `nmod_mat` for matrices."""
+
+    def __init__(self, environment: Environment, point: Point) -> None:
+        """Give each named coefficient the residue of what it stands for."""
+        self.point = point
+        self.prime = point.prime
+        self.known: dict[int, tuple[object, Any]] = {}
+        for name, meaning in environment.coefficients.items():
+            point.values[name] = point.scalar(meaning)
+
+    def leaf(self, value: Scalar | Matrix) -> Any:
+        found = self.known.get(id(value))
+        if found is None:
+            residue = self.point.matrix(value) if isinstance(value, Matrix) else self.point.scalar(value)
+            self.known[id(value)] = found = (value, residue)
+        return found[1]
+
+    def shape(self, value: Any) -> tuple[int, int] | None:
+        return None if isinstance(value, int) else (value.nrows(), value.ncols())
+
+    def entry(self, value: Any) -> int:
+        return int(value[0, 0])
+
+    def add(self, left: Any, right: Any) -> Any:
+        return (left + right) % self.prime if isinstance(left, int) else left + right
+
+    def scale(self, value: Any, factor: int) -> Any:
+        return value * factor % self.prime if isinstance(value, int) else scaled(value, factor, self.prime)
+
+    def matmul(self, left: Any, right: Any) -> Any:
+        return left * right
+
+    def invert(self, value: Any) -> Any:
+        return pow(value, -1, self.prime) if isinstance(value, int) else value.inv()
+
+    def transpose(self, value: Any) -> Any:
+        return value.transpose()
+
+    def apply(self, function: str, value: Any) -> Any:
+        if function == "det":
+            return int(value.det())
+        if function == "adj":
+            return self.scale(value.inv(), int(value.det()))
+        return value.rank()
+
+    def block(self, rows: list[list[Any]]) -> Any:
+        return block(rows, self.prime)
+
+    def equal(self, left: Any, right: Any) -> bool:
+        return bool(left == right)
+
+
+def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic) -> Any:
+    """Return the value of a formula: a scalar, a matrix or a `Signal` of the arithmetic."""
+    match formula:
+        case Letter(name):
+            if name in environment.signals:
+                return _signal(name, environment, arithmetic)
+            return arithmetic.leaf(environment.value(name))
+        case Literal(value):
+            return arithmetic.leaf(value)
+        case Identity(order):
+            return arithmetic.leaf(Matrix.identity(order))
+        case Sum(terms):
+            total = evaluate(terms[0], environment, arithmetic)
+            for term in terms[1:]:
+                total = _add(total, evaluate(term, environment, arithmetic), arithmetic)
+            return total
+        case Negative(operand):
+            return _times(arithmetic.leaf(Scalar.of(-1)), evaluate(operand, environment, arithmetic), arithmetic)
+        case Product(factors):
+            value = evaluate(factors[-1], environment, arithmetic)
+            for factor in reversed(factors[:-1]):
+                value = _times(evaluate(factor, environment, arithmetic), value, arithmetic)
+            return value
+        case Quotient(above, below):
+            divisor = _scalar(evaluate(below, environment, arithmetic), arithmetic)
+            return _times(arithmetic.invert(divisor), evaluate(above, environment, arithmetic), arithmetic)
+        case Power(base, exponent):
+            return _power(evaluate(base, environment, arithmetic), exponent, arithmetic)
+        case Transpose(operand):
+            return arithmetic.transpose(evaluate(operand, environment, arithmetic))
+        case Apply(function, argument):
+            value = evaluate(argument, environment, arithmetic)
+            if function.endswith("_at"):
+                return _polynomial_at(environment.values[function.removesuffix("_at")], value, environment, arithmetic)
+            return arithmetic.apply(function, value)
+        case Block(rows):
+            return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
+        case Derivative(operand):
+            return _derivative(evaluate(operand, environment, arithmetic), environment, arithmetic)
+
+
+def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
+    formula = environment.signals[name]
+    if formula is None:
+        size = environment.sizes[name]
+        return Signal(size, {name: arithmetic.leaf(Matrix.identity(size))})
+    value = evaluate(formula, environment, arithmetic)
+    assert isinstance(value, Signal)  # noqa: S101 - an invariant: signals are defined by signals
+    return value
+
+
+def _add(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+    if isinstance(left, Signal) and isinstance(right, Signal):
+        total = dict(left.coefficients)
+        for name, coefficient in right.coefficients.items():
+            total[name] = arithmetic.add(total[name], coefficient) if name in total else coefficient
+        return Signal(left.size, total)
+    if arithmetic.shape(left) != arithmetic.shape(right):
+        left, right = _scalar(left, arithmetic), _scalar(right, arithmetic)
+    return arithmetic.add(left, right)
+
+
+def _times(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+    if isinstance(right, Signal):
+        products = {name: _times(left, value, arithmetic) for name, value in right.coefficients.items()}
+        shape = arithmetic.shape(left)
+        return Signal(right.size if shape is None else shape[0], products)
+    left_shape, right_shape = arithmetic.shape(left), arithmetic.shape(right)
+    if left_shape is None:
+        return arithmetic.scale(right, left)
+    if right_shape is None:
+        return arithmetic.scale(left, right)
+    if left_shape[1] == right_shape[0]:
+        return arithmetic.matmul(left, right)
+    if left_shape == (1, 1):
+        return arithmetic.scale(right, arithmetic.entry(left))
+    return arithmetic.scale(left, _scalar(right, arithmetic))
+
+
+def _scalar(value: Any, arithmetic: Arithmetic) -> Any:
+    """Read a 1×1 matrix as its entry."""
+    if arithmetic.shape(value) == (1, 1):
+        return arithmetic.entry(value)
+    return value
+
+
+def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
+    if exponent < 0:
+        base, exponent = arithmetic.invert(base), -exponent
+    shape = arithmetic.shape(base)
+    power = arithmetic.leaf(Scalar.of(1) if shape is None else Matrix.identity(shape[0]))
+    for _ in range(exponent):
+        power = _times(power, base, arithmetic)
+    return power
+
+
+def _polynomial_at(polynomial: object, value: Any, environment: Environment, arithmetic: Arithmetic) -> Any:
+    """Return the polynomial of the variable at a square matrix, by Horner's rule."""
+    assert isinstance(polynomial, Scalar)  # noqa: S101 - an invariant of the letters φ
+    shape = arithmetic.shape(value) or (1, 1)
+    identity = arithmetic.leaf(Matrix.identity(shape[0]))
+    total = arithmetic.leaf(Matrix.zeros(*shape))
+    for coefficient in polynomial.coefficients(environment.variable):
+        total = arithmetic.add(arithmetic.matmul(total, value), arithmetic.scale(identity, arithmetic.leaf(coefficient)))
+    return total
+
+
+def _block(rows: list[list[Any]], arithmetic: Arithmetic) -> Any:
+    """Put matrices, scalars or (in one column) signals together."""
+    if not isinstance(rows[0][0], Signal):
+        return arithmetic.block(rows)
+    parts = [row[0] for row in rows]
+    names = dict.fromkeys(name for part in parts for name in part.coefficients)
+    stacked = {}
+    for name in names:
+        width = next(arithmetic.shape(p.coefficients[name])[1] for p in parts if name in p.coefficients)  # type: ignore[index]
+        stacked[name] = arithmetic.block(
+            [[p.coefficients.get(name, arithmetic.leaf(Matrix.zeros(p.size, width)))] for p in parts]
+        )
+    return Signal(sum(part.size for part in parts), stacked)
+
+
+def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic) -> Signal:
+    total: Signal | None = None
+    for name, coefficient in signal.coefficients.items():
+        rate = evaluate(environment.dynamics[name], environment, arithmetic)
+        image = _times(coefficient, rate, arithmetic)
+        total = image if total is None else _add(total, image, arithmetic)
+    assert total is not None  # noqa: S101 - a signal has at least one coefficient
+    return total
+
+
+def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Tell whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
+    if isinstance(left, Signal) and isinstance(right, Signal):
+        difference = _add(left, _times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
+        return all(
+            arithmetic.equal(value, arithmetic.leaf(Matrix.zeros(*arithmetic.shape(value))))  # type: ignore[misc]
+            for value in difference.coefficients.values()
+        )
+    if isinstance(left, Signal) or isinstance(right, Signal):
+        return False
+    if arithmetic.shape(left) != arithmetic.shape(right):
+        left, right = _scalar(left, arithmetic), _scalar(right, arithmetic)
+        if arithmetic.shape(left) != arithmetic.shape(right):
+            return False
+    return arithmetic.equal(left, right)

@@ -1,0 +1,177 @@
+"""The formula tree: what a line of a derivation says, as its author wrote it.
+
+Twelve kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
+environment (`evaluate`), and is printed only by a format.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias, Union
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Letter:
+    """A named quantity of the derivation, such as A, L, x̂ or χ; `name` is its key in `notation`."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """An exact value written out."""
+
+    value: Scalar | Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """The identity matrix I."""
+
+    order: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """terms[0] + terms[1] + …; a `Negative` term is printed with a minus sign."""
+
+    terms: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """−operand."""
+
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """factors[0] · factors[1] · …, in this order."""
+
+    factors: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """base to an integer exponent; −1 is the inverse."""
+
+    base: Formula
+    exponent: int
+
+
+@dataclass(frozen=True, slots=True)
+class Transpose:
+    """operandᵀ."""
+
+    operand: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """numerator / denominator, the denominator a scalar."""
+
+    numerator: Formula
+    denominator: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """A function of one argument: det, adj, rank."""
+
+    function: str
+    argument: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A matrix (or stacked signal) put together from blocks."""
+
+    rows: tuple[tuple[Formula, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Derivative:
+    """d/dt of a signal; the shift x(k+1) in discrete time."""
+
+    operand: Formula
+
+
+Formula: TypeAlias = Union[
+    Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """members[0] operators[0] members[1] …: a chain of equations and comparisons, each link a claim.
+
+    Operators are `=`, `!=`, `<`, `>`, `<=`, `>=`.
+    """
+
+    members: tuple[Formula, ...]
+    operators: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """A property of a value that no equation states: `stable`, `strictly_proper`, `never_zero`, …"""
+
+    name: str
+    subject: Formula
+
+
+Fact: TypeAlias = Union[Relation, Predicate]
+
+
+def children(formula: Formula) -> tuple[Formula, ...]:
+    """Return the formulas directly below."""
+    match formula:
+        case Sum(terms):
+            return terms
+        case Product(factors):
+            return factors
+        case Quotient(above, below):
+            return above, below
+        case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _):
+            return (inner,)
+        case Block(rows):
+            return tuple(entry for row in rows for entry in row)
+        case _:
+            return ()
+
+
+def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
+    """Return the same node over other children."""
+    match formula:
+        case Sum():
+            return Sum(parts)
+        case Product():
+            return Product(parts)
+        case Quotient():
+            return Quotient(parts[0], parts[1])
+        case Negative():
+            return Negative(parts[0])
+        case Transpose():
+            return Transpose(parts[0])
+        case Derivative():
+            return Derivative(parts[0])
+        case Apply(function, _):
+            return Apply(function, parts[0])
+        case Power(_, exponent):
+            return Power(parts[0], exponent)
+        case Block(rows):
+            entries = iter(parts)
+            return Block(tuple(tuple(next(entries) for _ in row) for row in rows))
+        case _:
+            return formula
+
+
+def letters(formula: Formula) -> frozenset[str]:
+    """Return the names of all letters in a formula."""
+    if isinstance(formula, Letter):
+        return frozenset((formula.name,))
+    return frozenset().union(*(letters(part) for part in children(formula)))

@@ -1,0 +1,135 @@
+"""The vocabulary: every letter with its LaTeX and plain form, the theorems with their sources, the names of functions.
+
+Letters: n, m, p states, inputs, outputs; K feedback, L observer, always; 𝒪, 𝒞; χ characteristic, φ desired
+polynomial; x̂ estimate, e = x − x̂ error.  A polynomial's letter carries its variable, `s` or `z`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class LetterForm:
+    """How a letter is written: in LaTeX, on a terminal, and in words.  `{v}` stands for the polynomial's variable."""
+
+    latex: str
+    text: str
+    spoken: str
+
+
+LETTERS: dict[str, LetterForm] = {
+    "A": LetterForm("A", "A", "state matrix"),
+    "B": LetterForm("B", "B", "input matrix"),
+    "C": LetterForm("C", "C", "output matrix"),
+    "D": LetterForm("D", "D", "feedthrough matrix"),
+    "K": LetterForm("K", "K", "state feedback gain"),
+    "L": LetterForm("L", "L", "observer gain"),
+    "O": LetterForm(r"\mathcal O", "𝒪", "observability matrix"),
+    "Ctr": LetterForm(r"\mathcal C", "𝒞", "controllability matrix"),
+    "V": LetterForm("V", "V", "transformation to canonical form"),
+    "V_inv": LetterForm("V^{-1}", "V⁻¹", "its inverse"),
+    "A_c": LetterForm(r"A_{\mathrm c}", "A_c", "compensator matrix"),
+    "A_cl": LetterForm(r"A_{\mathrm{cl}}", "A_cl", "closed-loop matrix"),
+    "q": LetterForm("q", "q", "auxiliary vector"),
+    "v": LetterForm("v", "v", "vector"),
+    "x": LetterForm("x", "x", "state"),
+    "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
+    "e": LetterForm("e", "e", "estimation error"),
+    "u": LetterForm("u", "u", "input"),
+    "y": LetterForm("y", "y", "output"),
+    "y_hat": LetterForm(r"\hat y", "ŷ", "estimated output"),
+    "s": LetterForm("{v}", "{v}", "variable"),
+    "chi": LetterForm(r"\chi_A({v})", "χ_A({v})", "characteristic polynomial"),
+    "chi_K": LetterForm(r"\chi_{{A-BK}}({v})", "χ_(A-BK)({v})", "polynomial of the state feedback"),
+    "chi_L": LetterForm(r"\chi_{{A-LC}}({v})", "χ_(A-LC)({v})", "polynomial of the error"),
+    "phi": LetterForm(r"\varphi({v})", "φ({v})", "desired polynomial"),
+    "phi_c": LetterForm(r"\varphi_{{\mathrm c}}({v})", "φ_c({v})", "desired control polynomial"),
+    "phi_o": LetterForm(r"\varphi_{{\mathrm o}}({v})", "φ_o({v})", "desired observer polynomial"),
+    "F": LetterForm("F({v})", "F({v})", "compensator"),
+    "P": LetterForm("P({v})", "P({v})", "plant"),
+    "G_cl": LetterForm(r"G_{{\mathrm{{cl}}}}({v})", "G_cl({v})", "closed loop"),
+}
+
+FUNCTIONS: dict[str, tuple[str, str]] = {
+    "det": (r"\det", "det"),
+    "adj": (r"\operatorname{adj}", "adj"),
+    "rank": (r"\operatorname{rank}", "rank"),
+    "phi_at": (r"\varphi", "φ"),
+    "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
+    "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
+}
+
+OPERATORS: dict[str, tuple[str, str]] = {
+    "=": ("=", "="),
+    "!=": (r"\neq", "≠"),
+    "<": ("<", "<"),
+    ">": (">", ">"),
+    "<=": (r"\le", "≤"),
+    ">=": (r"\ge", "≥"),
+}
+
+GREEK = (
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi "
+    "chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
+).split()
+_GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
+_GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name not in {"omicron"}} | {"lam": r"\lambda", "omicron": "o"}
+_SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_NAME = re.compile(r"^([A-Za-z]+?)_?(\d*)((?:_[A-Za-z0-9]+)*)$")
+
+
+def symbol_latex(name: str, declared: str | None = None) -> str:
+    r"""Return the LaTeX of a parameter's name: `omega_0` → `\omega_{0}`, `h1` → `h_{1}`, `mass_cart` → …"""
+    if declared:
+        return declared
+    stem, digits, rest = _split(name)
+    head = _GREEK_LATEX.get(stem) or (stem if len(stem) == 1 else rf"\mathit{{{stem}}}")
+    below = ",".join([digits, *rest] if digits else rest)
+    return f"{head}_{{{below}}}" if below else head
+
+
+def symbol_text(name: str) -> str:
+    """Return a parameter's name on a terminal: `omega` → ω, `h1` → h₁; other names stay as they are."""
+    stem, digits, rest = _split(name)
+    if rest or (len(stem) > 1 and stem not in _GREEK_LETTERS):
+        return name
+    return _GREEK_LETTERS.get(stem, stem) + digits.translate(_SUBSCRIPTS)
+
+
+def _split(name: str) -> tuple[str, str, list[str]]:
+    match = _NAME.match(name)
+    if not match:
+        return name.replace("_", ""), "", []
+    stem, digits, rest = match.groups()
+    return stem, digits, [part for part in rest.split("_") if part]
+
+
+def letter_latex(name: str, variable: str) -> str:
+    """Return a letter's LaTeX, its variable put in."""
+    return LETTERS[name].latex.replace("{v}", variable).replace("{{", "{").replace("}}", "}")
+
+
+def letter_text(name: str, variable: str) -> str:
+    """Return a letter as a terminal shows it."""
+    return LETTERS[name].text.replace("{v}", variable)
+
+
+@dataclass(frozen=True, slots=True)
+class Theorem:
+    """A statement that a step rests on: its short name and where it is proved."""
+
+    name: str
+    source: str
+
+
+THEOREMS: dict[str, Theorem] = {
+    "observability_rank": Theorem("the algebraic test for observability", "Theorem 4.2"),
+    "duality": Theorem("the duality theorem", "Theorem 4.1"),
+    "observer_poles": Theorem("the pole assignment theorem for observers", "Theorem 4.4"),
+    "separation": Theorem("the separation principle", "section 4.3"),
+    "compensator": Theorem("the transfer function of the compensator", "equation (4.25)"),
+    "closed_loop": Theorem("the closed loop in plant state and error", "equation (4.29)"),
+    "ackermann": Theorem("Ackermann's formula", "Ackermann 1972, Regelungstechnik 20, 297–300"),
+}

@@ -1,0 +1,84 @@
+"""Blocks: what a page is made of, before any format decides how it looks.
+
+The narrator writes them, the formats read them, and neither knows the other.  Text is plain; a format escapes it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias, Union
+
+from symobs.formula import Formula, Relation
+
+Inline: TypeAlias = Union[str, Formula, Relation]
+Inlines: TypeAlias = tuple[Inline, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Title:
+    """What the page is about, where the problem comes from, and the conventions it keeps."""
+
+    text: str
+    source: str
+    conventions: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading that runs into the paragraph after it; `number` is empty where headings are not numbered."""
+
+    number: str
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Sentences."""
+
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """Relations set apart from the text; boxed, the last member of the last one is an answer.
+
+    `closing` is the punctuation mark that the sentence around it asks for after it.
+    """
+
+    relations: tuple[Relation, ...]
+    boxed: bool = False
+    closing: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Verified:
+    """The check of an answer."""
+
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Caution:
+    """A warning, after its label."""
+
+    label: str
+    inlines: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A block diagram known by name, with the formulas that label its boxes."""
+
+    name: str
+    labels: tuple[tuple[str, Formula], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CaseBlock:
+    """What holds in a special case: the label says which, the blocks are set in from the margin."""
+
+    label: Inlines
+    blocks: tuple[Block, ...]
+
+
+Block: TypeAlias = Union[Title, Heading, Paragraph, Display, Verified, Caution, Drawing, CaseBlock]

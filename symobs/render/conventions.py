@@ -1,0 +1,82 @@
+"""Which conventions a page has to state: those about the letters it uses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
+from symobs.formula import Letter, Negative, Predicate, Product, Relation, Sum, letters
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from symobs.derivation import Sentence, Step
+    from symobs.formula import Fact, Formula
+    from symobs.render.blocks import Inline
+
+
+def letters_used(steps: Iterable[Step]) -> frozenset[str]:
+    """Return the names of all letters that the steps speak of."""
+    return frozenset().union(*(letters(formula) for step in steps for formula in _formulas(step)))
+
+
+def stated_conventions(used: frozenset[str], words: dict[str, str]) -> tuple[tuple[Inline, ...], ...]:
+    """Return the conventions that concern the letters used, each as a few words and a formula."""
+    conventions: list[tuple[Inline, ...]] = []
+    if "K" in used:
+        estimated = "L" in used or "x_hat" in used
+        conventions.append((_control_law("x_hat" if estimated else "x"),))
+    if "L" in used:
+        conventions.append((f"{words['observer_matrix']} ", _OBSERVER_MATRIX))
+        conventions.append((f"{words['error']} ", _ERROR))
+    return tuple(conventions)
+
+
+def _control_law(state: str) -> Relation:
+    return Relation((Letter("u"), Negative(Product((Letter("K"), Letter(state))))), ("=",))
+
+
+_OBSERVER_MATRIX = Sum((Letter("A"), Negative(Product((Letter("L"), Letter("C"))))))
+_ERROR = Relation((Letter("e"), Sum((Letter("x"), Negative(Letter("x_hat"))))), ("=",))
+
+
+def _formulas(step: Step) -> Iterator[Formula]:
+    match step:
+        case Section(title, steps):
+            yield from _in_sentence(title)
+            for inner in steps:
+                yield from _formulas(inner)
+        case Case(when, steps, sentence):
+            yield from when.members
+            yield from _in_sentence(sentence)
+            for inner in steps:
+                yield from _formulas(inner)
+        case Given(relations, sentence) | Equal(relations, sentence, _):
+            yield from _in_facts(relations)
+            yield from _in_sentence(sentence)
+        case Define(relation, sentence, _):
+            yield from relation.members
+            yield from _in_sentence(sentence)
+        case Solve(equation, solution, sentence):
+            yield from _in_facts((equation, solution))
+            yield from _in_sentence(sentence)
+        case Conclude(sentence, _, _) | Note(sentence, _, _):
+            yield from _in_sentence(sentence)
+        case Diagram(_, labels):
+            yield from (formula for _, formula in labels)
+
+
+def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
+    for fact in facts:
+        if isinstance(fact, Predicate):
+            yield fact.subject
+        else:
+            yield from fact.members
+
+
+def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
+    for _, value in sentence.slots if sentence else ():
+        if isinstance(value, Relation | Predicate):
+            yield from _in_facts((value,))
+        elif not isinstance(value, str):
+            yield value

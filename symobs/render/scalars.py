@@ -1,0 +1,241 @@
+"""How a scalar is spelled: its order and shape, as formulas whose leaves are whole numbers and single symbols.
+
+Powers of the variable descend and their coefficients are collected; sums begin with a positive term where they have
+one; a coefficient is factored where that is shorter.  The spelling always has the scalar's value.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import gcd
+from typing import TYPE_CHECKING
+
+from symobs.exact import Scalar
+from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+#: Beyond this many terms a polynomial is not factored for the sake of its looks.
+FACTORED_UP_TO = 120
+
+Monomial = tuple[int, tuple[tuple[str, int], ...]]
+
+
+def is_leaf(value: Scalar) -> bool:
+    """Whether a scalar is written as one glyph: a whole number that is not negative, or a symbol."""
+    if value.is_constant:
+        number = value.fraction()
+        return number.denominator == 1 and number >= 0
+    if not value.denominator.is_one or value.size != 2:
+        return False
+    ((coefficient, powers),) = value.terms()
+    return coefficient == 1 and len(powers) == 1 and powers[0][1] == 1
+
+
+def spelled(value: Scalar, variable: str) -> Formula:
+    """Return the formula that writes `value` out."""
+    if is_leaf(value):
+        return Literal(value)
+    if value.denominator.degree(variable) > 0:
+        return _rational_function(value, variable)
+    if value.degree(variable) > 0:
+        return _polynomial(value, variable)
+    return _constant(value)
+
+
+# -- with the variable ------------------------------------------------------------------------------------------------
+
+
+def _rational_function(value: Scalar, variable: str) -> Formula:
+    """numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
+    above, below = value.numerator, value.denominator
+    negative = _leads_with_minus(above, variable)
+    fraction = Quotient(spelled(-above if negative else above, variable), _denominator(below, variable))
+    return Negative(fraction) if negative else fraction
+
+
+def _leads_with_minus(value: Scalar, variable: str) -> bool:
+    return isinstance(_terms_of(spelled(value, variable))[0], Negative)
+
+
+def _denominator(value: Scalar, variable: str) -> Formula:
+    """A whole number dividing all coefficients goes in front: 2(s² + s + 2)."""
+    content = gcd(*(coefficient for coefficient, _ in value.terms()))
+    collected = spelled(value, variable)
+    if content == 1 or not isinstance(collected, Sum):
+        return collected
+    return Product((Literal(Scalar.of(content)), spelled(value / content, variable)))
+
+
+def _polynomial(value: Scalar, variable: str) -> Formula:
+    """Descending powers; over one denominator where that is clearly shorter."""
+    coefficients = value.coefficients(variable)
+    separate = _collected(coefficients, variable)
+    if value.denominator.is_one:
+        return separate
+    whole = Quotient(_collected(value.numerator.coefficients(variable), variable), _constant(value.denominator))
+    patience = 1.5 if coefficients[0].denominator.is_one else 1.0
+    if size(separate) <= patience * size(whole):
+        return separate
+    first = _terms_of(whole.numerator)[0]
+    if isinstance(first, Negative):
+        opposite = _collected((-value.numerator).coefficients(variable), variable)
+        return Negative(Quotient(opposite, whole.denominator))
+    return whole
+
+
+def _collected(coefficients: Sequence[Scalar], variable: str) -> Formula:
+    degree = len(coefficients) - 1
+    terms: list[Formula] = []
+    for index, coefficient in enumerate(coefficients):
+        if not coefficient.is_zero:
+            terms += _times_power(coefficient, _power(Literal(_symbol(variable)), degree - index))
+    return _sum(terms)
+
+
+def _times_power(coefficient: Scalar, power: Formula | None) -> list[Formula]:
+    """The terms of coefficient · power: one, except that a constant coefficient is left open."""
+    body = _constant(coefficient)
+    if power is None:
+        return list(_terms_of(body))
+    if coefficient.is_one:
+        return [power]
+    if (-coefficient).is_one:
+        return [Negative(power)]
+    if isinstance(body, Sum) and all(isinstance(term, Negative) for term in body.terms):
+        return [Negative(_product((_constant_positive(body), power)))]
+    if isinstance(body, Negative):
+        return [Negative(_product((body.operand, power)))]
+    return [_product((body, power))]
+
+
+def _constant_positive(body: Sum) -> Sum:
+    return Sum(tuple(term.operand if isinstance(term, Negative) else Negative(term) for term in body.terms))
+
+
+# -- without the variable ---------------------------------------------------------------------------------------------
+
+
+def _constant(value: Scalar) -> Formula:
+    """A number or an expression in parameters, as sum, product or fraction, whichever is shortest."""
+    if is_leaf(value):
+        return Literal(value)
+    if value.denominator.is_one:
+        return _shortest(value)
+    above, below = value.numerator, value.denominator
+    top, bottom = _shortest(above), _shortest(below)
+    if isinstance(_terms_of(top)[0], Negative):
+        turned = _shortest(-below)
+        if not isinstance(_terms_of(turned)[0], Negative):
+            return Quotient(_shortest(-above), turned)
+        return Negative(Quotient(_shortest(-above), bottom))
+    return Quotient(top, bottom)
+
+
+def _shortest(value: Scalar) -> Formula:
+    """An integer polynomial in parameters: expanded, or factored where that is shorter."""
+    expanded = _expanded(value.terms())
+    if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
+        return expanded
+    factored = _factored(value)
+    return factored if size(factored) < size(expanded) else expanded
+
+
+def _expanded(terms: Sequence[Monomial]) -> Formula:
+    return _sum([_monomial(*term) for term in human_order(terms)])
+
+
+def human_order(terms: Iterable[Monomial]) -> list[Monomial]:
+    """Order by descending degree, then by the alphabet; the first positive term leads."""
+    ordered = sorted(terms, key=_rank)
+    lead = next((index for index, (coefficient, _) in enumerate(ordered) if coefficient > 0), 0)
+    return [ordered[lead], *ordered[:lead], *ordered[lead + 1 :]] if ordered else []
+
+
+def _rank(term: Monomial) -> tuple[int, list[tuple[str, int]]]:
+    powers = sorted(term[1], key=lambda item: (item[0].lower(), item[0]))
+    return -sum(power for _, power in powers), [(name.lower(), -power) for name, power in powers]
+
+
+def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
+    factors = [_power(Literal(_symbol(name)), exponent) for name, exponent in sorted(powers, key=lambda p: p[0].lower())]
+    parts = [factor for factor in factors if factor is not None]
+    if abs(coefficient) != 1 or not parts:
+        parts.insert(0, Literal(Scalar.of(abs(coefficient))))
+    product = _product(parts)
+    return Negative(product) if coefficient < 0 else product
+
+
+def _factored(value: Scalar) -> Formula:
+    """Number · symbols · sums; a minus disappears into a sum that may be turned round."""
+    unit, factors = value.factors()
+    number = int(unit.fraction())
+    symbols: list[tuple[str, int]] = []
+    sums: list[tuple[Scalar, int]] = []
+    for factor, power in factors:
+        terms = factor.terms()
+        if len(terms) == 1:
+            symbols.append((terms[0][1][0][0], power))
+        else:
+            sums.append((factor, power))
+    for index, (factor, power) in enumerate(sums):
+        if number < 0 and power % 2 and any(coefficient < 0 for coefficient, _ in factor.terms()):
+            sums[index], number = (-factor, power), -number
+    brackets = [_power(_expanded(factor.terms()), power) for factor, power in sums]
+    head = _monomial(abs(number), symbols)
+    parts = [] if isinstance(head, Literal) and head.value == Scalar.of(1) and brackets else [head]
+    product = _product([*parts, *(bracket for bracket in brackets if bracket is not None)])
+    return Negative(product) if number < 0 else product
+
+
+# -- small builders ---------------------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1024)
+def _symbol(name: str) -> Scalar:
+    return Scalar.symbol(name)
+
+
+def _power(base: Formula, exponent: int) -> Formula | None:
+    if exponent == 0:
+        return None
+    return base if exponent == 1 else Power(base, exponent)
+
+
+def _product(factors: Iterable[Formula]) -> Formula:
+    flat: list[Formula] = []
+    for factor in factors:
+        flat += factor.factors if isinstance(factor, Product) else (factor,)
+    return flat[0] if len(flat) == 1 else Product(tuple(flat))
+
+
+def _terms_of(formula: Formula) -> tuple[Formula, ...]:
+    return formula.terms if isinstance(formula, Sum) else (formula,)
+
+
+def _sum(terms: Sequence[Formula]) -> Formula:
+    if not terms:
+        return Literal(Scalar.of(0))
+    return terms[0] if len(terms) == 1 else Sum(tuple(terms))
+
+
+def size(formula: Formula) -> float:
+    """Return about how many glyphs a spelling takes."""
+    match formula:
+        case Literal(Scalar() as value):
+            return len(str(value)) if value.is_constant else 1.0
+        case Sum(terms):
+            return sum(size(term) for term in terms) + len(terms) - 1
+        case Negative(Sum() as operand):
+            return 3 + size(operand)
+        case Negative(operand):
+            return size(operand) + 0.5
+        case Product(factors):
+            return sum(size(factor) + 2 * isinstance(factor, Sum) for factor in factors)
+        case Power(base, _):
+            return size(base) + 2 * isinstance(base, Sum) + 0.5
+        case Quotient(above, below):
+            return size(above) + size(below) + 1
+        case _:
+            return 1.0

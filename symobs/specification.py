@@ -1,0 +1,185 @@
+"""What a design is asked for: a desired polynomial, given as poles or as a polynomial, or a gain.
+
+`KINDS` names every type a task's keyword may have.  A task's signature is its schema: the annotation of a keyword is
+the name of a kind, and the problem file, the command line and Python all read through it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from symobs.errors import InputError, ShapeMismatch
+from symobs.exact import Complex, Matrix, Scalar, product_of
+from symobs.expression import parse_poles, parse_polynomial
+from symobs.system import StateSpace, Symbols, read_complex, read_matrix, read_scalar
+
+#: The kinds of keyword a task may have.  Their names in signatures are the schema.
+Poles: TypeAlias = Any
+PolynomialText: TypeAlias = Any
+GainText: TypeAlias = Any
+Name: TypeAlias = str
+
+KINDS: dict[str, dict[str, Any]] = {
+    "Poles": {
+        "description": 'poles: a list or a comma-separated text, "-20+20i, -20-20i", "-p", "-1/2"',
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["integer", "string"]}}],
+    },
+    "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
+    "GainText": {
+        "description": 'a gain, "[19; 81]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "Name": {"description": "a name", "type": "string"},
+}
+
+
+@dataclass(frozen=True)
+class DesiredPolynomial:
+    """A monic polynomial φ of degree n with real coefficients: as factors, and as poles where these were given."""
+
+    variable: str
+    factors: tuple[Scalar, ...]
+    poles: tuple[Complex, ...] = ()
+
+    @cached_property
+    def polynomial(self) -> Scalar:
+        """φ, multiplied out."""
+        return product_of(self.factors)
+
+    @cached_property
+    def coefficients(self) -> tuple[Scalar, ...]:
+        """The coefficients after the leading one: α₁ … αₙ of sⁿ + α₁ sⁿ⁻¹ + … + αₙ."""
+        return self.polynomial.coefficients(self.variable)[1:]
+
+    @property
+    def degree(self) -> int:
+        """The degree of φ."""
+        return sum(factor.degree(self.variable) for factor in self.factors)
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether φ has no parameter."""
+        return all(factor.names <= {self.variable} for factor in self.factors)
+
+    def grouped(self) -> tuple[tuple[Scalar, int], ...]:
+        """Return the distinct factors with multiplicities, in the order they were given."""
+        counted: dict[Scalar, int] = {}
+        for factor in self.factors:
+            counted[factor] = counted.get(factor, 0) + 1
+        return tuple(counted.items())
+
+    def substitute(self, values: dict[str, Scalar]) -> DesiredPolynomial:
+        """Return φ with parameters replaced."""
+        poles = tuple(Complex(p.real.substitute(values), p.imaginary.substitute(values)) for p in self.poles)
+        return DesiredPolynomial(self.variable, tuple(f.substitute(values) for f in self.factors), poles)
+
+
+def desired_polynomial(  # noqa: PLR0913 - two ways to say one thing, with their places for messages
+    plant: StateSpace,
+    poles: object,
+    polynomial: object,
+    *,
+    names: tuple[str, str] = ("poles", "polynomial"),
+    degree: int | None = None,
+    required: bool = True,
+) -> DesiredPolynomial | None:
+    """Return φ read from `poles` or from `polynomial`, exactly one of which must be given.
+
+    Raises `InputError` where the degree is not the order asked for, where poles of a real design are not closed under
+    conjugation (naming the missing one), or where the polynomial is not monic.
+    """
+    degree = plant.order if degree is None else degree
+    first, second = (f"specification.{name}" for name in names)
+    if poles is None and polynomial is None:
+        if not required:
+            return None
+        message = f"{names[0]} are missing"
+        repair = f'give {names[0]} = "{", ".join(str(-k) for k in range(1, degree + 1))}" or a {names[1]}'
+        raise InputError(message, where=first, repair=repair)
+    if poles is not None and polynomial is not None:
+        message = f"both {names[0]} and {names[1]} are given"
+        raise InputError(message, where=first, repair="keep one of them")
+    if poles is not None:
+        return _from_poles(read_poles(poles, plant.symbols, first), plant.variable, degree, first)
+    return _from_polynomial(polynomial, plant, degree, second)
+
+
+def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ...]:
+    """Return exact poles from a text or a list of numbers, texts and SymPy expressions."""
+    if isinstance(value, str):
+        return parse_poles(value, symbols.names, where=where)
+    if not isinstance(value, Sequence):
+        value = [value]
+    poles: list[Complex] = []
+    for index, entry in enumerate(value):
+        place = f"{where}[{index}]"
+        if isinstance(entry, Complex):
+            poles.append(entry)
+        elif type(entry).__module__.startswith("sympy"):
+            poles.append(read_complex(entry, symbols, place))
+        else:
+            poles += parse_poles([entry], symbols.names, where=place)
+    return tuple(poles)
+
+
+def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
+    if len(poles) != degree:
+        message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
+        raise InputError(message, where=where, repair=f"give as many poles as the order asks for, {degree}")
+    s = Scalar.symbol(variable)
+    waiting = list(poles)
+    factors: list[Scalar] = []
+    while waiting:
+        pole = waiting.pop(0)
+        if pole.is_real:
+            factors.append(s - pole.real)
+            continue
+        partner = pole.conjugate()
+        if partner not in waiting:
+            message = f"the poles are not closed under conjugation: {partner} is missing beside {pole}"
+            raise InputError(message, where=where, repair=f"replace one of the poles by {partner}")
+        waiting.remove(partner)
+        factors.append((s - pole.real) ** 2 + pole.imaginary**2)
+    return DesiredPolynomial(variable, tuple(factors), poles)
+
+
+def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
+    variable = plant.variable
+    if isinstance(value, str):
+        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where)
+    else:
+        polynomial = read_scalar(value, plant.symbols, where)
+    found = polynomial.degree(variable)
+    if not polynomial.is_polynomial_in(variable) or found < 1:
+        message = f"{polynomial} is not a polynomial in {variable}"
+        raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 4 {variable} + 4"')
+    if found != degree:
+        message = f"a polynomial of degree {found} given, degree {degree} needed"
+        raise InputError(message, where=where, repair=f"give a polynomial of degree {degree}")
+    lead = polynomial.coefficients(variable)[0]
+    if not lead.is_one:
+        message = f"the polynomial is not monic, its leading coefficient is {lead}"
+        raise InputError(message, where=where, repair=f"divide it by {lead}")
+    return DesiredPolynomial(variable, _monic_factors(polynomial, variable))
+
+
+def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
+    """Return the irreducible factors that contain the variable, made monic, those of lower degree first."""
+    factors: list[Scalar] = []
+    for factor, power in polynomial.numerator.factors()[1]:
+        if factor.degree(variable) > 0:
+            factors += [factor / factor.coefficients(variable)[0]] * power
+    return tuple(sorted(factors, key=lambda f: f.degree(variable)))
+
+
+def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
+    """Return a given gain, checked against the shape the plant asks for."""
+    where = f"specification.{name}"
+    gain = read_matrix(value, plant.symbols.seen(value), where)
+    if gain.shape != shape:
+        message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
+        raise ShapeMismatch(message, where=where, repair=f"give {name} with {shape[0]} rows and {shape[1]} columns")
+    return gain
