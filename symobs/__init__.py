@@ -1,0 +1,39 @@
+"""symobs: exact design of observers and observer-based compensators, with the derivation a textbook would print.
+
+One function a task (`symobs.observer`, `symobs.compensator`, …), found in the registry when first used; nothing heavy is
+imported before.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+#: Where tasks and methods are discovered, and where output formats are.
+TASK_PACKAGES = ("symobs.analysis", "symobs.design")
+FORMAT_PACKAGE = "symobs.render"
+
+
+def __getattr__(name: str) -> Any:
+    """Return `StateSpace`, an error class, or the function of a task."""
+    import importlib  # noqa: PLC0415 - `import symobs` stays cheap
+
+    if name == "StateSpace":
+        return importlib.import_module("symobs.system").StateSpace
+    if name == "__version__":
+        return importlib.import_module("importlib.metadata").version("symobs")
+    if name[:1].isupper():
+        found = getattr(importlib.import_module("symobs.errors"), name, None)
+        if found is not None:
+            return found
+    elif not name.startswith("_"):
+        task = importlib.import_module("symobs.method").tasks().get(name)
+        if task is not None:
+            return task.function
+    message = f"module 'symobs' has no attribute {name!r}"
+    raise AttributeError(message)
+
+
+def __dir__() -> list[str]:
+    from symobs.method import tasks  # noqa: PLC0415
+
+    return sorted([*globals(), "StateSpace", *tasks()])

@@ -4,21 +4,34 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 """
 
 from symobs.exact.complex import Complex
+from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
+from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 
 __all__ = [
     "RATIONALS",
     "VARIABLES",
     "Complex",
+    "Factored",
     "Field",
     "Matrix",
+    "Root",
     "Scalar",
     "apply_polynomial",
     "companion",
+    "echelon",
+    "factored",
     "from_coefficients",
     "hankel_of",
+    "independent_rows",
+    "kernel",
     "product_of",
+    "rank",
+    "root_of_pole",
+    "roots_are",
+    "roots_of",
+    "unit_rows",
 ]

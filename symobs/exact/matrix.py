@@ -50,11 +50,11 @@ class Matrix:
         denominator = field.one
         for row in lifted:
             for entry in row:
-                denominator = _common_multiple(denominator, entry.denominator_part)
+                denominator = common_multiple(denominator, entry.denominator_part)
         table = tuple(
             tuple(entry.numerator_part * (denominator / entry.denominator_part) for entry in row) for row in lifted
         )
-        matrix = _build(field, table, denominator, shape)
+        matrix = build(field, table, denominator, shape)
         matrix.__dict__["rows"] = rows
         return matrix
 
@@ -176,6 +176,10 @@ class Matrix:
     def __repr__(self) -> str:
         return f"Matrix({self})"
 
+    def common_denominator(self) -> Scalar:
+        """Return the least common denominator of the entries."""
+        return Scalar(self.field, self.normal().denominator, self.field.one)
+
     @property
     def is_zero(self) -> bool:
         """Whether every entry is 0."""
@@ -293,7 +297,7 @@ class Matrix:
         order = self.shape[0]
         rows = self.table if not isinstance(self.table, fmpz_mat) else ring.rows_of(self.table, self.field)
         column = tuple((ring.cofactor(rows, index, i, self.field),) for i in range(order))
-        return _build(self.field, column, self.denominator ** (order - 1), (order, 1))
+        return build(self.field, column, self.denominator ** (order - 1), (order, 1))
 
     def inverse(self) -> Matrix:
         """Return the inverse; raises ZeroDivisionError where the determinant is 0."""
@@ -338,64 +342,9 @@ class Matrix:
         )
         return Scalar.reduced(field, ring.determinant(rows, field), lifted.denominator**order)
 
-    def echelon(self, relation: Scalar | None = None) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
-        """Return (pivot columns, basis of the kernel), where `relation` = 0 holds if one is given.
 
-        The kernel vectors are columns with polynomial entries without common factor.  `relation` must be an
-        irreducible polynomial: what it divides counts as zero.
-        """
-        field = self.field if relation is None else self.field | relation.field
-        lifted = self.within(field)
-        rows = lifted.table if not isinstance(lifted.table, fmpz_mat) else ring.rows_of(lifted.table, field)
-        modulus = None if relation is None else relation.within(field).numerator_part
-
-        def vanishes(entry: fmpz_mpoly) -> bool:
-            return not entry or (modulus is not None and not entry % modulus)
-
-        pivots, reduced = ring.echelon(rows, vanishes)
-        kernel = [
-            _kernel_vector(free, pivots, reduced, self.shape[1], field, vanishes)
-            for free in range(self.shape[1])
-            if free not in pivots
-        ]
-        return tuple(pivots), tuple(kernel)
-
-    def rank(self) -> int:
-        """Return the rank over the field: for parameters, the generic rank."""
-        if isinstance(self.table, fmpz_mat):
-            return int(self.table.rank())
-        return len(self.echelon()[0])
-
-    def kernel(self) -> tuple[Matrix, ...]:
-        """Return a basis of {v : M v = 0} over the field."""
-        return self.echelon()[1]
-
-
-def _kernel_vector(  # noqa: PLR0913 - the parts of one echelon form
-    free: int,
-    pivots: list[int],
-    reduced: list[list[fmpz_mpoly]],
-    columns: int,
-    field: Field,
-    vanishes: object,
-) -> Matrix:
-    """Solve for the pivot components with the free component at the common multiple of the pivots."""
-    common = field.one
-    for row, pivot in zip(reduced, pivots, strict=True):
-        if not vanishes(row[free]):  # type: ignore[operator]
-            common = _common_multiple(common, row[pivot])
-    vector = [field.zero] * columns
-    vector[free] = common
-    for row, pivot in zip(reduced, pivots, strict=True):
-        if not vanishes(row[free]):  # type: ignore[operator]
-            vector[pivot] = -row[free] * (common / row[pivot])
-    shared = field.zero
-    for entry in vector:
-        shared = shared.gcd(entry)
-    return _build(field, tuple((entry / shared,) for entry in vector), field.one, (columns, 1))
-
-
-def _common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
+def common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
+    """Return a common multiple as small as FLINT's gcd makes it."""
     if right.is_one() or left == right:
         return left
     if left.is_one():
@@ -406,11 +355,11 @@ def _common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
 
 def _align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, fmpz_mpoly]:
     """Return (common denominator, factor for the left, factor for the right)."""
-    common = _common_multiple(left, right)
+    common = common_multiple(left, right)
     return common, common / left, common / right
 
 
-def _build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]) -> Matrix:
+def build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]) -> Matrix:
     """Return the matrix of a table of polynomials, in the form its field asks for."""
     if field.names:
         return Matrix(field, table, denominator, shape)

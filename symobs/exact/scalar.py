@@ -218,6 +218,10 @@ class Scalar:
         """The denominator of the reduced form."""
         return Scalar(self.field, self.denominator_part, self.field.one)
 
+    def common_denominator(self) -> Scalar:
+        """Return the denominator, as a matrix does."""
+        return self.denominator
+
     def fraction(self) -> Fraction:
         """Return a constant as a `Fraction`."""
         return Fraction(int(_constant(self.numerator_part)), int(_constant(self.denominator_part)))

@@ -10,6 +10,7 @@ import sympy
 from symobs.errors import InexactInput, InputError
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
+from symobs.exact.roots import Factored, Root
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -36,6 +37,26 @@ def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> 
 def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:
     """Return the `ImmutableMatrix` of a matrix."""
     return sympy.ImmutableMatrix(*value.shape, [scalar_to_sympy(entry, objects) for entry in value.entries])
+
+
+def factored_to_sympy(value: Factored, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return a factored form as a product of powers, not multiplied out."""
+    powers = [sympy.Pow(scalar_to_sympy(factor, objects), power) for factor, power in value.factors]
+    return sympy.Mul(scalar_to_sympy(value.unit, objects), *powers)
+
+
+def complex_to_sympy(value: Complex, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return real + imaginary·I."""
+    return scalar_to_sympy(value.real, objects) + sympy.I * scalar_to_sympy(value.imaginary, objects)
+
+
+def root_to_sympy(root: Root, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return a root in radicals where it has them, else as `CRootOf` or as the factor's root."""
+    if not root.is_closed:
+        factor = scalar_to_sympy(root.factor, objects)
+        return sympy.CRootOf(sympy.Poly(factor, sympy.Symbol(root.variable)), root.index)
+    offset = root.sign * sympy.sqrt(scalar_to_sympy(root.radicand, objects))
+    return scalar_to_sympy(root.centre, objects) + offset
 
 
 def complex_from_sympy(expression: Any, where: str) -> Complex:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.modular import block, scaled
 from symobs.formula.nodes import (
     Apply,
@@ -150,7 +150,7 @@ class Exact:
             return value.determinant()
         if function == "adj":
             return value.adjugate()
-        return Scalar.of(value.rank())
+        return Scalar.of(rank(value))
 
     def block(self, rows: list[list[Any]]) -> Matrix:
         return Matrix.block([[e if isinstance(e, Matrix) else Matrix.of([[e]]) for e in row] for row in rows])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix, Scalar
+    from symobs.exact import Matrix, Root, Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,15 @@ class Predicate:
     subject: Formula
 
 
-Fact: TypeAlias = Union[Relation, Predicate]
+@dataclass(frozen=True, slots=True)
+class Roots:
+    """The roots of a monic polynomial, with multiplicity; shown as their list."""
+
+    polynomial: Formula
+    values: tuple[Root, ...]
+
+
+Fact: TypeAlias = Union[Relation, Predicate, Roots]
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

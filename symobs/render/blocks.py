@@ -6,11 +6,14 @@ The narrator writes them, the formats read them, and neither knows the other.  T
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias, Union
+from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.formula import Formula, Relation
+from symobs.formula import Formula, Relation, Roots
 
-Inline: TypeAlias = Union[str, Formula, Relation]
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+Inline: TypeAlias = str | Formula | Relation | Roots
 Inlines: TypeAlias = tuple[Inline, ...]
 
 
@@ -81,4 +84,20 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
-Block: TypeAlias = Union[Title, Heading, Paragraph, Display, Verified, Caution, Drawing, CaseBlock]
+Block: TypeAlias = Title | Heading | Paragraph | Display | Verified | Caution | Drawing | CaseBlock
+
+
+def every(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield all blocks, those inside cases too."""
+    for block in blocks:
+        yield block
+        if isinstance(block, CaseBlock):
+            yield from every(block.blocks)
+
+
+def opened(page: tuple[Block, ...]) -> tuple[Title, tuple[Block, ...]]:
+    """Return a page's title and what stands below it."""
+    title, *body = page
+    if not isinstance(title, Title):
+        raise TypeError(f"a page begins with its title, not with {type(title).__name__}")
+    return title, tuple(body)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.formula import Letter, Negative, Predicate, Product, Relation, Sum, letters
+from symobs.formula import Letter, Negative, Predicate, Product, Relation, Roots, Sum, letters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -42,41 +42,38 @@ _ERROR = Relation((Letter("e"), Sum((Letter("x"), Negative(Letter("x_hat"))))), 
 
 def _formulas(step: Step) -> Iterator[Formula]:
     match step:
-        case Section(title, steps):
+        case Section(title=title, steps=steps):
             yield from _in_sentence(title)
             for inner in steps:
                 yield from _formulas(inner)
-        case Case(when, steps, sentence):
-            yield from when.members
-            yield from _in_sentence(sentence)
+        case Case(when=when, steps=steps, sentence=sentence):
+            yield from (*when.members, *_in_sentence(sentence))
             for inner in steps:
                 yield from _formulas(inner)
-        case Given(relations, sentence) | Equal(relations, sentence, _):
-            yield from _in_facts(relations)
+        case Given(relations=relations, sentence=sentence) | Equal(relations=relations, sentence=sentence):
+            yield from (*_in_facts(relations), *_in_sentence(sentence))
+        case Define(relation=relation, sentence=sentence):
+            yield from (*relation.members, *_in_sentence(sentence))
+        case Solve(equation=equation, solution=solution, sentence=sentence):
+            yield from (*equation.members, *solution.members, *_in_sentence(sentence))
+        case Conclude(sentence=sentence) | Note(sentence=sentence):
             yield from _in_sentence(sentence)
-        case Define(relation, sentence, _):
-            yield from relation.members
-            yield from _in_sentence(sentence)
-        case Solve(equation, solution, sentence):
-            yield from _in_facts((equation, solution))
-            yield from _in_sentence(sentence)
-        case Conclude(sentence, _, _) | Note(sentence, _, _):
-            yield from _in_sentence(sentence)
-        case Diagram(_, labels):
+        case Diagram(labels=labels):
             yield from (formula for _, formula in labels)
 
 
 def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
     for fact in facts:
-        if isinstance(fact, Predicate):
-            yield fact.subject
-        else:
-            yield from fact.members
+        match fact:
+            case Relation(members=members):
+                yield from members
+            case Predicate(subject=subject) | Roots(polynomial=subject):
+                yield subject
 
 
 def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
-        if isinstance(value, Relation | Predicate):
+        if isinstance(value, Relation | Predicate | Roots):
             yield from _in_facts((value,))
         elif not isinstance(value, str):
             yield value

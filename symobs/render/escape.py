@@ -29,10 +29,10 @@ _SPECIAL = {
 _TYPOGRAPHY = {
     "“": "``",
     "”": "''",
-    "‘": "`",
-    "’": "'",
-    "‐": "-",
-    "‑": "-",
+    "\N{LEFT SINGLE QUOTATION MARK}": "`",
+    "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+    "\N{HYPHEN}": "-",
+    "\N{NON-BREAKING HYPHEN}": "-",
     "–": "--",
     "—": "---",
     "…": r"\dots{}",
@@ -40,18 +40,47 @@ _TYPOGRAPHY = {
     "©": r"\copyright{}",
 }
 _GREEK = {
-    chr(code): name
-    for code, name in zip(
-        [*range(0x3B1, 0x3BF), *range(0x3C0, 0x3CA), *map(ord, "ΓΔΘΛΞΠΣΥΦΨΩϑϕϵ")],
-        (
-            "alpha beta gamma delta varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho varsigma sigma tau "
-            "upsilon varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega vartheta phi epsilon"
-        ).split(),
-        strict=True,
-    )
+    "α": "alpha",
+    "β": "beta",
+    "γ": "gamma",
+    "δ": "delta",
+    "ε": "varepsilon",
+    "ϵ": "epsilon",
+    "ζ": "zeta",
+    "η": "eta",
+    "θ": "theta",
+    "ϑ": "vartheta",
+    "\N{GREEK SMALL LETTER IOTA}": "iota",
+    "κ": "kappa",
+    "λ": "lambda",
+    "μ": "mu",
+    "µ": "mu",
+    "ν": "nu",
+    "ξ": "xi",
+    "π": "pi",
+    "ρ": "rho",
+    "ς": "varsigma",
+    "σ": "sigma",
+    "τ": "tau",
+    "\N{GREEK SMALL LETTER UPSILON}": "upsilon",
+    "φ": "varphi",
+    "ϕ": "phi",
+    "χ": "chi",
+    "ψ": "psi",
+    "ω": "omega",
+    "Γ": "Gamma",
+    "Δ": "Delta",
+    "Θ": "Theta",
+    "Λ": "Lambda",
+    "Ξ": "Xi",
+    "Π": "Pi",
+    "Σ": "Sigma",
+    "\N{GREEK CAPITAL LETTER UPSILON}": "Upsilon",
+    "Φ": "Phi",
+    "Ψ": "Psi",
+    "Ω": "Omega",
 }
 _MATHEMATICS = {character: rf"\{name}" for character, name in _GREEK.items()} | {
-    "µ": r"\mu",
     "−": "-",
     "×": r"\times",
     "÷": r"\div",
@@ -74,6 +103,7 @@ _MATHEMATICS = {character: rf"\{name}" for character, name in _GREEK.items()} | 
     "𝒪": r"\mathcal O",
     "𝒞": r"\mathcal C",
 }
+_SHOWN = _SPECIAL | _TYPOGRAPHY | {character: f"${latex}$" for character, latex in _MATHEMATICS.items()}
 _ACCENTS = {"\u0302": r"\hat", "\u0303": r"\tilde", "\u0304": r"\bar", "\u0307": r"\dot", "\u0308": r"\ddot"}
 #: Letters that LaTeX knows in UTF-8 without a package; a test typesets every one.
 LETTERS = frozenset(
@@ -81,6 +111,7 @@ LETTERS = frozenset(
     "ŃńŅņŇňŌōŎŏŐőŒœŔŕŖŗŘřŚśŜŝŞşŠšŢţŤťŨũŪūŬŭŮůŰűŴŵŶŷŸŹźŻżŽžȘșȚț"
 )
 
+_WHITE = re.compile(r"\s+")
 _CLUSTER = re.compile("(.)([\u0300-\u036f]*)", re.DOTALL)
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 _RUN_TOGETHER = {"--", "''", "``", "?`", "!`"}  # TeX makes one character of each
@@ -89,8 +120,8 @@ _PIECE = 20
 
 
 def escape(text: str) -> str:
-    """Return LaTeX that shows the text as it is, on one line."""
-    line = unicodedata.normalize("NFC", " ".join(text.split()))
+    """Return LaTeX that shows the text as it is, on one line; every stretch of white space becomes one space."""
+    line = unicodedata.normalize("NFC", _WHITE.sub(" ", text))
     quoted = _OPENING_QUOTE.sub("“", line).replace('"', "”")
     return " ".join(_word(word) for word in quoted.split(" "))
 
@@ -118,20 +149,14 @@ def _cluster(character: str, marks: str) -> str:
 
 
 def _character(character: str) -> str:
-    if character in _SPECIAL:
-        return _SPECIAL[character]
-    if character.isascii():
-        return character if character.isprintable() else ""
-    if character in LETTERS:
+    if character in _SHOWN:
+        return _SHOWN[character]
+    if unicodedata.category(character) in {"Cc", "Cf"}:
+        return ""
+    if character.isascii() or character in LETTERS:
         return character
-    if character in _TYPOGRAPHY:
-        return _TYPOGRAPHY[character]
-    if character in _MATHEMATICS:
-        return f"${_MATHEMATICS[character]}$"
-    base, *marks = unicodedata.normalize("NFD", character)
-    if len(marks) == 1:
-        return _cluster(base, marks[0])
-    return "" if unicodedata.category(character) in {"Cc", "Cf"} else "?"
+    parts = unicodedata.normalize("NFD", character)
+    return _cluster(parts[0], parts[1]) if len(parts) == 2 else "?"
 
 
 def _mathematics(character: str) -> str:

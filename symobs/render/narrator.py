@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import string
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.formula import Predicate
@@ -29,11 +29,14 @@ from symobs.render.blocks import (
 from symobs.render.conventions import letters_used, stated_conventions
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symobs.derivation import Sentence, Step
     from symobs.formula import Formula, Relation
     from symobs.method import Document
+    from symobs.render.printer import Printer
+
+P = TypeVar("P", bound="Printer[Any]")
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
@@ -52,72 +55,90 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page = _Page()
     page.blocks.append(_title(document))
     for derivation in document.derivations:
-        page.tell(_given_first(derivation.steps))
+        page.tell(derivation.steps)
     return _punctuated(page.blocks)
+
+
+def printer_for(document: Document, kind: type[P]) -> P:
+    """Return a printer of some format for a document's mathematics: its variable, its symbols, its kind of time."""
+    if not document.derivations:
+        return kind()
+    first = document.derivations[0]
+    symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
+    return kind(first.variable, symbols, discrete=first.discrete)
 
 
 class _Page:
     """The blocks written so far, and what the next ones depend on."""
 
-    def __init__(self, given: dict[Formula, Relation] | None = None, *, numbered: bool = True) -> None:
+    def __init__(self, *, given: Mapping[Formula, Relation] | None = None, numbered: bool = True) -> None:
         self.blocks: list[Block] = []
-        self.given = given or {}
+        self.given = dict(given or {})
+        self.stated: set[Sentence] = set()
         self.numbers = [0]
         self.numbered = numbered
 
     def tell(self, steps: Sequence[Step]) -> None:
-        for step in steps:
+        """Tell a derivation: what is given first."""
+        statement, rest = _statement(steps)
+        self.tell_given(statement)
+        for step in rest:
             self.tell_step(step)
 
-    def tell_step(self, step: Step) -> None:
-        match step:
-            case Given(relations, sentence):
-                self.tell_given(relations, sentence)
-            case Define(relation, sentence, answer):
+    def tell_given(self, statement: Sequence[Given | Note]) -> None:
+        """Show what is given and not on the page already, then the sentences about it."""
+        relations = [relation for step in statement if isinstance(step, Given) for relation in step.relations]
+        news = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
+        sentences = [step.sentence for step in statement if step.sentence and step.sentence not in self.stated]
+        self.given.update((relation.members[0], relation) for relation in news)
+        self.stated.update(sentences)
+        if news or sentences:
+            self.blocks.append(Heading("", (PHRASES["given"],)))
+            self.show(news)
+            for sentence in sentences:
                 self.say(sentence)
-                self.show((relation,), boxed=answer)
-            case Equal(relations, sentence, answer):
+
+    def tell_step(self, step: Step) -> None:  # noqa: C901 - one case a kind of step
+        match step:
+            case Given(relations=relations, sentence=sentence, silent=silent):
+                self.say(sentence)
+                self.show(() if silent or sentence else relations)
+            case Define(relation=relation, sentence=sentence, answer=answer, silent=silent):
+                self.say(sentence)
+                self.show(() if silent else (relation,), boxed=answer)
+            case Equal(relations=relations, sentence=sentence, answer=answer):
                 self.say(sentence)
                 self.show(relations, boxed=answer)
-            case Solve(equation, solution, sentence):
+            case Solve(equation=equation, solution=solution, sentence=sentence):
                 self.say(sentence)
                 self.show((equation, solution))
-            case Conclude(sentence, _, verified) if verified:
+            case Conclude(sentence=sentence, verified=True):
                 self.blocks.append(Verified(_filled(sentence)))
-            case Note(sentence, _, caution) if caution:
+            case Note(sentence=sentence, caution=True):
                 self.blocks.append(Caution(LABELS["caution"], _filled(sentence)))
-            case Conclude(sentence) | Note(sentence):
+            case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.say(sentence)
-            case Diagram(name, labels):
+            case Diagram(name=name, labels=labels):
                 self.blocks.append(Drawing(name, labels))
-            case Case(when, steps, sentence):
+            case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
-            case Section(title, steps):
+            case Section(title=title, steps=steps):
                 self.tell_section(title, steps)
 
-    def tell_given(self, relations: tuple[Relation, ...], sentence: Sentence | None) -> None:
-        """Show what is given and not on the page already; the sentence ends it, as in a problem's statement."""
-        news = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
-        self.given.update((relation.members[0], relation) for relation in news)
-        if not news and not sentence:
-            return
-        self.blocks.append(Heading("", (PHRASES["given"],)))
-        self.show(news)
-        self.say(sentence)
-
-    def tell_section(self, title: Sentence, steps: tuple[Step, ...]) -> None:
+    def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
         self.numbers[-1] += 1
         number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
         self.blocks.append(Heading(number, _filled(title)))
         self.numbers.append(0)
-        self.tell(steps)
+        for step in steps:
+            self.tell_step(step)
         self.numbers.pop()
 
-    def tell_case(self, when: Relation, steps: tuple[Step, ...], sentence: Sentence | None) -> None:
+    def tell_case(self, when: Relation, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
-        inner = _Page(dict(self.given), numbered=False)
+        inner = _Page(given=self.given, numbered=False)
         inner.say(sentence)
-        inner.tell(_given_first(steps))
+        inner.tell(steps)
         self.blocks.append(CaseBlock((f"{LABELS['case']} ", when, "."), _punctuated(inner.blocks)))
 
     def say(self, sentence: Sentence | None) -> None:
@@ -140,8 +161,22 @@ class _Page:
             self.blocks.append(Display(relations, boxed))
 
 
-def _given_first(steps: Sequence[Step]) -> list[Step]:
-    return sorted(steps, key=lambda step: not isinstance(step, Given))
+def _statement(steps: Sequence[Step]) -> tuple[list[Given | Note], list[Step]]:
+    """Split off the data shown and the remarks that directly follow them; a condition assumed keeps its place."""
+    statement: list[Given | Note] = []
+    rest: list[Step] = []
+    for before, step in zip([None, *steps], steps, strict=False):
+        is_datum = isinstance(step, Given) and not step.silent and not _is_condition(step)
+        is_remark_on_it = isinstance(step, Note) and not step.caution and statement[-1:] == [before]
+        if isinstance(step, Given | Note) and (is_datum or is_remark_on_it):
+            statement.append(step)
+        else:
+            rest.append(step)
+    return statement, rest
+
+
+def _is_condition(step: Given) -> bool:
+    return all(relation.operators[0] == "!=" for relation in step.relations)
 
 
 def _title(document: Document) -> Title:

@@ -10,7 +10,7 @@ from functools import lru_cache
 from math import gcd
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Beyond this many terms a polynomial is not factored for the sake of its looks.
 FACTORED_UP_TO = 120
+
+_PARENTHESES = 0.6
 
 Monomial = tuple[int, tuple[tuple[str, int], ...]]
 
@@ -75,7 +77,8 @@ def _polynomial(value: Scalar, variable: str) -> Formula:
     if value.denominator.is_one:
         return separate
     whole = Quotient(_collected(value.numerator.coefficients(variable), variable), _constant(value.denominator))
-    patience = 1.5 if coefficients[0].denominator.is_one else 1.0
+    is_gentle = coefficients[0].denominator.is_one or value.denominator.is_constant
+    patience = 1.5 if is_gentle else 1.0
     if size(separate) <= patience * size(whole):
         return separate
     first = _terms_of(whole.numerator)[0]
@@ -226,16 +229,37 @@ def size(formula: Formula) -> float:
         case Literal(Scalar() as value):
             return len(str(value)) if value.is_constant else 1.0
         case Sum(terms):
-            return sum(size(term) for term in terms) + len(terms) - 1
+            return sum(size(term) for term in terms) + (len(terms) - 1) / 2
         case Negative(Sum() as operand):
-            return 3 + size(operand)
+            return size(operand) + 0.5 + _PARENTHESES
         case Negative(operand):
             return size(operand) + 0.5
         case Product(factors):
-            return sum(size(factor) + 2 * isinstance(factor, Sum) for factor in factors)
+            return sum(size(factor) + _PARENTHESES * isinstance(factor, Sum) for factor in factors)
         case Power(base, _):
-            return size(base) + 2 * isinstance(base, Sum) + 0.5
+            return size(base) + _PARENTHESES * isinstance(base, Sum) + 0.5
         case Quotient(above, below):
             return size(above) + size(below) + 1
         case _:
             return 1.0
+
+
+def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
+    """Return the matrix, or 1/d times one without fractions where several entries share a denominator."""
+    broken = [entry for entry in matrix.entries if not entry.denominator.is_one]
+    if len(broken) < 2:
+        return Literal(matrix)
+    below = _least_common_multiple([entry.denominator for entry in broken])
+    kept = sum(size(spelled(entry, variable)) for entry in matrix.entries)
+    cleared = sum(size(spelled(entry * below, variable)) for entry in matrix.entries)
+    if cleared + size(spelled(below, variable)) >= kept:
+        return Literal(matrix)
+    front = spelled(Scalar.of(1) / below, variable)
+    return Product((front, Literal(matrix * below)))
+
+
+def _least_common_multiple(values: Sequence[Scalar]) -> Scalar:
+    multiple = Scalar.of(1)
+    for value in values:
+        multiple = multiple * (value / multiple).numerator
+    return multiple

@@ -1,8 +1,6 @@
-"""Derivations: closed kinds of steps, and the check without which none is shown.
+"""The closed kinds of steps a derivation is made of.
 
-A step says something about letters established before it.  `Derivation.check` walks the steps in order, builds the
-environment from what is given and defined, and re-evaluates every member of every relation, also those inside
-sentences; a false line raises `DerivationRejected`.  Renderers accept checked derivations only.
+A step says something about letters established before it, and carries the sentence that gives its reason.
 """
 
 from __future__ import annotations
@@ -10,7 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias, Union
 
+from symobs.exact import Scalar
 from symobs.formula import Fact, Formula, Relation
+from symobs.phrases import slots_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +20,24 @@ class Sentence:
     key: str
     slots: tuple[tuple[str, Formula | Fact | str], ...] = ()
 
+    def __post_init__(self) -> None:
+        """Refuse slots that do not match the phrase."""
+        given, wanted = {name for name, _ in self.slots}, slots_of(self.key)
+        if given != wanted:
+            message = f"the phrase {self.key!r} has the slots {sorted(wanted)}, not {sorted(given)}"
+            raise ValueError(message)
+
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """Data of the problem: each relation introduces its first member."""
+    """Data of the problem, or with `!=` a condition assumed: each relation introduces its first member.
+
+    `silent` data are established without a display of their own.
+    """
 
     relations: tuple[Relation, ...]
     sentence: Sentence | None = None
+    silent: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +47,7 @@ class Define:
     relation: Relation
     sentence: Sentence | None = None
     answer: bool = False
+    silent: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,9 +96,10 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What is true where a condition of the main line fails; its steps hold in the stratum's own environment."""
+    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it."""
 
     when: Relation
+    substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None
 

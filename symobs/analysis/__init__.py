@@ -1,0 +1,1 @@
+"""Facts about a plant; each module registers its tasks and methods."""

@@ -1,0 +1,145 @@
+"""Parts of pages that several tasks share: the data, and the determinant or rank that decides a test."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.conditions import never_zero, vanishing_factors
+from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
+from symobs.formula import Literal, Power, Product, Quotient, Relation, Roots
+from symobs.formula.term import Term
+from symobs.page import Page, relation
+
+if TYPE_CHECKING:
+    from symobs.analysis.observability import RankResult
+    from symobs.formula import Formula
+    from symobs.specification import DesiredPolynomial
+
+
+def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
+    """State the plant, and the poles or polynomials asked for under their names (`control`, `observer`, …)."""
+    plant, m = page.plant, page.plant.matrices
+    with page.section("given"):
+        if plant.origin is not None:
+            page.given(relation(page["P"], factored_form(page, plant.origin)))
+            page.environment = page.environment.having(values={"P": plant.origin})
+            page.remark("realised")
+        page.set("A", m.A)
+        relations = []
+        rate = page.value(m.A) @ page["x"]
+        if m.has_input:
+            page.set("B", m.B)
+            rate = rate + page.value(m.B) @ page["u"]
+        relations.append(relation(page["x"].derivative, rate))
+        page.environment = page.environment.having(dynamics={"x": rate.formula})
+        if m.has_output:
+            page.set("C", m.C)
+            output = page.value(m.C) @ page["x"]
+            if m.has_feedthrough:
+                page.set("D", m.D)
+                output = output + page.value(m.D) @ page["u"]
+            relations.append(relation(page["y"], output))
+            page.environment = page.environment.having(signals={"y": output.formula})
+        page.given(*relations)
+        state_signs(page)
+        asked = [(name, wish) for name, wish in desired if wish is not None]
+        for name, wish in asked:
+            if wish.poles:
+                roots = tuple(root_of_pole(pole, plant.variable) for pole in wish.poles)
+                page.conclude(f"{name}_poles", poles=Roots(Literal(wish.polynomial), roots))
+            else:
+                page.conclude(f"{name}_polynomial", polynomial=wish.polynomial)
+
+
+def state_signs(page: Page) -> None:
+    """Say which parameters have a declared sign."""
+    by_sign: dict[str, list[str]] = {}
+    used = page.plant.field.names
+    for name, sign in page.plant.symbols.signs.items():
+        if name in used and sign != "real":
+            by_sign.setdefault(sign, []).append(name)
+    facts = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}
+    for sign, names in by_sign.items():
+        for name in names:
+            page.conclude("declared", sign=relation(Scalar.symbol(name), facts[sign], 0))
+
+
+def factored_form(page: Page, value: Scalar) -> Term:
+    """Return a scalar written as a product or quotient of its monic factors in the variable."""
+    return page.term(formula_of_factored(factored(value, page.plant.variable)))
+
+
+def formula_of_factored(form: Factored) -> Formula:
+    """Return the formula of a factored form: unit and powers, over powers."""
+    above = [_power(f, p) for f, p in form.factors if p > 0]
+    below = [_power(f, -p) for f, p in form.factors if p < 0]
+    unit = form.unit
+    if below and not unit.denominator.is_one:
+        below.insert(0, Literal(unit.denominator))
+        unit = unit.numerator
+    if not unit.is_one or not above:
+        above.insert(0, Literal(unit))
+    top = above[0] if len(above) == 1 else Product(tuple(above))
+    if not below:
+        return top
+    return Quotient(top, below[0] if len(below) == 1 else Product(tuple(below)))
+
+
+def _power(factor: Scalar, exponent: int) -> Formula:
+    return Literal(factor) if exponent == 1 else Power(Literal(factor), exponent)
+
+
+def determinant_form(page: Page, value: Scalar) -> Term:
+    """Return a determinant as its irreducible factors where it has several, else as it is."""
+    unit, factors = value.factors()
+    if len(factors) < 2 and all(power == 1 for _, power in factors):  # noqa: PLR2004 - nothing to factor
+        return page.value(value)
+    return page.term(formula_of_factored(Factored(unit, factors)))
+
+
+def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
+
+    Factors of the determinant that can vanish become conditions from here on.
+    """
+    determinant, order = result.determinant, page.plant.order
+    if result.answer["rank"] < order:
+        _deficient(page, letter, result, kind)
+        return
+    if determinant is None:
+        page.conclude(f"full_rank_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
+        return
+    signs = page.plant.symbols.signs
+    det = page[letter].apply("det")
+    shown = determinant_form(page, determinant)
+    open_factors = vanishing_factors([determinant], signs)
+    if not open_factors:
+        members = [det, shown, "!=", 0] if never_zero(determinant, signs) else [det, shown]
+        page.equal(relation(*members))
+        page.conclude(f"yes_{kind}")
+        return
+    page.equal(relation(det, shown))
+    for factor in open_factors:
+        page.assume(f"provided_{kind}", factor, condition=relation(factor, "!=", 0))
+
+
+def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    rank = result.answer["rank"]
+    page.conclude(f"no_{kind}", rank=relation(page[letter].apply("rank"), rank, "<", page.plant.order))
+    matrix = page[letter] if kind == "observability" else page[letter].T
+    for vector in result.kernel_vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], 1)
+        page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
+    restricted = result.answer["restricted"]
+    polynomial = restricted.characteristic_polynomial(page.plant.variable)
+    page.conclude(f"modes_{kind}", modes=Roots(Literal(polynomial), roots_of(polynomial, page.plant.variable)))
+
+
+def as_required(page: Page, left: Term, polynomial: Scalar, desired: DesiredPolynomial | None) -> Relation:
+    """Return det(…) = φ, multiplied out and, where that says more, factored as it was asked for."""
+    grouped = desired.grouped() if desired is not None else ()
+    if len(grouped) == 1 and grouped[0][1] == 1:
+        return relation(left, page.value(polynomial))
+    if not grouped:
+        return relation(left, page.value(polynomial))
+    return relation(left, page.value(polynomial), page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))

@@ -1,0 +1,31 @@
+"""Derivations: closed kinds of steps, and the check without which none is shown."""
+
+from symobs.derivation.check import Derivation
+from symobs.derivation.steps import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Section,
+    Sentence,
+    Solve,
+    Step,
+)
+
+__all__ = [
+    "Case",
+    "Conclude",
+    "Define",
+    "Derivation",
+    "Diagram",
+    "Equal",
+    "Given",
+    "Note",
+    "Section",
+    "Sentence",
+    "Solve",
+    "Step",
+]

@@ -1,0 +1,1 @@
+"""Things built for a plant; each module registers its tasks and methods."""

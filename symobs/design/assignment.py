@@ -1,0 +1,91 @@
+"""Placing the poles of A − l c for one output row c: the core that observers use, and state feedback through the dual pair.
+
+Where (c, A) is observable the gain is unique, l = φ(A) 𝒪⁻¹ eₙ.  Where it is not, the unobservable modes stay whatever l is; φ can
+be assigned exactly when their polynomial divides it, and then every gain differs by a vector of ker 𝒪.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from symobs.exact import Matrix, Scalar, apply_polynomial, echelon, independent_rows, kernel, unit_rows
+from symobs.exact.krylov import Krylov
+from symobs.specification import DesiredPolynomial
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A matrix A and one output row c."""
+
+    A: Matrix
+    c: Matrix
+    variable: str
+
+    @cached_property
+    def krylov(self) -> Krylov:
+        """The rows c, cA, …"""
+        return Krylov.of(self.A, self.c)
+
+    @cached_property
+    def determinant(self) -> Scalar:
+        """det 𝒪."""
+        return self.krylov.determinant
+
+    @cached_property
+    def kernel(self) -> Matrix:
+        """A basis of ker 𝒪 as columns; no columns where the pair is observable."""
+        return kernel(self.krylov.matrix)
+
+    @cached_property
+    def restricted(self) -> Matrix:
+        """X with A N = N X for the kernel basis N: the plant on its unobservable subspace."""
+        N = self.kernel
+        free = independent_rows(N)
+        return N.select(free, range(N.shape[1])).solve((self.A @ N).select(free, range(N.shape[1])))
+
+    @cached_property
+    def fixed_polynomial(self) -> Scalar:
+        """The characteristic polynomial of the unobservable modes; 1 where there is none."""
+        if not self.kernel.shape[1]:
+            return Scalar.of(1)
+        return self.restricted.characteristic_polynomial(self.variable)
+
+    def gain(self, desired: DesiredPolynomial) -> Matrix | None:
+        """Return l with det(sI − A + l c) = φ(s), or None where φ cannot be assigned."""
+        if not self.determinant.is_zero:
+            vector = self.krylov.solve_last()
+            return apply_polynomial(desired.factors, desired.variable, self.A, vector).normal()
+        quotient = divide(desired.polynomial, self.fixed_polynomial, self.variable)
+        return None if quotient is None else self._gain_of_observable_part(quotient)
+
+    def _gain_of_observable_part(self, polynomial: Scalar) -> Matrix:
+        """Place the observable modes; the gain has no component along the free rows of ker 𝒪."""
+        order, N = self.A.shape[0], self.kernel
+        pivots, _ = echelon(self.krylov.matrix)
+        rank = len(pivots)
+        if rank == 0:
+            return Matrix.zeros(order, 1)
+        T = Matrix.block([[self.krylov.matrix.select(range(rank), range(order))], [unit_rows(order, independent_rows(N))]])
+        inverse = T.inverse()
+        A, c = T @ self.A @ inverse, self.c @ inverse
+        part = Pair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
+        gain = apply_polynomial([polynomial], self.variable, part.A, part.krylov.solve_last())
+        return (inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal()
+
+
+def divide(polynomial: Scalar, divisor: Scalar, variable: str) -> Scalar | None:
+    """Return polynomial / divisor where the division leaves no remainder."""
+    quotient = polynomial / divisor
+    return quotient if quotient.is_polynomial_in(variable) else None
+
+
+def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return (quotient, remainder) by a monic divisor."""
+    s = Scalar.symbol(variable)
+    quotient, rest = Scalar.of(0), polynomial
+    degree = divisor.degree(variable)
+    while not rest.is_zero and rest.degree(variable) >= degree:
+        lead = rest.coefficients(variable)[0] * s ** (rest.degree(variable) - degree)
+        quotient, rest = quotient + lead, rest - lead * divisor
+    return quotient, rest

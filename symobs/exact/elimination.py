@@ -1,0 +1,82 @@
+"""Rank, kernel and bases: what fraction-free elimination of a matrix gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import fmpz_mat, fmpz_mpoly
+
+from symobs.exact import ring
+from symobs.exact.matrix import Matrix, build, common_multiple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symobs.exact.field import Field
+    from symobs.exact.scalar import Scalar
+
+
+def echelon(matrix: Matrix, relation: Scalar | None = None) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
+    """Return (pivot columns, basis of the kernel), where `relation` = 0 holds if one is given.
+
+    The kernel vectors are columns with polynomial entries without common factor.  `relation` must be an irreducible
+    polynomial: what it divides counts as zero.
+    """
+    field = matrix.field if relation is None else matrix.field | relation.field
+    lifted = matrix.within(field)
+    rows = lifted.table if not isinstance(lifted.table, fmpz_mat) else ring.rows_of(lifted.table, field)
+    modulus = None if relation is None else relation.within(field).numerator_part
+
+    def vanishes(entry: fmpz_mpoly) -> bool:
+        return not entry or (modulus is not None and not entry % modulus)
+
+    pivots, reduced = ring.echelon(rows, vanishes)
+    columns = range(matrix.shape[1])
+    kernel = [_kernel_vector(j, pivots, reduced, field, vanishes, len(columns)) for j in columns if j not in pivots]
+    return tuple(pivots), tuple(kernel)
+
+
+def _kernel_vector(  # noqa: PLR0913 - the parts of one echelon form
+    free: int,
+    pivots: list[int],
+    reduced: list[list[fmpz_mpoly]],
+    field: Field,
+    vanishes: Callable[[fmpz_mpoly], bool],
+    columns: int,
+) -> Matrix:
+    """Solve for the pivot components, the free component being the common multiple of the pivots."""
+    bound = [(row, pivot) for row, pivot in zip(reduced, pivots, strict=True) if not vanishes(row[free])]
+    common = field.one
+    for row, pivot in bound:
+        common = common_multiple(common, row[pivot])
+    vector = [field.zero] * columns
+    vector[free] = common
+    for row, pivot in bound:
+        vector[pivot] = -row[free] * (common / row[pivot])
+    shared = field.zero
+    for entry in vector:
+        shared = shared.gcd(entry)
+    return build(field, tuple((entry / shared,) for entry in vector), field.one, (columns, 1))
+
+
+def rank(matrix: Matrix) -> int:
+    """Return the rank over the field: for parameters, the generic rank."""
+    if isinstance(matrix.table, fmpz_mat):
+        return int(matrix.table.rank())
+    return len(echelon(matrix)[0])
+
+
+def kernel(matrix: Matrix) -> Matrix:
+    """Return a basis of {v : M v = 0} as columns; no columns where it is trivial."""
+    vectors = echelon(matrix)[1]
+    return Matrix.of([[v[i, 0] for v in vectors] for i in range(matrix.shape[1])], len(vectors))
+
+
+def independent_rows(matrix: Matrix) -> tuple[int, ...]:
+    """Return as many rows as the rank, chosen so that they are independent."""
+    return echelon(matrix.T)[0] if matrix.shape[1] else ()
+
+
+def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:
+    """Return the rows eᵢᵀ of the identity."""
+    return Matrix.of([[int(j == i) for j in range(order)] for i in rows], order)

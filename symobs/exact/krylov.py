@@ -1,0 +1,86 @@
+"""The rows c, cA, …, cAⁿ⁻¹ and what observer design needs of them, without fractions.
+
+Row k is kept as an integral row over its own denominator dₖ, so 𝒪 = diag(1/dₖ) N, det 𝒪 = det N / Π dₖ and 𝒪⁻¹ eₙ = dₙ₋₁ N⁻¹ eₙ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from flint import fmpz_mat
+
+from symobs.exact import ring
+from symobs.exact.matrix import Matrix
+from symobs.exact.scalar import Scalar
+
+if TYPE_CHECKING:
+    from symobs.exact.field import Field
+
+
+@dataclass(frozen=True)
+class Krylov:
+    """The observability matrix of a pair (A, c) with one output row."""
+
+    A: Matrix
+    rows: tuple[Matrix, ...]
+
+    @staticmethod
+    def of(A: Matrix, c: Matrix) -> Krylov:
+        """Form the rows by products of row and matrix."""
+        field = A.field | c.field
+        A, row = A.within(field), c.within(field)
+        rows = [row]
+        for _ in range(A.shape[0] - 1):
+            rows.append(rows[-1] @ A)
+        return Krylov(A, tuple(rows))
+
+    @property
+    def field(self) -> Field:
+        """The field of the entries."""
+        return self.A.field
+
+    @property
+    def matrix(self) -> Matrix:
+        """𝒪."""
+        return Matrix.block([[row] for row in self.rows])
+
+    @cached_property
+    def _last_cofactors(self) -> Matrix:
+        """The column of cofactors of N's last row."""
+        order = len(self.rows)
+        table = tuple(
+            row.table[0] if not isinstance(row.table, fmpz_mat) else ring.rows_of(row.table, self.field)[0]
+            for row in self.rows
+        )
+        column = tuple((ring.cofactor(table, order - 1, i, self.field),) for i in range(order))
+        return Matrix(self.field, column, self.field.one, (order, 1))
+
+    @cached_property
+    def determinant(self) -> Scalar:
+        """det 𝒪, as it comes: common factors with nothing cancelled but within the fraction itself."""
+        if not self.field.names:
+            return self.matrix.determinant()
+        bottom = self.field.one
+        for row in self.rows:
+            bottom = bottom * row.denominator
+        return Scalar.reduced(self.field, self._integral_determinant(), bottom)
+
+    def _integral_determinant(self) -> object:
+        last = self.rows[-1].table[0]
+        column = tuple(entry[0] for entry in self._last_cofactors.table)
+        return ring.dot(last, column, self.field.zero)
+
+    def solve_last(self) -> Matrix:
+        """Return 𝒪⁻¹ eₙ; raises ZeroDivisionError where det 𝒪 = 0 identically."""
+        order = len(self.rows)
+        if not self.field.names:
+            return self.matrix.solve(Matrix.unit(order, order - 1))
+        below = self._integral_determinant()
+        if not below:
+            message = "not observable"
+            raise ZeroDivisionError(message)
+        scale = self.rows[-1].denominator
+        column = tuple((entry[0] * scale,) for entry in self._last_cofactors.table)
+        return Matrix(self.field, column, below, (order, 1))

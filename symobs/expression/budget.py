@@ -1,0 +1,130 @@
+"""How large the result of an operation can get, found before the operation is begun.
+
+A FLINT call cannot be interrupted, so what is too large must never be started.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import comb, lcm
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.exact import Complex, Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Number: TypeAlias = Scalar | Complex
+
+MOST_EXPONENT = 1_000
+#: A coefficient of 10,000 bits still prints as a decimal number; a polynomial still lists 10,000 coefficients.
+MOST_BITS = 10_000
+MOST_DEGREE = 10_000
+MOST_TERMS = 20_000
+#: What all operations of one text may cost together, in machine words written: about a second of work at the worst.
+MOST_WORK = 3_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """An upper bound of an integer polynomial: its generators, total degree, terms, and bits of a coefficient."""
+
+    names: frozenset[str]
+    degree: int
+    terms: int
+    bits: int
+
+    @staticmethod
+    def of(polynomial: Scalar) -> Size:
+        """Return the size of a polynomial, the numerator of the scalar."""
+        part = polynomial.numerator_part
+        bits = max((int(coefficient).bit_length() for coefficient in part.coeffs()), default=0)
+        return Size(frozenset(polynomial.field.names), max(0, int(part.total_degree())), len(part), bits)
+
+    @property
+    def words(self) -> int:
+        """The machine words it takes."""
+        return self.terms * (len(self.names) + 1 + self.bits // 64)
+
+    @property
+    def excess(self) -> str:
+        """What is too large about it, or nothing."""
+        if self.bits > MOST_BITS:
+            return f"a number of more than {MOST_BITS} bits"
+        if self.degree > MOST_DEGREE:
+            return f"a power beyond {MOST_DEGREE}"
+        return f"more than {MOST_TERMS} terms" if self.terms > MOST_TERMS else ""
+
+    def __add__(self, other: Size) -> Size:
+        bits = max(self.bits, other.bits) + 1
+        return _bounded(self.names | other.names, max(self.degree, other.degree), self.terms + other.terms, bits)
+
+    def __mul__(self, other: Size) -> Size:
+        bits = self.bits + other.bits + min(self.terms, other.terms).bit_length()
+        return _bounded(self.names | other.names, self.degree + other.degree, self.terms * other.terms, bits)
+
+    def __pow__(self, exponent: int) -> Size:
+        terms = comb(self.terms + exponent - 1, exponent) if self.terms > 1 else 1
+        return _bounded(
+            self.names, self.degree * exponent, terms, exponent * (self.bits + (self.terms - 1).bit_length())
+        )
+
+
+def _bounded(names: frozenset[str], degree: int, terms: int, bits: int) -> Size:
+    """Return a size with no more terms than there are monomials of that degree."""
+    monomials = comb(len(names) + degree, len(names)) if degree <= MOST_DEGREE else terms
+    return Size(names, degree, min(terms, monomials), bits)
+
+
+Parts: TypeAlias = tuple[Size, Size]
+
+
+def parts(value: Number) -> Parts:
+    """Return the sizes of numerator and denominator; of a complex number, over one denominator."""
+    if isinstance(value, Scalar):
+        return Size.of(value), Size.of(value.denominator)
+    (a, b), (c, d) = parts(value.real), parts(value.imaginary)
+    return a * d + c * b, b * d
+
+
+def work(above: Size, below: Size) -> int:
+    """Return the cost of building a numerator and a denominator and of finding their common divisor."""
+    return above.words + below.words + (above.terms + below.terms) * min(above.degree, below.degree)
+
+
+def operation_size(sign: str, left: Number, right: Number) -> Parts:
+    """Return a bound of left + right, left - right, left * right or left / right before it is reduced."""
+    (a, b), (c, d) = parts(left), parts(right)
+    if sign == "*":
+        return a * c, b * d
+    if sign == "/":
+        return (a * d, b * c) if isinstance(right, Scalar) else (a * d * c, b * c * c)
+    if isinstance(left, Scalar) and isinstance(right, Scalar) and left.denominator == right.denominator:
+        return a + c, b
+    return a * d + c * b, b * d
+
+
+def power_size(base: Number, exponent: int) -> Parts:
+    """Return a bound of base ** exponent."""
+    above, below = parts(base)
+    if exponent < 0 and isinstance(base, Complex):
+        above, below = above * below, above * above
+    return above ** abs(exponent), below ** abs(exponent)
+
+
+def common_denominator_excess(entries: Sequence[Scalar]) -> str:
+    """Return what is too large about bringing these entries over one denominator, or nothing."""
+    fractions = [entry for entry in entries if not entry.denominator_part.is_one()]
+    common, whole = Size(frozenset(), 0, 1, 0), 1
+    for denominator in {entry.denominator for entry in fractions}:
+        if denominator.is_constant:
+            whole = lcm(whole, int(denominator.fraction()))
+        else:
+            common = common * Size.of(denominator)
+        if common.terms > MOST_TERMS or common.degree > MOST_DEGREE:
+            return common.excess
+        if len(entries) * whole.bit_length() > MOST_WORK * 64:
+            break
+    common = replace(common, bits=common.bits + whole.bit_length())
+    words = sum((Size.of(entry) * common).words for entry in entries) if fractions else 0
+    return f"more than {MOST_WORK} words" if words > MOST_WORK else ""

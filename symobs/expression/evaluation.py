@@ -1,0 +1,198 @@
+"""Second and third step: lark orders the tokens by a grammar, and the tree is computed from its leaves."""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import dataclass
+from functools import cache
+from math import isqrt
+from typing import TYPE_CHECKING, Any
+
+from lark import Lark, Token, UnexpectedToken
+from lark.exceptions import VisitError
+from lark.lexer import Lexer
+from lark.visitors import Transformer_NonRecursive
+
+from symobs.errors import BudgetExceeded, ShapeMismatch
+from symobs.exact import Complex, Scalar
+from symobs.expression.budget import MOST_EXPONENT, MOST_WORK, Number, Parts, operation_size, power_size, work
+from symobs.expression.source import Source, shown
+from symobs.expression.tokens import Tokeniser
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from typing import TypeAlias
+
+    from symobs.expression.names import Scope
+
+    Entry: TypeAlias = "Number | Grid"
+
+MOST_CHARACTERS = 10_000
+
+# A sign binds its power, -2^2 = -(2^2), and an exponent takes a sign, 2^-1; powers associate to the right.
+GRAMMAR = r"""
+row: sum (_COMMA sum)*
+?sum: product | sum ADD product -> binary
+?product: signed | product MULTIPLY signed -> binary
+?signed: power | ADD signed -> sign
+?power: atom | atom POWER signed -> power
+?atom: VALUE | _OPEN sum _CLOSE | LEFT row (_END row)* _RIGHT -> brackets | FUNCTION _OPEN sum _CLOSE -> call
+%declare VALUE FUNCTION ADD MULTIPLY POWER LEFT _RIGHT _OPEN _CLOSE _COMMA _END
+"""
+
+
+def read(text: str, scope: Scope, where: str) -> list[Entry]:
+    """Return the entries of a text, set apart by commas; raises ExpressionError, BudgetExceeded, ShapeMismatch."""
+    source = Source(text, where)
+    if len(text) > MOST_CHARACTERS:
+        message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
+        raise source.error(message, 0, kind=BudgetExceeded)
+    try:
+        return _Evaluator(source).transform(_parser().parse(Tokeniser(source, scope).run()))
+    except UnexpectedToken as found:
+        at_end = found.token.type == "$END"
+        place = "at the end" if at_end else f'before "{shown(found.token)}"'
+        position = len(text) if at_end else start(found.token)
+        raise source.error(f'a number, a name or "(" is expected {place}', position) from None
+    except VisitError as wrapped:  # lark's wrapping of what the evaluator raised
+        raise wrapped.orig_exc from None
+
+
+class _Ready(Lexer):
+    """Hands lark the tokens that are already made."""
+
+    def __init__(self, _configuration: object) -> None:
+        pass
+
+    def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]  # noqa: ANN401 - lark's one-argument form
+        return iter(tokens)
+
+
+@cache
+def _parser() -> Lark:
+    """Build the parser, once and only where a text is read: it takes longer than most texts."""
+    return Lark(GRAMMAR, parser="lalr", lexer=_Ready, start="row", maybe_placeholders=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """The rows of a matrix, all of one length, and where its bracket opens."""
+
+    rows: Sequence[Sequence[Number]]
+    position: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """The number of rows and of columns."""
+        return len(self.rows), len(self.rows[0])
+
+
+def unequal_row(rows: Sequence[Sequence[object]]) -> tuple[str, int] | None:
+    """Return what to say of the first row whose length is not that of row 1, and its number."""
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(rows[0]):
+            entries = "1 entry" if len(row) == 1 else f"{len(row)} entries"
+            return f"row {number} has {entries}, but row 1 has {len(rows[0])}", number
+    return None
+
+
+_OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
+
+
+class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
+    """Computes a tree from its leaves: one method for each rule of the grammar, given the rule's parts.
+
+    Invariant: no operation begins before `_spend` has bounded its result.
+    """
+
+    def __init__(self, source: Source) -> None:
+        super().__init__()
+        self.source = source
+        self.spent = 0
+
+    def VALUE(self, token: Token) -> Number:
+        number: Number = token.value
+        return number
+
+    def row(self, entries: list[Entry]) -> list[Entry]:
+        return entries
+
+    def brackets(self, parts: tuple[Token, *tuple[list[Entry], ...]]) -> Entry:
+        (left, *rows), unequal = parts, unequal_row(parts[1:])
+        if unequal:
+            raise self.source.error(unequal[0], start(left), kind=ShapeMismatch, row=unequal[1])
+        grid = Grid([[self._number(entry) for entry in row] for row in rows], start(left))
+        return grid.rows[0][0] if grid.shape == (1, 1) else grid
+
+    def binary(self, parts: tuple[Entry, Token, Entry]) -> Number:
+        first, token, second = self._number(parts[0]), parts[1], self._number(parts[2])
+        sign = token.value
+        if sign == "/":
+            self._require_nonzero(second, token)
+        self._spend(operation_size(sign, first, second), token)
+        if isinstance(first, Complex) or isinstance(second, Complex):
+            first, second = Complex.of(first), Complex.of(second)
+        return _simplest(_OPERATIONS[sign](first, second))
+
+    def sign(self, parts: tuple[Token, Entry]) -> Number:
+        number = self._number(parts[1])
+        return -number if parts[0].value == "-" else number
+
+    def power(self, parts: tuple[Entry, Token, Entry]) -> Number:
+        base, token, exponent = self._number(parts[0]), parts[1], self._exponent(self._number(parts[2]), parts[1])
+        if exponent < 0:
+            self._require_nonzero(base, token)
+        self._spend(power_size(base, exponent), token)
+        return _simplest(base**exponent)
+
+    def call(self, parts: tuple[Token, Entry]) -> Number:
+        """Return sqrt of the square of a rational number, the one call with a value in the field."""
+        function, number = parts[0].value, self._number(parts[1])
+        instead = "sqrt of the square of a rational number is possible; for other constants declare a symbol"
+        if function != "sqrt":
+            raise self.source.error(f"{function} has no exact value here", start(parts[0]), instead)
+        if isinstance(number, Complex) or not number.is_constant or number.fraction() < 0:
+            raise self.source.error("sqrt of this has no exact value here", start(parts[0]), instead)
+        square = number.fraction()
+        above, below = isqrt(square.numerator), isqrt(square.denominator)
+        if (above**2, below**2) != (square.numerator, square.denominator):
+            raise self.source.error(f"sqrt({shown(str(square))}) is not rational", start(parts[0]), instead)
+        return Scalar.rational(above, below)
+
+    def _number(self, entry: Entry) -> Number:
+        if isinstance(entry, Grid):
+            message = "a matrix stands inside an expression or inside another matrix"
+            raise self.source.error(message, entry.position, "write one pair of brackets around all rows: [1 0; 0 1]")
+        return entry
+
+    def _exponent(self, value: Number, token: Token) -> int:
+        if isinstance(value, Complex) or not value.is_constant or value.fraction().denominator != 1:
+            message = f"the exponent {shown(str(value))} is not an integer"
+            raise self.source.error(message, start(token), "exponents are integers; write sqrt( ) for a root")
+        exponent = int(value.fraction())
+        if abs(exponent) > MOST_EXPONENT:
+            message = f"the exponent is beyond {MOST_EXPONENT}"
+            raise self.source.error(message, start(token), kind=BudgetExceeded)
+        return exponent
+
+    def _require_nonzero(self, value: Number, token: Token) -> None:
+        if isinstance(value, Scalar) and value.is_zero:
+            raise self.source.error("division by zero", start(token))
+
+    def _spend(self, sizes: Parts, token: Token) -> None:
+        excess = sizes[0].excess or sizes[1].excess
+        self.spent += work(*sizes)
+        if not excess and self.spent > MOST_WORK:
+            excess = "too much, all operations so far together"
+        if excess:
+            raise self.source.error(f"this would build {excess}", start(token), kind=BudgetExceeded)
+
+
+def start(token: Token) -> int:
+    """Return where a token begins in the text."""
+    return token.start_pos or 0
+
+
+def _simplest(value: Number) -> Number:
+    """Return a complex number without imaginary part as a scalar."""
+    return value.real if isinstance(value, Complex) and value.is_real else value

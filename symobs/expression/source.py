@@ -1,0 +1,36 @@
+"""The text being read: safe excerpts of it, and errors that point into it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symobs.errors import ExpressionError, InputError
+
+MOST_SHOWN = 60
+_SHOWN_BEFORE = 24
+
+
+def shown(text: str, most: int = MOST_SHOWN) -> str:
+    """Return the beginning of a text, safe to print: no control characters, nothing long."""
+    safe = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[: most + 1])
+    return safe if len(safe) <= most else safe[: most - 1] + "…"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A text and the place it comes from (`plant.A`)."""
+
+    text: str
+    where: str
+
+    def error(
+        self, message: str, position: int, repair: str = "", kind: type[InputError] = ExpressionError, **facts: object
+    ) -> InputError:
+        """Return the error that says `message` of the character at `position`."""
+        before = self.text[:position]
+        line, column = before.count("\n") + 1, position - before.rfind("\n")
+        start = max(0, position - _SHOWN_BEFORE)
+        excerpt = shown(("…" if start else "") + self.text[start:])
+        place = f"line {line}, column {column}" if "\n" in self.text else f"column {column}"
+        facts |= {"text": excerpt, "line": line, "column": column}
+        return kind(f'{message}, at {place} of "{excerpt}"', where=self.where, repair=repair, **facts)

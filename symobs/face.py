@@ -1,0 +1,54 @@
+"""What leaves the library: exact values as SymPy objects and as JSON."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import Condition
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
+
+
+def to_json(value: Any) -> Any:
+    """Return JSON of a value: exact strings, nested lists, JSON integers and booleans."""
+    if isinstance(value, Matrix):
+        return [[str(entry) for entry in row] for row in value.rows]
+    if isinstance(value, (Scalar, Complex, Factored, Root)):
+        return str(value)
+    if isinstance(value, Condition):
+        return f"{value.expression} {_RELATIONS[value.operator]} 0"
+    if isinstance(value, (list, tuple)):
+        return [to_json(entry) for entry in value]
+    if isinstance(value, dict):
+        return {key: to_json(entry) for key, entry in value.items()}
+    return value
+
+
+def vector(value: Matrix) -> list[str]:
+    """Return a column as a flat list."""
+    return [str(entry) for entry in value.entries]
+
+
+def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
+    """Return the SymPy object of a value; what has none (texts, integers) stays."""
+    from symobs.exact import sympy_border  # noqa: PLC0415 - SymPy only when asked for
+
+    if isinstance(value, Matrix):
+        return sympy_border.matrix_to_sympy(value, objects)
+    if isinstance(value, Scalar):
+        return sympy_border.scalar_to_sympy(value, objects)
+    if isinstance(value, Factored):
+        return sympy_border.factored_to_sympy(value, objects)
+    if isinstance(value, Complex):
+        return sympy_border.complex_to_sympy(value, objects)
+    if isinstance(value, Root):
+        return sympy_border.root_to_sympy(value, objects)
+    if isinstance(value, (list, tuple)):
+        return tuple(to_sympy(entry, objects) for entry in value)
+    if isinstance(value, dict):
+        return {key: to_sympy(entry, objects) for key, entry in value.items()}
+    return value

@@ -1,0 +1,130 @@
+"""Terms: a formula together with its exact value, so that the code of a method reads like the page of a book.
+
+`A - L @ C` builds the formula A − LC and, when asked, evaluates it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from symobs.exact import Matrix, Scalar
+from symobs.formula.evaluate import Environment, Exact, evaluate
+from symobs.formula.nodes import (
+    Apply,
+    Block,
+    Derivative,
+    Formula,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    Transpose,
+)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A formula in an environment."""
+
+    formula: Formula
+    environment: Environment
+
+    @cached_property
+    def value(self) -> Any:
+        """The exact value: a `Scalar`, a `Matrix` or a `Signal`."""
+        return evaluate(self.formula, self.environment, Exact(self.environment))
+
+    @property
+    def scalar(self) -> Scalar:
+        """The value of a scalar or of a 1×1 matrix."""
+        value = self.value
+        return value[0, 0] if isinstance(value, Matrix) else value
+
+    def _with(self, formula: Formula) -> Term:
+        return Term(formula, self.environment)
+
+    def _read(self, other: Term | Scalar | Matrix | int) -> Formula:
+        if isinstance(other, Term):
+            return other.formula
+        return Literal(Scalar.of(other) if isinstance(other, int) else other)
+
+    def __add__(self, other: Term | Scalar | Matrix | int) -> Term:
+        return self._with(Sum((*_terms(self.formula), *_terms(self._read(other)))))
+
+    def __sub__(self, other: Term | Scalar | Matrix | int) -> Term:
+        return self._with(Sum((*_terms(self.formula), Negative(self._read(other)))))
+
+    def __neg__(self) -> Term:
+        return self._with(Negative(self.formula))
+
+    def __matmul__(self, other: Term) -> Term:
+        return self._with(Product((*_factors(self.formula), *_factors(other.formula))))
+
+    def __mul__(self, other: Term | Scalar | int) -> Term:
+        return self._with(Product((*_factors(self.formula), *_factors(self._read(other)))))
+
+    def __truediv__(self, other: Term | Scalar | int) -> Term:
+        return self._with(Quotient(self.formula, self._read(other)))
+
+    def __pow__(self, exponent: int) -> Term:
+        return self._with(self.formula if exponent == 1 else Power(self.formula, exponent))
+
+    @property
+    def inverse(self) -> Term:
+        """The inverse."""
+        return self._with(Power(self.formula, -1))
+
+    @property
+    def T(self) -> Term:  # noqa: N802 - the field's letter for the transpose
+        """The transpose."""
+        return self._with(Transpose(self.formula))
+
+    @property
+    def derivative(self) -> Term:
+        """d/dt, or the shift."""
+        return self._with(Derivative(self.formula))
+
+    def apply(self, function: str) -> Term:
+        """Return function(self): det, adj, rank, or a polynomial's letter with `_at`."""
+        return self._with(Apply(function, self.formula))
+
+    @property
+    def shown(self) -> Term:
+        """The value written out."""
+        return self._with(Literal(self.value))
+
+
+def _terms(formula: Formula) -> tuple[Formula, ...]:
+    return formula.terms if isinstance(formula, Sum) else (formula,)
+
+
+def _factors(formula: Formula) -> tuple[Formula, ...]:
+    return formula.factors if isinstance(formula, Product) else (formula,)
+
+
+def product(terms: list[Term]) -> Term:
+    """Return the product of at least one term."""
+    if len(terms) == 1:
+        return terms[0]
+    return Term(Product(tuple(term.formula for term in terms)), terms[0].environment)
+
+
+def block(rows: list[list[Term]]) -> Term:
+    """Return the matrix or stacked signal of blocks."""
+    return Term(Block(tuple(tuple(term.formula for term in row) for row in rows)), rows[0][0].environment)
+
+
+def identity(order: int, environment: Environment) -> Term:
+    """Return I."""
+    return Term(Identity(order), environment)
+
+
+def letter(name: str, environment: Environment) -> Term:
+    """Return the term of an established letter."""
+    return Term(Letter(name), environment)

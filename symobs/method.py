@@ -1,0 +1,289 @@
+"""Results, and the registries of tasks, methods and formats.  [trusted]
+
+A `Result` cannot exist unless its claims hold: the constructor checks them, and the claims belong to the result's type,
+not to the method that found the answer.  Tasks, methods and output formats register themselves by decorators; their
+modules are discovered in the packages named by `symobs.PACKAGES`, so adding one is adding a file.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+import symobs
+from symobs.certificate import Certificate, Claim, check_all
+from symobs.conditions import Condition, vanishing_factors
+from symobs.errors import InputError, UsageError
+from symobs.page import Page
+
+if TYPE_CHECKING:
+    from symobs.derivation import Derivation
+    from symobs.exact import Matrix, Scalar
+    from symobs.system import StateSpace
+
+Kind = TypeVar("Kind", bound=type)
+Callback = TypeVar("Callback", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is true on a stratum: the relations that describe it, and the full result there (None: undecided)."""
+
+    when: tuple[Condition, ...]
+    substitution: Mapping[str, Scalar]
+    result: Result | None
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
+
+    plant: StateSpace
+    method: str
+    answer: Mapping[str, Any]
+    certificates: tuple[Certificate, ...] = field(init=False)
+
+    task: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        """Check every claim; raises `CertificateRejected`."""
+        object.__setattr__(self, "certificates", check_all(self.claims()))
+
+    # -- what a subclass says ----------------------------------------------------------------------------------------
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield what must hold."""
+        raise NotImplementedError
+
+    def write(self, page: Page) -> None:
+        """Write the derivation."""
+        raise NotImplementedError
+
+    @property
+    def verdict(self) -> str:
+        """`yes`, `no`, `conditional` or `undecided`."""
+        return "conditional" if self._binding_conditions else "yes"
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """The values whose vanishing costs existence: determinants of 𝒪, 𝒞."""
+        return ()
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The answers in the order of the JSON object; further ones may be derived from the first."""
+        return self.answer
+
+    @cached_property
+    def cases(self) -> tuple[Case, ...]:
+        """What is true where a condition of existence fails."""
+        return ()
+
+    # -- conditions ----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be a plant: the denominators of its entries."""
+        m = self.plant.matrices
+        factors = vanishing_factors(_denominators([m.A, m.B, m.C, m.D]), self.plant.symbols.signs)
+        return tuple(Condition("domain", factor) for factor in factors)
+
+    @cached_property
+    def conditions(self) -> tuple[Condition, ...]:
+        """The exact conditions under which the answer holds, what the declared signs imply left out."""
+        known = {condition.expression for condition in self.domain}
+        factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
+        return (*self.domain, *(Condition("claim", factor) for factor in factors if factor not in known))
+
+    @property
+    def _binding_conditions(self) -> tuple[Condition, ...]:
+        """The conditions that make a verdict conditional: all but those of the domain."""
+        return tuple(condition for condition in self.conditions if condition.kind != "domain")
+
+    # -- faces ---------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The derivation, written and checked when first asked for."""
+        page = Page(self.plant)
+        self.write(page)
+        written = page.derivation()
+        written.check()
+        return written
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an answer as SymPy objects."""
+        if name.startswith("_") or name not in self.fields:
+            message = f"{type(self).__name__} has no attribute {name!r}"
+            raise AttributeError(message)
+        from symobs.face import to_sympy  # noqa: PLC0415 - SymPy is the face only
+
+        return to_sympy(self.fields[name], self.plant.symbols.objects)
+
+    def __dir__(self) -> Iterable[str]:
+        return [*super().__dir__(), *self.fields]
+
+    def to(self, format_name: str) -> str | bytes:
+        """Return the result in a format: latex, fragment, text, json, pdf, …"""
+        return render(Document("", "", (self,)), format_name)
+
+    def to_latex(self) -> str:
+        """Return the derivation as a LaTeX article."""
+        return str(self.to("latex"))
+
+    def to_json(self) -> str:
+        """Return the result as JSON."""
+        return str(self.to("json"))
+
+    def _repr_latex_(self) -> str:
+        return str(self.to("fragment"))
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
+        return {"text/plain": str(self.to("text")), "text/latex": self._repr_latex_()}
+
+    def __repr__(self) -> str:
+        shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
+        return f"{type(self).__name__}({', '.join(shown)[:200]}, verdict={self.verdict!r})"
+
+
+def _denominators(values: Iterable[Any]) -> list[Scalar]:
+    """Return the denominators of scalars and matrices."""
+    found = []
+    for value in values:
+        if hasattr(value, "common_denominator"):
+            found.append(value.common_denominator())
+    return found
+
+
+# -- registries ---------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to meet a result type's claim: `solve` returns the result, `write` its page."""
+
+    task: str
+    name: str
+    source: str
+    solve: Callable[..., Result]
+    summary: str
+
+
+@dataclass(frozen=True)
+class Task:
+    """A question one can ask: its function, and its keywords with the kinds they are of."""
+
+    name: str
+    function: Callable[..., Result]
+    keywords: Mapping[str, str]
+    summary: str
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a format renders: a title, its source, and results."""
+
+    title: str
+    source: str
+    results: tuple[Result, ...]
+
+    @property
+    def derivations(self) -> tuple[Derivation, ...]:
+        """The checked derivations of the results."""
+        return tuple(result.derivation for result in self.results)
+
+
+_TASKS: dict[str, Task] = {}
+_METHODS: dict[str, Method] = {}
+_FORMATS: dict[str, Any] = {}
+
+
+def task(function: Callback) -> Callback:
+    """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
+    keywords = {
+        name: str(parameter.annotation).split(" ")[0]
+        for name, parameter in inspect.signature(function).parameters.items()
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
+    }
+    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function))
+    return function
+
+
+def method(name: str, *, source: str) -> Callable[[Callback], Callback]:
+    """Register a method under `task/name`."""
+
+    def register(function: Callback) -> Callback:
+        of, _, short = name.partition("/")
+        _METHODS[name] = Method(of, short, source, function, _summary(function))
+        return function
+
+    return register
+
+
+def output_format(kind: Kind) -> Kind:
+    """Register an output format: a class with `name`, `suffix` and `render(document)`."""
+    _FORMATS[kind.name] = kind()  # type: ignore[attr-defined]
+    return kind
+
+
+def _summary(function: Callable[..., Any]) -> str:
+    return (inspect.getdoc(function) or "").partition("\n")[0]
+
+
+def _discover(package: str) -> None:
+    """Import every module of a package, once."""
+    if package in _DISCOVERED:
+        return
+    _DISCOVERED.add(package)
+    module = importlib.import_module(package)
+    for found in pkgutil.iter_modules(module.__path__):
+        importlib.import_module(f"{package}.{found.name}")
+
+
+_DISCOVERED: set[str] = set()
+
+
+def tasks() -> Mapping[str, Task]:
+    """Return all tasks by name."""
+    for package in symobs.TASK_PACKAGES:
+        _discover(package)
+    return _TASKS
+
+
+def methods(of: str | None = None) -> Mapping[str, Method]:
+    """Return all methods, or those of one task, by `task/name`."""
+    tasks()
+    return {name: found for name, found in _METHODS.items() if of is None or found.task == of}
+
+
+def choose(of: str, name: str, automatic: str) -> Method:
+    """Return the method asked for; `auto` means `automatic`.  Raises `InputError` naming what exists."""
+    known = methods(of)
+    wanted = f"{of}/{automatic if name == 'auto' else name}"
+    if wanted not in known:
+        message = f"{name[:40]!r} is not a method of {of}"
+        existing = ", ".join(["auto", *(found.name for found in known.values())])
+        raise InputError(message, where="specification.method", repair=f"write one of {existing}")
+    return known[wanted]
+
+
+def formats() -> Mapping[str, Any]:
+    """Return all output formats by name."""
+    _discover(symobs.FORMAT_PACKAGE)
+    return _FORMATS
+
+
+def render(document: Document, format_name: str) -> str | bytes:
+    """Return a document in a format; raises `UsageError` naming the formats that exist."""
+    known = formats()
+    if format_name not in known:
+        message = f"{format_name[:40]!r} is not an output format"
+        raise UsageError(message, repair=f"use one of {', '.join(sorted(known))}")
+    rendered: str | bytes = known[format_name].render(document)
+    return rendered
+

@@ -1,0 +1,218 @@
+"""Writing a derivation: a `Page` collects steps and hands out terms, so that a method's page reads like the textbook's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TypeAlias
+
+from symobs.derivation import (
+    Conclude,
+    Define,
+    Derivation,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Section,
+    Sentence,
+    Step,
+)
+from symobs.exact import Matrix, Scalar
+from symobs.formula import (
+    Derivative,
+    Environment,
+    Fact,
+    Formula,
+    Identity,
+    Letter,
+    Literal,
+    Predicate,
+    Relation,
+    Roots,
+)
+from symobs.formula.term import Term
+from symobs.system import StateSpace
+
+Member: TypeAlias = Term | Scalar | Matrix | int
+Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
+
+
+def formula_of(member: Member) -> Formula:
+    """Return the formula of a term, or a value written out."""
+    if isinstance(member, Term):
+        return member.formula
+    return Literal(Scalar.of(member) if isinstance(member, int) else member)
+
+
+def relation(*members: Member | str) -> Relation:
+    """Return a chain: members joined by `=`, or by an operator that stands between them as a text."""
+    formulas: list[Formula] = []
+    operators: list[str] = []
+    for member in members:
+        if isinstance(member, str):
+            operators.append(member)
+            continue
+        if formulas and len(operators) < len(formulas):
+            operators.append("=")
+        formulas.append(formula_of(member))
+    return Relation(tuple(formulas), tuple(operators))
+
+
+def predicate(name: str, subject: Member) -> Predicate:
+    """Return the fact that a property holds."""
+    return Predicate(name, formula_of(subject))
+
+
+def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
+    """Return a phrase with its slots filled."""
+    filled = tuple(
+        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots)) else formula_of(slot)) for name, slot in slots.items()
+    )
+    return Sentence(key, filled)
+
+
+class Page:
+    """A derivation in the making: the steps so far and the environment they establish."""
+
+    def __init__(self, plant: StateSpace) -> None:
+        """Start with the free signals x, x̂, u of the plant and the declared signs."""
+        self.plant = plant
+        self.start = Environment(
+            variable=plant.variable,
+            signals={"x": None, "x_hat": None, "u": None},
+            sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)},
+            signs=plant.symbols.signs,
+        )
+        self.environment = self.start
+        self.steps: list[Step] = []
+
+    def derivation(self) -> Derivation:
+        """Return what was written."""
+        return Derivation(tuple(self.steps), self.start, self.plant.symbols.latex, self.plant.is_discrete)
+
+    # -- terms --------------------------------------------------------------------------------------------------------
+
+    def term(self, formula: Formula) -> Term:
+        """Return a term in what is established now."""
+        return Term(formula, self.environment)
+
+    def __getitem__(self, names: str) -> Term:
+        return self.term(Letter(names))
+
+    def value(self, value: Scalar | Matrix | int) -> Term:
+        """Return a value written out."""
+        return self.term(formula_of(value))
+
+    def identity(self, order: int) -> Term:
+        """Return I."""
+        return self.term(Identity(order))
+
+    @property
+    def s(self) -> Term:
+        """The variable."""
+        return self.term(Letter("s"))
+
+    def resolvent(self, matrix: Term, order: int) -> Term:
+        """Return sI − M for a sum M, its signs turned."""
+        return self.s @ self.identity(order) - matrix
+
+    def knows(self, name: str) -> bool:
+        """Whether a letter is established."""
+        return self.environment.knows(name)
+
+    # -- steps --------------------------------------------------------------------------------------------------------
+
+    def given(self, *relations: Relation, silent: bool = False) -> None:
+        """State data."""
+        self.steps.append(Given(relations, silent=silent))
+
+    def assume(self, key: str, value: Scalar, **slots: Slot) -> None:
+        """State a condition that holds from here on."""
+        self.environment = replace(
+            self.environment,
+            assumed=(*self.environment.assumed, *(factor for factor, _ in value.numerator.factors()[1])),
+        )
+        self.steps.append(Given((relation(value, "!=", 0),), sentence(key, slots)))
+
+    def set(self, name: str, value: Scalar | Matrix) -> Term:
+        """Establish a letter by its value, without a display."""
+        self.steps.append(Given((relation(self[name], value),), silent=True))
+        self.environment = self.environment.having(values={name: value})
+        return self[name]
+
+    def define(  # noqa: PLR0913 - what a definition may carry
+        self,
+        name: str,
+        *members: Member,
+        say: str = "",
+        answer: bool = False,
+        silent: bool = False,
+        **slots: Slot,
+    ) -> Term:
+        """Introduce a letter by a formula; its value is shown last."""
+        chain = [self.value(m) if not isinstance(m, Term) else m for m in members]
+        value = chain[-1].value
+        if not isinstance(chain[-1].formula, Literal):
+            chain.append(chain[-1].shown)
+        because = sentence(say, slots) if say else None
+        self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
+        self.environment = self.environment.having(values={name: value})
+        return self[name]
+
+    def name_coefficient(self, name: str, meaning: Scalar) -> Scalar:
+        """Let a generator stand for a longer scalar from here on, without a display."""
+        symbol = Scalar.symbol(name)
+        self.steps.append(Define(relation(symbol, meaning), silent=True))
+        self.environment = self.environment.having(coefficients={name: meaning})
+        return symbol
+
+    def signal(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
+        """Define a signal by others; a free signal ceases to be free."""
+        because = sentence(say, slots) if say else None
+        self.steps.append(Define(relation(self[name], formula), because, silent=silent))
+        self.environment = self.environment.having(signals={name: formula.formula})
+        return self[name]
+
+    def dynamics(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
+        """Give the derivative (shift) of a free signal."""
+        because = sentence(say, slots) if say else None
+        target = self.term(Derivative(Letter(name)))
+        self.steps.append(Define(relation(target, formula), because, silent=silent))
+        self.environment = self.environment.having(dynamics={name: formula.formula})
+
+    def equal(self, *relations: Relation, say: str = "", answer: bool = False, **slots: Slot) -> None:
+        """Show relations on one display."""
+        self.steps.append(Equal(relations, sentence(say, slots) if say else None, answer))
+
+    def verified(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Show the check of an answer."""
+        self.steps.append(Conclude(sentence(key, slots), facts, verified=True))
+
+    def conclude(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """State a finding."""
+        self.steps.append(Conclude(sentence(key, slots), facts))
+
+    def caution(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Warn as an expert would."""
+        self.steps.append(Note(sentence(key, slots), facts, caution=True))
+
+    def remark(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Remark."""
+        self.steps.append(Note(sentence(key, slots), facts))
+
+    def diagram(self, name: str, **labels: Member) -> None:
+        """Draw."""
+        self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
+
+    @contextmanager
+    def section(self, key: str, **slots: Slot) -> Iterator[None]:
+        """Write the steps inside under a title."""
+        outer, self.steps = self.steps, []
+        try:
+            yield
+        finally:
+            inner, self.steps = self.steps, outer
+            self.steps.append(Section(sentence(key, slots), tuple(inner)))
+

@@ -1,0 +1,126 @@
+"""LaTeX: the formats `latex` (a page of its own) and `fragment` (to be put into somebody's document)."""
+
+from __future__ import annotations
+
+from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.formula import Roots
+from symobs.method import output_format
+from symobs.render.blocks import (
+    CaseBlock,
+    Caution,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    Title,
+    Verified,
+    every,
+    opened,
+)
+from symobs.render.diagrams import tikz
+from symobs.render.escape import escape
+from symobs.render.latex_printer import LatexPrinter
+from symobs.render.narrator import narrate, printer_for
+from symobs.render.roots import LATEX, listed
+from symobs.render.templates import fill
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from symobs.method import Document
+    from symobs.render.blocks import Block, Inline, Inlines
+
+
+@output_format
+class LatexArticle:
+    """A whole LaTeX document, one page or more of A4."""
+
+    name: ClassVar[str] = "latex"
+    suffix: ClassVar[str] = ".tex"
+
+    def render(self, document: Document) -> str:
+        """Return the document's LaTeX."""
+        return typeset(document, "article.tex")
+
+
+@output_format
+class LatexFragment:
+    """The body alone, with the few commands it needs."""
+
+    name: ClassVar[str] = "fragment"
+    suffix: ClassVar[str] = ".tex"
+
+    def render(self, document: Document) -> str:
+        """Return the LaTeX of the body."""
+        return typeset(document, "fragment.tex")
+
+
+def typeset(document: Document, template: str, *, folder: Path | None = None) -> str:
+    """Return a document in a template; the user's own templates lie in `folder`."""
+    title, blocks = opened(narrate(document))
+    writer = LatexWriter(printer_for(document, LatexPrinter))
+    values = {
+        "title": escape(title.text).strip(),
+        "source": escape(title.source).strip(),
+        "conventions": writer.sentence(title.conventions),
+        "body": writer.body(blocks),
+        "drawings": any(isinstance(block, Drawing) for block in every(blocks)),
+    }
+    return fill(template, values, folder=folder)
+
+
+class LatexWriter:
+    """Writes blocks as LaTeX: the text around the mathematics, which the printer writes."""
+
+    def __init__(self, printer: LatexPrinter) -> None:
+        """Write mathematics with `printer`."""
+        self.printer = printer
+
+    def body(self, blocks: Sequence[Block]) -> str:
+        """Return all blocks, each where TeX reads it as going on with the paragraph or as beginning a new one."""
+        pieces = [self.block(block) for block in blocks]
+        gaps = [_gap(before, after) for before, after in pairwise(blocks)]
+        return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def block(self, block: Block) -> str:  # noqa: PLR0911 - one case a kind of block
+        """Return one block."""
+        match block:
+            case Heading(number, inlines):
+                return rf"\textbf{{{f'{number} ' * bool(number)}{self.sentence(inlines)}}}"
+            case Paragraph(inlines):
+                return self.sentence(inlines)
+            case Display(relations, boxed, closing):
+                return self.printer.display(relations, boxed=boxed, end=closing)
+            case Verified(inlines):
+                return rf"\verified{{{self.sentence(inlines)}}}"
+            case Caution(label, inlines):
+                return rf"\caution{{{escape(label)}}}{{{self.sentence(inlines)}}}"
+            case Drawing():
+                return tikz(block, self.printer)
+            case CaseBlock(label, blocks):
+                first = _gap(Heading("", label), blocks[0]) if blocks else ""
+                return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{self.body(blocks)}\n\\end{{inset}}"
+
+            case Title(text):
+                return escape(text)
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text: words escaped, mathematics between dollars."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return escape(part)
+        if isinstance(part, Roots):
+            return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
+        return f"${self.printer.inline(part)}$"
+
+
+def _gap(before: Block, after: Block) -> str:
+    """Return what stands between two blocks; TeX begins a new paragraph at an empty line."""
+    if isinstance(before, Heading) and isinstance(after, Paragraph):
+        return " "
+    return "\n\n" if isinstance(after, Heading | CaseBlock) else "\n"

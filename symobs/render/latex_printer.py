@@ -1,0 +1,240 @@
+r"""Formulas in LaTeX, for amsmath: `\[ … \]` where a display fits the line, `align*` where it does not."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
+from symobs.exact import Scalar
+from symobs.formula import Formula, Relation
+from symobs.render import widths
+from symobs.render.glyphs import Box, Level
+from symobs.render.layout import Layout
+from symobs.render.printer import Printer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_ENDS_IN_COMMAND = re.compile(r"\\[A-Za-z]+$")
+#: amsmath's matrices have ten columns; wider ones are set as arrays.
+_MATRIX_COLUMNS = 10
+#: A display of more lines may be broken over pages.
+_PAGE_OF_ROWS = 8
+
+
+@dataclass(frozen=True)
+class LatexBox(Box):
+    """LaTeX source; `height` is 0 for a line of letters, 1 for a fraction, else about the number of rows."""
+
+    source: str
+    height: int = 0
+
+
+class LatexPrinter(Printer[LatexBox]):
+    """Formula → LaTeX."""
+
+    def __init__(
+        self,
+        variable: str = "s",
+        symbols: Mapping[str, str] | None = None,
+        *,
+        discrete: bool = False,
+        width: float = widths.TEXT_WIDTH,
+    ) -> None:
+        """Print as `Printer` does, in lines of `width` em."""
+        super().__init__(variable, symbols, discrete=discrete)
+        self.width = width
+
+    def inline(self, item: Formula | Relation) -> str:
+        """Return mathematics for a line of text, without delimiters."""
+        return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).source
+
+    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+        """Return a display: one line, centred lines, or lines aligned at the first sign of each relation."""
+        rows, are_aligned = Layout(self, self.width, boxed=boxed, end=end).rows(relations)
+        if len(rows) == 1 and not are_aligned:
+            return rf"\[ {rows[0].right.source} \]"
+        environment = "align*" if are_aligned else "gather*"
+        body = ""
+        for row in rows:
+            left = f"{row.left.source if row.left else ''}&" if are_aligned else ""
+            gap = r"\\[3pt]" if row.right.height else r"\\"
+            body += f"{left}{row.right.source}{gap}\n"
+        written = f"\\begin{{{environment}}}\n{body.rstrip().removesuffix('[3pt]').rstrip(chr(92))}\n\\end{{{environment}}}"
+        return f"{{\\allowdisplaybreaks\n{written}}}" if len(rows) > _PAGE_OF_ROWS else written
+
+    # -- glyphs ---------------------------------------------------------------------------------------------------
+
+    def letter(self, name: str, mark: str) -> LatexBox:
+        r"""A letter; `\dot x`, `x_{k}`, `x_{k+1}`."""
+        if name in LETTERS:
+            source = letter_latex(name, self.variable)
+        else:
+            source = symbol_latex(name, self.symbols.get(name))
+        if mark == "dot":
+            source = rf"\dot {source}" if re.fullmatch(r"\w", source) else rf"\dot{{{source}}}"
+        elif mark:
+            source = f"{source}_{{{mark}}}"
+        is_plain = not re.search(r"[\^_(]", source)
+        return LatexBox(widths.source_width(source), Level.ATOM if is_plain else Level.POWER, source)
+
+    def leaf(self, value: Scalar) -> LatexBox:
+        """A whole number or a symbol."""
+        if value.is_constant:
+            digits = str(value.fraction().numerator)
+            return LatexBox(len(digits) * widths.DIGIT, Level.ATOM, digits)
+        (name,) = value.names
+        source = symbol_latex(name, self.symbols.get(name))
+        return LatexBox(widths.source_width(source), Level.ATOM, source)
+
+    def identity(self) -> LatexBox:
+        """I."""
+        return LatexBox(0.5, Level.ATOM, "I")
+
+    def empty(self, shape: tuple[int, int]) -> LatexBox:
+        """A zero with its shape."""
+        source = rf"0_{{{shape[0]}\times {shape[1]}}}"
+        return LatexBox(widths.source_width(source), Level.ATOM, source)
+
+    def sign(self, *, negative: bool, leading: bool) -> LatexBox:
+        """Plus or minus."""
+        return LatexBox(widths.SIGN if leading else widths.OPERATOR, Level.SUM, "-" if negative else "+")
+
+    def comparison(self, operator: str) -> LatexBox:
+        """The sign of a relation."""
+        return LatexBox(widths.RELATION, Level.SUM, OPERATORS[operator][0])
+
+    def joined(self, parts: Sequence[LatexBox], level: Level) -> LatexBox:
+        """The sources one after the other, a space where a command would swallow a letter."""
+        source = ""
+        for part in parts:
+            source = adjoined(source, part.source)
+        return LatexBox(sum(part.width for part in parts), level, source, max(part.height for part in parts))
+
+    def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:  # noqa: ARG002
+        r"""`\cdot` before a number."""
+        return LatexBox(0.7, Level.PRODUCT, r"\cdot ") if right.source[0].isdigit() else None
+
+    def grouped(self, box: LatexBox) -> LatexBox:
+        """Parentheses that grow with what they hold."""
+        if box.height == 0:
+            return LatexBox(box.width + 0.8, Level.ATOM, f"({box.source})")
+        return LatexBox(box.width + 1.6, Level.ATOM, rf"\left({box.source}\right)", box.height)
+
+    def fraction(self, above: LatexBox, below: LatexBox) -> LatexBox:
+        r"""`\frac`."""
+        width = max(above.width, below.width) + widths.FRACTION_BAR
+        return LatexBox(width, Level.FRACTION, rf"\frac{{{above.source}}}{{{below.source}}}", 1)
+
+    def raised(self, base: LatexBox, exponent: int) -> LatexBox:
+        """A power."""
+        return self._above(base, str(exponent))
+
+    def transposed(self, base: LatexBox) -> LatexBox:
+        """The transpose."""
+        return self._above(base, r"\mathsf T")
+
+    def _above(self, base: LatexBox, script: str) -> LatexBox:
+        written = f"^{script}" if len(script) == 1 else f"^{{{script}}}"
+        width = base.width + widths.SCRIPT * widths.source_width(script)
+        return LatexBox(width, Level.POWER, base.source + written, base.height)
+
+    def applied(self, function: str, argument: LatexBox) -> LatexBox:
+        """A function's name and its argument."""
+        name = FUNCTIONS.get(function, (rf"\operatorname{{{function.replace('_', ' ')}}}", function))[0]
+        source = adjoined(name, argument.source)
+        width = widths.source_width(name) + argument.width + 0.2
+        return LatexBox(width, Level.PRODUCT, source, argument.height)
+
+    def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
+        """A table in brackets."""
+        columns = len(rows[0])
+        width = sum(max(row[j].width for row in rows) for j in range(columns))
+        width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
+        tall = any(entry.height for row in rows for entry in row)
+        body = (r"\\[3pt]" if tall else r"\\").join("&".join(entry.source for entry in row) for row in rows)
+        if columns <= _MATRIX_COLUMNS:
+            source = rf"\begin{{bmatrix}}{body}\end{{bmatrix}}"
+        else:
+            source = rf"\left[\begin{{array}}{{@{{}}*{{{columns}}}{{c}}@{{}}}}{body}\end{{array}}\right]"
+        return LatexBox(width, Level.ATOM, source, max(2, len(rows)))
+
+    def rate(self, box: LatexBox) -> LatexBox:
+        """d/dt before a stack."""
+        return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{dt}}{box.source}", max(1, box.height))
+
+    # -- glyphs of broken lines -----------------------------------------------------------------------------------
+
+    def parentheses(self, content: Sequence[LatexBox]) -> tuple[LatexBox, LatexBox]:
+        r"""`\bigl( … \bigr)` and larger: unlike `\left`, they may stand on different lines."""
+        size = ("big", "Big", "bigg", "Bigg")[min(3, max(box.height for box in content))]
+        return LatexBox(0.8, Level.SUM, rf"\{size}l("), LatexBox(0.8, Level.SUM, rf"\{size}r)")
+
+    def brackets(self) -> tuple[LatexBox, LatexBox]:
+        """The same, square."""
+        return LatexBox(0.6, Level.SUM, r"\bigl["), LatexBox(0.6, Level.SUM, r"\bigr]")
+
+    def separators(self) -> tuple[LatexBox, LatexBox]:
+        """Comma and semicolon."""
+        return LatexBox(0.5, Level.SUM, ","), LatexBox(0.7, Level.SUM, r";\;")
+
+    def dot(self) -> LatexBox:
+        r"""`\cdot`."""
+        return LatexBox(0.9, Level.SUM, r"{}\cdot ")
+
+    def slash(self) -> LatexBox:
+        r"""`\big/`."""
+        return LatexBox(0.6, Level.SUM, r"\big/")
+
+    def digits(self, run: str) -> LatexBox:
+        """A part of a number."""
+        return LatexBox(len(run) * widths.DIGIT, Level.ATOM, run)
+
+    def continued(self) -> LatexBox:
+        """A hooked arrow."""
+        return LatexBox(1.5, Level.SUM, r"{\hookrightarrow}\,")
+
+    def star(self, number: int) -> LatexBox:
+        """An asterisk with a number."""
+        return LatexBox(0.5 + len(str(number)) * widths.DIGIT * widths.SCRIPT, Level.ATOM, rf"\ast_{{{number}}}")
+
+    def entry_of(self, matrix: LatexBox, indices: Sequence[int]) -> LatexBox:
+        """The matrix with its indices, in parentheses where it is more than a letter."""
+        base = matrix if matrix.level == Level.ATOM and "_" not in matrix.source else self.grouped(matrix)
+        separator = "," if max(indices) > 9 else ""
+        below = separator.join(map(str, indices))
+        width = base.width + widths.SCRIPT * widths.source_width(below)
+        return LatexBox(width, Level.POWER, f"{base.source}_{{{below}}}", base.height)
+
+    def indent(self) -> LatexBox:
+        r"""`\quad`."""
+        return LatexBox(1.0, Level.SUM, r"\quad ")
+
+    def framed(self, box: LatexBox) -> LatexBox:
+        r"""`\answer`, a macro of the template."""
+        return LatexBox(box.width + widths.FRAME, Level.ATOM, rf"\answer{{{box.source}}}", max(1, box.height))
+
+    def stacked(self, lines: Sequence[LatexBox]) -> LatexBox:
+        r"""`aligned`, all lines but the first indented."""
+        first, *rest = lines
+        indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
+        body = r"\\".join(f"&{line.source}" for line in indented)
+        width = max(line.width for line in indented)
+        return LatexBox(width, Level.SUM, rf"\begin{{aligned}}{body}\end{{aligned}}", 2)
+
+    def punctuation(self, mark: str) -> LatexBox:
+        """A comma or full stop."""
+        return LatexBox(0.3, Level.SUM, mark)
+
+    def gap(self) -> LatexBox:
+        r"""`\qquad`."""
+        return LatexBox(2.0, Level.SUM, r"\qquad ")
+
+
+def adjoined(left: str, right: str) -> str:
+    """Return right after left; a space keeps a command from swallowing a letter."""
+    if _ENDS_IN_COMMAND.search(left) and right[:1].isalpha():
+        return f"{left} {right}"
+    return left + right

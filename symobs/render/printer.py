@@ -1,0 +1,219 @@
+"""The printer: one walk over a formula with its precedences; a format supplies the glyphs.
+
+A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
+`A - L C` is printed as its author wrote it; only exact values are spelled out (`scalars.spelled`).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, Scalar
+from symobs.formula import (
+    Apply,
+    Block,
+    Derivative,
+    Formula,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Relation,
+    Sum,
+    Transpose,
+    children,
+    with_children,
+)
+from symobs.render.glyphs import B, Glyphs, Level
+from symobs.render.scalars import is_leaf, spelled, spelled_matrix
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+#: Letters that are functions of time; in discrete time they carry the index k.
+SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat"})
+
+
+class Printer(Glyphs[B]):
+    """Formula → mathematics of one format."""
+
+    def __init__(
+        self, variable: str = "s", symbols: Mapping[str, str] | None = None, *, discrete: bool = False
+    ) -> None:
+        """Print polynomials in `variable`; `symbols` are the declared forms of parameters."""
+        self.variable = variable
+        self.symbols = dict(symbols or {})
+        self.discrete = discrete
+
+    @abstractmethod
+    def inline(self, item: Formula | Relation) -> str:
+        """Return mathematics for a line of text, without delimiters."""
+
+    @abstractmethod
+    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+        """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+
+    # -- the walk -------------------------------------------------------------------------------------------------
+
+    def relation(self, item: Relation) -> B:
+        """Print a chain of equations and comparisons."""
+        parts = [self.typeset(item.members[0])]
+        for operator, member in zip(item.operators, item.members[1:], strict=True):
+            parts += [self.comparison(operator), self.typeset(member)]
+        return self.joined(parts, Level.SUM)
+
+    def typeset(self, formula: Formula) -> B:
+        """Print a formula."""
+        match formula:
+            case Letter(name):
+                return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
+            case Literal(Scalar() as value):
+                return self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+            case Literal(Matrix() as value):
+                written = spelled_matrix(value, self.variable)
+                return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
+            case Identity():
+                return self.identity()
+            case Sum() | Negative():
+                return self.joined(self.sum_parts(formula), Level.SUM)
+            case Product():
+                return self.product(formula)
+            case Quotient():
+                return self.quotient(formula)
+            case Power(base, exponent):
+                return self.raised(self.base(base), exponent)
+            case Transpose(operand):
+                return self.transposed(self.base(operand))
+            case Apply(function, argument):
+                return self.application(function, argument)
+            case Block(rows):
+                return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
+            case Derivative(operand):
+                return self.derivative(operand)
+        raise TypeError(formula)
+
+    def sum_parts(self, formula: Formula) -> list[B]:
+        """The terms of a sum with their signs between them."""
+        parts: list[B] = []
+        for negative, term in signed_terms(formula, self.variable):
+            if parts or negative:
+                parts.append(self.sign(negative=negative, leading=not parts))
+            parts.append(self.at_least(Level.PRODUCT, self.typeset(term)))
+        return parts
+
+    def product(self, formula: Product) -> B:
+        """Juxtaposed factors, with a dot before a number that is not the first."""
+        (negative, body), = signed_terms(formula, self.variable, flat=False)
+        parts = self.factor_boxes(body)
+        sign = [self.sign(negative=True, leading=True)] if negative else []
+        return self.joined([*sign, *self.spaced(parts)], Level.SUM if negative else Level.PRODUCT)
+
+    def spaced(self, parts: Sequence[B]) -> list[B]:
+        """Factors with what stands between them."""
+        row: list[B] = []
+        for part in parts:
+            between = self.between(row[-1], part) if row else None
+            row += [part] if between is None else [between, part]
+        return row
+
+    def factor_boxes(self, formula: Formula) -> list[B]:
+        """The factors of a product, each parenthesised where it must be."""
+        parts = factors(formula, self.variable)
+        return [self.factor(part, last=part is parts[-1]) for part in parts]
+
+    def factor(self, formula: Formula, *, last: bool) -> B:
+        """One factor; a function's argument is closed off from the factors that follow."""
+        if isinstance(formula, Apply) and not last:
+            return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
+        return self.at_least(Level.FRACTION, self.typeset(formula))
+
+    def quotient(self, formula: Quotient) -> B:
+        """A fraction; the minus of its numerator stands in front."""
+        (negative, body), = signed_terms(formula, self.variable, flat=False)
+        if isinstance(body, Quotient):
+            box = self.fraction(self.typeset(body.numerator), self.typeset(body.denominator))
+        else:
+            box = self.typeset(body)
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if negative else box
+
+    def base(self, formula: Formula) -> B:
+        """What carries an exponent or a transposition sign."""
+        if isinstance(formula, Literal) and isinstance(formula.value, Matrix):
+            return self.plain_matrix(formula.value)
+        return self.at_least(Level.ATOM, self.typeset(formula))
+
+    def application(self, function: str, argument: Formula) -> B:
+        """det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
+        inner = self.base(argument) if is_matrix else self.typeset(argument)
+        if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
+            inner = self.grouped(inner)
+        return self.applied(function, inner)
+
+    def derivative(self, operand: Formula) -> B:
+        """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if self.discrete:
+            if isinstance(operand, Letter):
+                return self.letter(operand.name, "k+1")
+            return self.typeset(with_children(operand, tuple(Derivative(part) for part in children(operand))))
+        if isinstance(operand, Letter):
+            return self.letter(operand.name, "dot")
+        return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)))
+
+    def plain_matrix(self, matrix: Matrix) -> B:
+        """A matrix, entry by entry."""
+        if 0 in matrix.shape:
+            return self.empty(matrix.shape)
+        return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in matrix.rows])
+
+    def block_entry(self, formula: Formula) -> B:
+        """A block; a zero matrix among blocks is 0."""
+        if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero:
+            return self.leaf(Scalar.of(0))
+        return self.typeset(formula)
+
+    def at_least(self, level: Level, box: B) -> B:
+        """Parenthesise a box that binds less tightly."""
+        return box if box.level >= level else self.grouped(box)
+
+
+def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[tuple[bool, Formula]]:
+    """Return the terms of a sum as (whether subtracted, term); a minus inside a first factor counts.
+
+    With `flat=False` a sum stays one term.
+    """
+    match formula:
+        case Sum(terms) if flat:
+            return [part for term in terms for part in signed_terms(term, variable)]
+        case Negative(operand):
+            return [(True, operand)]
+        case Literal(Scalar() as value) if not is_leaf(value):
+            written = spelled(value, variable)
+            return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
+        case Product((first, *rest)):
+            (negative, body), = signed_terms(first, variable, flat=False)
+            return [(True, Product((body, *rest)))] if negative else [(False, formula)]
+        case Quotient(above, below):
+            (negative, body), = signed_terms(above, variable, flat=False)
+            return [(True, Quotient(body, below))] if negative else [(False, formula)]
+        case _:
+            return [(False, formula)]
+
+
+def factors(formula: Formula, variable: str) -> list[Formula]:
+    """Return the factors of nested products, values spelled out."""
+    match formula:
+        case Product(parts):
+            return [factor for part in parts for factor in factors(part, variable)]
+        case Literal(Scalar() as value) if not is_leaf(value):
+            written = spelled(value, variable)
+            return factors(written, variable) if isinstance(written, Product) else [formula]
+        case Literal(Matrix() as table):
+            opened = spelled_matrix(table, variable)
+            return list(opened.factors) if isinstance(opened, Product) else [formula]
+        case _:
+            return [formula]

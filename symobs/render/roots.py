@@ -1,0 +1,84 @@
+"""Roots of a polynomial in a sentence: `-2, -2`, `-20 ± 20i`, `-1 ± √2`, or the equation of those without a form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Scalar
+from symobs.formula import Letter, Literal, Relation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.exact.roots import Root
+    from symobs.formula import Roots
+    from symobs.render.printer import Printer
+
+
+@dataclass(frozen=True)
+class RootGlyphs:
+    """What a format adds to its printer for roots; `among` writes those that satisfy an equation."""
+
+    square_root: Callable[[str], str]
+    plus_minus: str
+    among: Callable[[str, str], str]
+
+
+LATEX = RootGlyphs(lambda inside: rf"\sqrt{{{inside}}}", r"\pm ", lambda s, equation: rf"\{{{s}:{equation}\}}")
+TEXT = RootGlyphs(
+    lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
+    " ± ",
+    lambda s, equation: f"{{{s}: {equation}}}",
+)
+
+
+def listed(roots: Roots, printer: Printer[Any], glyphs: RootGlyphs) -> list[str]:
+    """Return the roots one after the other, a pair as one item."""
+    return [_written(root, paired, printer, glyphs) for root, paired in _grouped(roots.values)]
+
+
+def _grouped(values: tuple[Root, ...]) -> Iterator[tuple[Root, bool]]:
+    """Yield each root with whether it stands for a pair; the open roots of a factor are one group."""
+    remaining = list(values)
+    while remaining:
+        root = remaining.pop(0)
+        if not root.is_closed:
+            group = [other for other in remaining if other.factor == root.factor and other.index != root.index]
+            for index in {other.index for other in group}:
+                remaining.remove(next(other for other in group if other.index == index))
+            yield root, False
+            continue
+        partner = replace(root, sign=-root.sign)
+        is_pair = not root.radicand.is_zero and partner in remaining
+        if is_pair:
+            remaining.remove(partner)
+        yield root, is_pair
+
+
+def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs) -> str:  # noqa: FBT001
+    if not root.is_closed:
+        equation = Relation((Literal(root.factor), Literal(Scalar.of(0))), ("=",))
+        return glyphs.among(printer.inline(Letter("s")), printer.inline(equation))
+    if root.radicand.is_zero:
+        return printer.inline(Literal(root.centre))
+    centre = "" if root.centre.is_zero else printer.inline(Literal(root.centre))
+    distance = _distance(root, printer, glyphs)
+    if paired:
+        return f"{centre}{glyphs.plus_minus}{distance}".strip()
+    sign = "-" if root.sign < 0 else "+" * bool(centre)
+    return f"{centre}{sign}{distance}"
+
+
+def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
+    """√radicand, its square factors before the root, i behind it."""
+    if not root.radicand.is_constant:
+        return glyphs.square_root(printer.inline(Literal(root.radicand)))
+    outside, inside, imaginary = root.surd()
+    under = "" if inside == 1 else glyphs.square_root(str(inside))
+    unit = under + "i" * imaginary
+    if outside.denominator == 1:
+        return f"{outside.numerator}" * (outside != 1 or not unit) + unit
+    above = Scalar.of(outside.numerator)
+    front = printer.inline(Literal(above / outside.denominator))
+    return front + unit

@@ -1,0 +1,126 @@
+"""Plain text for terminals: the format `text`, 80 columns wide."""
+
+from __future__ import annotations
+
+import unicodedata
+from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.formula import Roots
+from symobs.method import output_format
+from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified
+from symobs.render.diagrams import sketch
+from symobs.render.narrator import narrate, printer_for
+from symobs.render.roots import TEXT, listed
+from symobs.render.text_printer import TextPrinter, text_width
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.method import Document
+    from symobs.render.blocks import Block, Inline, Inlines
+
+WIDTH = 80
+INDENT = "    "
+#: An inline formula up to this many characters is kept on one line.
+_KEPT_TOGETHER = 40
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+@output_format
+class Text:
+    """What a terminal shows."""
+
+    name: ClassVar[str] = "text"
+    suffix: ClassVar[str] = ".txt"
+
+    def render(self, document: Document) -> str:
+        """Return the document as plain text."""
+        return TextWriter(printer_for(document, TextPrinter)).body(narrate(document), WIDTH) + "\n"
+
+
+class TextWriter:
+    """Writes blocks as lines: the text around the mathematics, which the printer writes."""
+
+    def __init__(self, printer: TextPrinter) -> None:
+        """Write mathematics with `printer`."""
+        self.printer = printer
+
+    def body(self, blocks: Sequence[Block], width: int) -> str:
+        """Return all blocks, an empty line between two; a heading stands directly above what it heads."""
+        pieces = [self.block(block, width) for block in blocks]
+        gaps = ["\n" if isinstance(before, Heading) else "\n\n" for before, _ in pairwise(blocks)]
+        return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def block(self, block: Block, width: int) -> str:  # noqa: PLR0911 - one case a kind of block
+        """Return one block, no line longer than `width` where it can be broken."""
+        match block:
+            case Title(text, source, conventions):
+                heading = underlined(wrapped(printable(text), width), "=")
+                below = wrapped(f"{printable(source)} {self.sentence(conventions)}", width)
+                return "\n".join(part for part in (heading, below) if part)
+            case Heading(number, inlines):
+                title = f"{number} {self.sentence(inlines)}".strip().removesuffix(".")
+                return underlined(wrapped(title, width), "-")
+            case Paragraph(inlines):
+                return wrapped(self.sentence(inlines), width)
+            case Display(relations, boxed, _):
+                return indented(self.printer.display(relations, boxed=boxed))
+            case Verified(inlines):
+                return wrapped(self.sentence(inlines), width, first="✓ ")
+            case Caution(label, inlines):
+                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! ")
+            case Drawing():
+                return indented(sketch(block, self.printer, width - len(INDENT)))
+            case CaseBlock(label, blocks):
+                inside = indented(self.body(blocks, width - len(INDENT)))
+                return f"{wrapped(self.sentence(label), width)}\n{inside}"
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text with its mathematics."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return printable(part)
+        if isinstance(part, Roots):
+            return ", ".join(root.replace(" ", _NO_BREAK) for root in listed(part, self.printer, TEXT))
+        written = self.printer.inline(part)
+        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else written
+
+
+def printable(text: str) -> str:
+    """Return text from outside without what would steer a terminal: control and format characters."""
+    return "".join(_harmless(character) for character in text)
+
+
+def _harmless(character: str) -> str:
+    if character.isspace():
+        return " "
+    kind = unicodedata.category(character)
+    if kind in {"Cc", "Cf"}:
+        return ""
+    return "?" if kind.startswith("C") else character
+
+
+def wrapped(text: str, width: int, *, first: str = "") -> str:
+    """Return the text in lines of at most `width` columns; `first` opens the first line and sets in the others."""
+    inside = width - text_width(first)
+    lines: list[str] = []
+    for word in text.split(" "):
+        if lines and text_width(lines[-1]) + 1 + text_width(word) <= inside:
+            lines[-1] += f" {word}"
+        elif word:
+            lines.append(word)
+    broken = f"\n{' ' * len(first)}".join(lines)
+    return first + broken.replace(_NO_BREAK, " ")
+
+
+def underlined(text: str, mark: str) -> str:
+    """Return the text with a line of `mark` below it, as wide as its last line; nothing under nothing."""
+    return f"{text}\n{mark * text_width(text.splitlines()[-1])}" if text else ""
+
+
+def indented(text: str) -> str:
+    """Return the text set in from the margin."""
+    return "\n".join(f"{INDENT}{line}".rstrip() for line in text.splitlines())

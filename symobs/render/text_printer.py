@@ -1,0 +1,193 @@
+"""Formulas on a terminal, in Unicode: `[0 1; 0 -1]` in a line of text, brackets over several lines in a display."""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_text
+from symobs.exact import Scalar
+from symobs.formula import Formula, Relation
+from symobs.render.glyphs import Box, Level
+from symobs.render.printer import Printer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
+_SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
+_INDEX = {"k": "ₖ", "k+1": "ₖ₊₁"}
+_BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
+
+
+@dataclass(frozen=True)
+class TextBox(Box):
+    """Lines of equal width; `baseline` is the one that stands on the line of its neighbours."""
+
+    lines: tuple[str, ...]
+    baseline: int = 0
+
+    @property
+    def line(self) -> str:
+        """The line of the baseline."""
+        return self.lines[self.baseline]
+
+
+class TextPrinter(Printer[TextBox]):
+    """Formula → Unicode text."""
+
+    def __init__(
+        self,
+        variable: str = "s",
+        symbols: Mapping[str, str] | None = None,
+        *,
+        discrete: bool = False,
+        flat: bool = False,
+    ) -> None:
+        """Print as `Printer` does; `flat` keeps matrices on one line, also in displays."""
+        super().__init__(variable, symbols, discrete=discrete)
+        self.flat = flat
+
+    def inline(self, item: Formula | Relation) -> str:
+        """Return mathematics on one line."""
+        if not self.flat:
+            return TextPrinter(self.variable, self.symbols, discrete=self.discrete, flat=True).inline(item)
+        return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).line
+
+    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = "") -> str:
+        """Return a display."""
+        return "\n\n".join("\n".join(self.relation(relation).lines) for relation in relations)
+
+    # -- glyphs ---------------------------------------------------------------------------------------------------
+
+    def letter(self, name: str, mark: str) -> TextBox:
+        """A letter; ẋ, xₖ, xₖ₊₁."""
+        known = name in LETTERS
+        text = letter_text(name, self.variable) if known else symbol_text(name)
+        if mark == "dot":
+            dotted = unicodedata.normalize("NFC", f"{text}\u0307")
+            return text_box(dotted if len(dotted) == 1 else f"d{text}/dt", Level.POWER)
+        is_plain = not mark and text[-1] not in _SUPERSCRIPT_DIGITS + ")"
+        return text_box(text + _INDEX.get(mark, ""), Level.ATOM if is_plain else Level.POWER)
+
+    def leaf(self, value: Scalar) -> TextBox:
+        """A whole number or a symbol."""
+        if value.is_constant:
+            return text_box(str(value.fraction().numerator))
+        (name,) = value.names
+        return text_box(symbol_text(name))
+
+    def identity(self) -> TextBox:
+        """I."""
+        return text_box("I")
+
+    def empty(self, shape: tuple[int, int]) -> TextBox:
+        """A zero with its shape."""
+        return text_box(f"0({shape[0]}×{shape[1]})")
+
+    def sign(self, *, negative: bool, leading: bool) -> TextBox:
+        """Plus or minus."""
+        glyph = "-" if negative else "+"
+        return text_box(glyph if leading else f" {glyph} ", Level.SUM)
+
+    def comparison(self, operator: str) -> TextBox:
+        """The sign of a relation."""
+        return text_box(f" {OPERATORS[operator][1]} ", Level.SUM)
+
+    def joined(self, parts: Sequence[TextBox], level: Level) -> TextBox:
+        """The boxes side by side, baselines in one line."""
+        above = max(part.baseline for part in parts)
+        below = max(len(part.lines) - part.baseline for part in parts)
+        lines = ["".join(_line_at(part, offset) for part in parts) for offset in range(-above, below)]
+        return TextBox(sum(part.width for part in parts), level, tuple(lines), above)
+
+    def between(self, left: TextBox, right: TextBox) -> TextBox | None:
+        """A dot before a number; no space after one, nor at a parenthesis."""
+        if right.line[0].isdigit():
+            return text_box("·")
+        is_open = left.line.isdigit() or left.line.endswith(")") or right.line.startswith("(")
+        is_variable_matrix = left.line == self.variable and right.line == "I"
+        return None if is_open or is_variable_matrix else text_box(" ")
+
+    def grouped(self, box: TextBox) -> TextBox:
+        """Parentheses, as tall as what they hold."""
+        return self._fenced(box, "(", ")", Level.ATOM)
+
+    def _fenced(self, box: TextBox, opening: str, closing: str, level: Level) -> TextBox:
+        rows = len(box.lines)
+        if rows == 1:
+            return text_box(f"{opening}{box.line}{closing}", level)
+        left, right = (_tall(shape, rows) for shape in _BRACKETS[opening])
+        lines = tuple(f"{a}{line}{b}" for a, line, b in zip(left, box.lines, right, strict=True))
+        return TextBox(box.width + 2, level, lines, box.baseline)
+
+    def fraction(self, above: TextBox, below: TextBox) -> TextBox:
+        """above/below, parenthesised where one of them is a sum or product."""
+        above, below = self.at_least(Level.PRODUCT, above), self.at_least(Level.POWER, below)
+        return self.joined([above, text_box("/"), below], Level.PRODUCT)
+
+    def raised(self, base: TextBox, exponent: int) -> TextBox:
+        """A power."""
+        return self._above(base, str(exponent).translate(_SUPERSCRIPTS))
+
+    def transposed(self, base: TextBox) -> TextBox:
+        """The transpose."""
+        return self._above(base, "ᵀ")
+
+    def _above(self, base: TextBox, script: str) -> TextBox:
+        lines = (base.lines[0] + script, *(line + " " * len(script) for line in base.lines[1:]))
+        return TextBox(base.width + len(script), Level.POWER, lines, base.baseline)
+
+    def applied(self, function: str, argument: TextBox) -> TextBox:
+        """A function's name and its argument."""
+        name = FUNCTIONS.get(function, (function, function.replace("_", " ")))[1]
+        space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
+        return self.joined([text_box(name + space), argument], Level.PRODUCT)
+
+    def matrix(self, rows: Sequence[Sequence[TextBox]]) -> TextBox:
+        """A table in brackets; on one line its entries are written without spaces."""
+        if self.flat:
+            written = (" ".join(_tight(entry.line) for entry in row) for row in rows)
+            return text_box(f"[{'; '.join(written)}]")
+        widths = [max(row[j].width for row in rows) for j in range(len(rows[0]))]
+        lines: list[str] = []
+        for row in rows:
+            cells = [_pad_left(entry, width) for entry, width in zip(row, widths, strict=True)]
+            spaced = [part for cell in cells for part in (text_box("  "), cell)][1:]
+            lines += self.joined(spaced, Level.ATOM).lines
+        body = TextBox(sum(widths) + 2 * len(widths) - 2, Level.ATOM, tuple(lines), (len(lines) - 1) // 2)
+        return self._fenced(body, "[", "]", Level.ATOM)
+
+    def rate(self, box: TextBox) -> TextBox:
+        """d/dt before a stack."""
+        return self.joined([text_box("d/dt "), box], Level.PRODUCT)
+
+
+def text_box(text: str, level: Level = Level.ATOM) -> TextBox:
+    """Return a box of one line."""
+    return TextBox(text_width(text), level, (text,))
+
+
+def text_width(text: str) -> int:
+    """Return the number of columns a terminal uses; accents stand on their letters."""
+    return sum(not unicodedata.combining(character) for character in text)
+
+
+def _line_at(box: TextBox, offset: int) -> str:
+    index = box.baseline + offset
+    return box.lines[index] if 0 <= index < len(box.lines) else " " * int(box.width)
+
+
+def _tall(shape: str, rows: int) -> str:
+    top, middle, bottom = shape
+    return top + middle * (rows - 2) + bottom
+
+
+def _tight(entry: str) -> str:
+    return entry.replace(" + ", "+").replace(" - ", "-").replace(" ", "·")
+
+
+def _pad_left(box: TextBox, width: float) -> TextBox:
+    space = " " * int(width - box.width)
+    return TextBox(width, box.level, tuple(space + line for line in box.lines), box.baseline)

@@ -1,0 +1,109 @@
+"""Stability of a polynomial, decided exactly: Liénard and Chipart in continuous time, the bilinear map in discrete time.
+
+A polynomial a₀ sⁿ + … + aₙ with a₀ > 0 has all its roots in Re s < 0 exactly when aₙ, aₙ₋₂, … and the Hurwitz determinants
+Δₙ₋₁, Δₙ₋₃, … are positive.  For |z| < 1 the same is asked of (w − 1)ⁿ a((w + 1)/(w − 1)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symobs.conditions import sign_of
+from symobs.exact import Matrix, Scalar, from_coefficients
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+@dataclass(frozen=True, slots=True)
+class Stability:
+    """`verdict` yes, no or conditional; `positive` are the polynomials that must be > 0 where it is conditional."""
+
+    verdict: str
+    positive: tuple[Scalar, ...] = ()
+
+
+def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> Stability:
+    """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does."""
+    coefficients = list(polynomial.coefficients(variable))
+    if len(coefficients) == 1:
+        return Stability("yes")
+    if discrete:
+        coefficients = _bilinear(coefficients)
+    lead = sign_of(coefficients[0], signs)
+    if lead == "negative":
+        coefficients = [-c for c in coefficients]
+    conditions = [] if lead in {"positive", "negative"} else [coefficients[0]]
+    conditions += _lienard_chipart(coefficients)
+    return _decide(conditions, signs)
+
+
+def _bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:
+    """Return the coefficients of Σ aₖ (w + 1)ⁿ⁻ᵏ (w − 1)ᵏ."""
+    w = Scalar.symbol("s")
+    order = len(coefficients) - 1
+    total = Scalar.of(0)
+    for k, coefficient in enumerate(coefficients):
+        total = total + coefficient * (w + 1) ** (order - k) * (w - 1) ** k
+    found = list(total.coefficients("s"))
+    return [Scalar.of(0)] * (order + 1 - len(found)) + found
+
+
+def hurwitz_matrix(coefficients: Sequence[Scalar]) -> Matrix:
+    """Return the n×n Hurwitz matrix of a₀ sⁿ + … + aₙ: row i holds a₂ⱼ₋ᵢ (columns j from 1)."""
+    order = len(coefficients) - 1
+
+    def entry(i: int, j: int) -> Scalar:
+        index = 2 * (j + 1) - (i + 1)
+        return coefficients[index] if 0 <= index <= order else Scalar.of(0)
+
+    return Matrix.of([[entry(i, j) for j in range(order)] for i in range(order)])
+
+
+def _lienard_chipart(coefficients: Sequence[Scalar]) -> list[Scalar]:
+    order = len(coefficients) - 1
+    conditions = [coefficients[k] for k in range(order, 0, -2)]
+    hurwitz = hurwitz_matrix(coefficients)
+    for k in range(order - 1, 1, -2):
+        conditions.append(hurwitz.select(range(k), range(k)).determinant())
+    if order % 2 == 0:
+        conditions.append(coefficients[1])
+    return conditions
+
+
+def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability:
+    """Strip what the declared signs settle; a condition that can never be positive settles the whole."""
+    needed: dict[Scalar, None] = {}
+    for condition in conditions:
+        sign = sign_of(condition, signs)
+        if sign == "positive":
+            continue
+        if sign in {"negative", "nonpositive", "zero"}:
+            return Stability("no")
+        needed[_essential(condition, signs)] = None
+    return Stability("conditional", tuple(needed)) if needed else Stability("yes")
+
+
+def _essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
+    """Return the part of a condition whose sign is not settled: factors of known sign and even powers are dropped.
+
+    An even power is kept as the factor's square where the factor may vanish, since the inequality is strict.
+    """
+    unit, factors = condition.factors()
+    kept = Scalar.of(1 if unit.fraction() > 0 else -1)
+    for factor, power in factors:
+        sign = sign_of(factor, signs)
+        if sign == "positive" or (power % 2 == 0 and sign in {"negative", "nonzero"}):
+            continue
+        if sign == "negative":
+            kept = -kept
+        else:
+            kept = kept * (factor if power % 2 else factor**2)
+    return kept
+
+
+def monic(polynomial: Scalar, variable: str) -> Scalar:
+    """Return the polynomial divided by its leading coefficient."""
+    coefficients = polynomial.coefficients(variable)
+    return from_coefficients([c / coefficients[0] for c in coefficients], variable)
