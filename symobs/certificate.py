@@ -292,23 +292,27 @@ def _paired(left: Any, right: Any) -> list[tuple[Bound, Bound]]:
     return [(left.coefficients.get(name, zero), right.coefficients.get(name, zero)) for name in names]
 
 
-def _leaves(formula: Formula, environment: Environment) -> Iterable[Scalar | Matrix]:
+def _leaves(formula: Formula, environment: Environment, seen: set[str]) -> Iterable[Scalar | Matrix]:
+    """Yield the exact values a formula is made of; a signal brings in its definition and its dynamics, once."""
     match formula:
         case Letter(name) if name in environment.signals:
-            for other in (environment.signals[name], environment.dynamics.get(name)):
-                if other is not None:
-                    yield from _leaves(other, environment)
+            if name not in seen:
+                seen.add(name)
+                for other in (environment.signals[name], environment.dynamics.get(name)):
+                    if other is not None:
+                        yield from _leaves(other, environment, seen)
         case Letter(name) if name != "s":
             yield environment.values[name]
         case Literal(value):
             yield value
         case _:
             for part in children(formula):
-                yield from _leaves(part, environment)
+                yield from _leaves(part, environment, seen)
 
 
 def _distinct(relation: Relation, environment: Environment) -> list[Scalar | Matrix]:
-    leaves = {id(leaf): leaf for member in relation.members for leaf in _leaves(member, environment)}
+    seen: set[str] = set()
+    leaves = {id(leaf): leaf for member in relation.members for leaf in _leaves(member, environment, seen)}
     return list(leaves.values())
 
 

@@ -13,7 +13,7 @@ import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import symobs
 from symobs.certificate import Certificate, Claim, check_all
@@ -79,6 +79,11 @@ class Result:
         """The answers in the order of the JSON object; further ones may be derived from the first."""
         return self.answer
 
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of this result and of those it is made of."""
+        return self.certificates
+
     @cached_property
     def cases(self) -> tuple[Case, ...]:
         """What is true where a condition of existence fails."""
@@ -104,6 +109,11 @@ class Result:
     def _binding_conditions(self) -> tuple[Condition, ...]:
         """The conditions that make a verdict conditional: all but those of the domain."""
         return tuple(condition for condition in self.conditions if condition.kind != "domain")
+
+    def renamed(self, requested: str) -> Self:
+        """Return this result under the method name that was asked for; `auto` writes the page it finds best."""
+        object.__setattr__(self, "method", requested)
+        return self
 
     # -- faces ---------------------------------------------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Derivative,
     Environment,
+    Exactly,
     Fact,
     Formula,
     Identity,
@@ -68,7 +69,7 @@ def predicate(name: str, subject: Member) -> Predicate:
 def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     """Return a phrase with its slots filled."""
     filled = tuple(
-        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots)) else formula_of(slot)) for name, slot in slots.items()
+        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly)) else formula_of(slot)) for name, slot in slots.items()
     )
     return Sentence(key, filled)
 
@@ -149,17 +150,31 @@ class Page:
         say: str = "",
         answer: bool = False,
         silent: bool = False,
+        closing: bool = True,
         **slots: Slot,
     ) -> Term:
-        """Introduce a letter by a formula; its value is shown last."""
+        """Introduce a letter by a formula; its value is shown last unless `closing` is False."""
         chain = [self.value(m) if not isinstance(m, Term) else m for m in members]
         value = chain[-1].value
-        if not isinstance(chain[-1].formula, Literal):
+        if closing and not isinstance(chain[-1].formula, Literal):
             chain.append(chain[-1].shown)
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
         self.environment = self.environment.having(values={name: value})
         return self[name]
+
+    def define_transposed(self, name: str, *members: Term, say: str, **slots: Slot) -> Term:
+        """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""
+        value = members[-1].value.T
+        self.steps.append(Given((relation(self[name], value),), silent=True))
+        self.environment = self.environment.having(values={name: value})
+        rows = relation(self[name].T, *members, members[-1].shown)
+        self.equal(rows, relation(self[name], value), say=say, answer=True, **slots)
+        return self[name]
+
+    def conclude_silently(self, *facts: Fact) -> None:
+        """Hold the page to facts that need no words."""
+        self.steps.append(Conclude(None, facts))
 
     def name_coefficient(self, name: str, meaning: Scalar) -> Scalar:
         """Let a generator stand for a longer scalar from here on, without a display."""

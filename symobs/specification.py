@@ -183,3 +183,10 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"give {name} with {shape[0]} rows and {shape[1]} columns")
     return gain
+
+
+def reject_both(name: str, gain: object, poles: object, polynomial: object) -> None:
+    """Raise `InputError` where a gain is given together with what it should achieve."""
+    if gain is not None and (poles is not None or polynomial is not None):
+        message = f"both {name} and {'poles' if poles is not None else 'polynomial'} are given"
+        raise InputError(message, where=f"specification.{name}", repair="keep one of them")

@@ -107,3 +107,17 @@ def monic(polynomial: Scalar, variable: str) -> Scalar:
     """Return the polynomial divided by its leading coefficient."""
     coefficients = polynomial.coefficients(variable)
     return from_coefficients([c / coefficients[0] for c in coefficients], variable)
+
+
+def as_inequality(positive: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, str, Scalar]:
+    """Return value > 0 solved for a name of unknown sign that stands in it with coefficient ±1: h₁ < 1, h₂ > −b."""
+    for name in sorted(positive.names, key=lambda n: (signs.get(n, "real") != "real", n)):
+        if positive.degree(name) != 1 or not positive.is_polynomial_in(name):
+            continue
+        lead, rest = positive.coefficients(name)
+        symbol = Scalar.symbol(name)
+        if lead.is_one:
+            return symbol, ">", -rest
+        if (-lead).is_one:
+            return symbol, "<", rest
+    return positive, ">", Scalar.of(0)

@@ -31,6 +31,7 @@ from symobs.formula import (
     Derivative,
     Environment,
     Exact,
+    Exactly,
     Fact,
     Formula,
     Letter,
@@ -115,7 +116,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, (Relation, Predicate, Roots)):
+        if isinstance(slot, (Relation, Predicate, Roots, Exactly)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -135,12 +136,26 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if not roots_are(polynomial, environment.variable, fact.values):
             _reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
+    if isinstance(fact, Exactly):
+        polynomial = evaluate(fact.property.subject, environment, Exact(environment))
+        found = stability(polynomial, environment.variable, environment.signs, discrete=discrete)
+        said = {_positive_part(relation, environment) for relation in fact.where}
+        if fact.property.name != "stable" or found.verdict != "conditional" or said != set(found.positive):
+            _reject(f"{polynomial} is stable exactly where {', '.join(f'{value} > 0' for value in said)}")
+        return
     _established(fact.subject, environment)
     value = evaluate(fact.subject, environment, Exact(environment))
     if isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     if fact.name not in PREDICATES or not PREDICATES[fact.name](value, environment, discrete):
         _reject(f"{fact.name}({value})")
+
+
+def _positive_part(relation: Relation, environment: Environment) -> Scalar:
+    """Return what a strict inequality says is positive."""
+    left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
+    difference: Scalar = left - right if relation.operators == (">",) else right - left
+    return difference
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:
@@ -186,7 +201,12 @@ def _established(formula: Formula, environment: Environment) -> None:
 
 def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: Environment) -> Environment:
     """Return the environment on a stratum, after verifying that the substitution lies on it."""
-    replaced = {name: value.substitute(substitution) for name, value in environment.values.items()}
+    replaced = {}
+    for name, value in environment.values.items():
+        try:
+            replaced[name] = value.substitute(substitution)
+        except ZeroDivisionError:  # the letter means nothing on this stratum
+            continue
     inside = replace(environment, values=replaced)
     members = tuple(
         Literal(member.value.substitute(substitution)) if isinstance(member, Literal) else member for member in when.members

@@ -70,9 +70,9 @@ class Solve:
 
 @dataclass(frozen=True, slots=True)
 class Conclude:
-    """A finding in a sentence; `verified` marks the check of an answer that the reader is shown."""
+    """A finding; `verified` marks the check of an answer that the reader is shown.  Without sentence it only binds the page."""
 
-    sentence: Sentence
+    sentence: Sentence | None
     facts: tuple[Fact, ...] = ()
     verified: bool = False
 

@@ -10,6 +10,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
 from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
+from symobs.exact.transfer import transfer
 
 __all__ = [
     "RATIONALS",
@@ -33,5 +34,6 @@ __all__ = [
     "root_of_pole",
     "roots_are",
     "roots_of",
+    "transfer",
     "unit_rows",
 ]

@@ -21,7 +21,7 @@ MOST_EXPONENT = 1_000
 MOST_BITS = 10_000
 MOST_DEGREE = 10_000
 MOST_TERMS = 20_000
-#: What all operations of one text may cost together, in machine words written: about a second of work at the worst.
+#: What all operations of one call may cost together, in machine words written: about a second of work at the worst.
 MOST_WORK = 3_000_000
 
 
@@ -87,9 +87,27 @@ def parts(value: Number) -> Parts:
     return a * d + c * b, b * d
 
 
+@dataclass(slots=True)
+class Meter:
+    """Adds up what the texts of one call have cost so far."""
+
+    spent: int = 0
+
+    def charge(self, sizes: Parts) -> str:
+        """Add an operation that builds these sizes; return what is too large about it, or nothing."""
+        self.spent += work(*sizes)
+        excess = sizes[0].excess or sizes[1].excess
+        return excess or ("too much, all operations so far together" if self.spent > MOST_WORK else "")
+
+
 def work(above: Size, below: Size) -> int:
-    """Return the cost of building a numerator and a denominator and of finding their common divisor."""
-    return above.words + below.words + (above.terms + below.terms) * min(above.degree, below.degree)
+    """Return the cost of building a numerator and a denominator and of finding their common divisor.
+
+    The divisor's share was measured on sparse polynomials of high degree, where it is largest: it grows with the
+    terms and with the square of the lower degree.
+    """
+    divisor = (above.terms + below.terms) * len(above.names) * min(above.degree, below.degree) ** 2 // 20
+    return above.words + below.words + divisor
 
 
 def operation_size(sign: str, left: Number, right: Number) -> Parts:
@@ -115,16 +133,16 @@ def power_size(base: Number, exponent: int) -> Parts:
 def common_denominator_excess(entries: Sequence[Scalar]) -> str:
     """Return what is too large about bringing these entries over one denominator, or nothing."""
     fractions = [entry for entry in entries if not entry.denominator_part.is_one()]
-    common, whole = Size(frozenset(), 0, 1, 0), 1
-    for denominator in {entry.denominator for entry in fractions}:
+    common, whole, spent = Size(frozenset(), 0, 1, 0), 1, 0
+    for denominator in dict.fromkeys(entry.denominator for entry in fractions):
         if denominator.is_constant:
             whole = lcm(whole, int(denominator.fraction()))
         else:
-            common = common * Size.of(denominator)
-        if common.terms > MOST_TERMS or common.degree > MOST_DEGREE:
-            return common.excess
-        if len(entries) * whole.bit_length() > MOST_WORK * 64:
-            break
+            size = Size.of(denominator)
+            spent += work(common, size)
+            common = common * size
+        if common.excess or spent > MOST_WORK or len(entries) * whole.bit_length() > MOST_WORK * 64:
+            return common.excess or "too much"
     common = replace(common, bits=common.bits + whole.bit_length())
-    words = sum((Size.of(entry) * common).words for entry in entries) if fractions else 0
-    return f"more than {MOST_WORK} words" if words > MOST_WORK else ""
+    spent += sum((Size.of(entry) * common).words for entry in entries) if fractions else 0
+    return "too much" if spent > MOST_WORK else ""

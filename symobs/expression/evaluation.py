@@ -15,7 +15,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ShapeMismatch
 from symobs.exact import Complex, Scalar
-from symobs.expression.budget import MOST_EXPONENT, MOST_WORK, Number, Parts, operation_size, power_size, work
+from symobs.expression.budget import MOST_EXPONENT, Meter, Number, Parts, operation_size, power_size
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
 
@@ -48,7 +48,7 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
         message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
         raise source.error(message, 0, kind=BudgetExceeded)
     try:
-        return _Evaluator(source).transform(_parser().parse(Tokeniser(source, scope).run()))
+        return _Evaluator(source, scope.meter).transform(_parser().parse(Tokeniser(source, scope).run()))
     except UnexpectedToken as found:
         at_end = found.token.type == "$END"
         place = "at the end" if at_end else f'before "{shown(found.token)}"'
@@ -105,10 +105,10 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
     Invariant: no operation begins before `_spend` has bounded its result.
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: Source, meter: Meter) -> None:
         super().__init__()
         self.source = source
-        self.spent = 0
+        self.meter = meter
 
     def VALUE(self, token: Token) -> Number:
         number: Number = token.value
@@ -180,10 +180,7 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
             raise self.source.error("division by zero", start(token))
 
     def _spend(self, sizes: Parts, token: Token) -> None:
-        excess = sizes[0].excess or sizes[1].excess
-        self.spent += work(*sizes)
-        if not excess and self.spent > MOST_WORK:
-            excess = "too much, all operations so far together"
+        excess = self.meter.charge(sizes)
         if excess:
             raise self.source.error(f"this would build {excess}", start(token), kind=BudgetExceeded)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import keyword
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.errors import ExpressionError
+from symobs.expression.budget import Meter
 from symobs.expression.source import shown
 
 if TYPE_CHECKING:
@@ -52,10 +53,11 @@ def refusal(name: str) -> tuple[str, str] | None:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names one text may use."""
+    """What the texts of one call may use: names, and work."""
 
     names: Names
     variable: str | None
+    meter: Meter = field(default_factory=Meter)
 
     @staticmethod
     def of(names: Names, variable: str | None, where: str) -> Scope:

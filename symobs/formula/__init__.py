@@ -5,6 +5,7 @@ from symobs.formula.nodes import (
     Apply,
     Block,
     Derivative,
+    Exactly,
     Fact,
     Formula,
     Identity,
@@ -27,6 +28,7 @@ from symobs.formula.nodes import (
 __all__ = [
     "Arithmetic",
     "Environment",
+    "Exactly",
     "Exact",
     "Modular",
     "Signal",

@@ -132,7 +132,15 @@ class Roots:
     values: tuple[Root, ...]
 
 
-Fact: TypeAlias = Union[Relation, Predicate, Roots]
+@dataclass(frozen=True, slots=True)
+class Exactly:
+    """A property of a value holds exactly where these inequalities do; shown as their list."""
+
+    property: Predicate
+    where: tuple[Relation, ...]
+
+
+Fact: TypeAlias = Union[Relation, Predicate, Roots, Exactly]
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

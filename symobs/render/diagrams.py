@@ -109,7 +109,7 @@ def _sketch_loop(labels: Labels, printer: TextPrinter, width: int) -> str:
     u, y = printer.inline(Letter("u")), printer.inline(Letter("y"))
     return "\n".join(
         (
-            f"        +    {u}   ┌{edge}┐",
+            f"         +   {u}    ┌{edge}┐",
             f"r = 0 ───▶○──────▶│{plant}├───┬───▶ {y}",
             f"          ▲ −     └{edge}┘   │",
             f"          │       ┌{edge}┐   │",

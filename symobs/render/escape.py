@@ -13,7 +13,7 @@ _SPECIAL = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
     "}": r"\}",
-    "$": r"\$",
+    "$": r"\symbol{36}",  # \$ takes its sign from a bitmap font, which microtype refuses
     "&": r"\&",
     "#": r"\#",
     "^": r"\textasciicircum{}",
@@ -24,7 +24,7 @@ _SPECIAL = {
     "<": r"\textless{}",
     ">": r"\textgreater{}",
     "|": r"\textbar{}",
-    "`": r"\textasciigrave{}",
+    "`": r"\`{}",  # an accent on nothing; \textasciigrave is such a sign too
 }
 _TYPOGRAPHY = {
     "“": "``",
@@ -36,8 +36,6 @@ _TYPOGRAPHY = {
     "–": "--",
     "—": "---",
     "…": r"\dots{}",
-    "§": r"\S{}",
-    "©": r"\copyright{}",
 }
 _GREEK = {
     "α": "alpha",
@@ -82,6 +80,7 @@ _GREEK = {
 }
 _MATHEMATICS = {character: rf"\{name}" for character, name in _GREEK.items()} | {
     "−": "-",
+    "§": r"\mathsection",
     "×": r"\times",
     "÷": r"\div",
     "±": r"\pm",

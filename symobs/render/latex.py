@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
     from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
+
+_INSET = 1.5  # em, as in the templates
 
 
 @output_format
@@ -75,9 +78,10 @@ def typeset(document: Document, template: str, *, folder: Path | None = None) ->
 class LatexWriter:
     """Writes blocks as LaTeX: the text around the mathematics, which the printer writes."""
 
-    def __init__(self, printer: LatexPrinter) -> None:
-        """Write mathematics with `printer`."""
-        self.printer = printer
+    def __init__(self, printer: LatexPrinter, *, inset: float = 0.0) -> None:
+        """Write mathematics with `printer`, on lines shorter by `inset` em."""
+        self.printer = copy(printer)
+        self.printer.width = printer.width - inset
 
     def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks, each where TeX reads it as going on with the paragraph or as beginning a new one."""
@@ -102,7 +106,8 @@ class LatexWriter:
                 return tikz(block, self.printer)
             case CaseBlock(label, blocks):
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
-                return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{self.body(blocks)}\n\\end{{inset}}"
+                body = LatexWriter(self.printer, inset=_INSET).body(blocks)
+                return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{body}\n\\end{{inset}}"
 
             case Title(text):
                 return escape(text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
@@ -57,12 +58,12 @@ class LatexPrinter(Printer[LatexBox]):
         if len(rows) == 1 and not are_aligned:
             return rf"\[ {rows[0].right.source} \]"
         environment = "align*" if are_aligned else "gather*"
-        body = ""
-        for row in rows:
-            left = f"{row.left.source if row.left else ''}&" if are_aligned else ""
-            gap = r"\\[3pt]" if row.right.height else r"\\"
-            body += f"{left}{row.right.source}{gap}\n"
-        written = f"\\begin{{{environment}}}\n{body.rstrip().removesuffix('[3pt]').rstrip(chr(92))}\n\\end{{{environment}}}"
+        lines = [f"{row.left.source if row.left else ''}&{row.right.source}" for row in rows]
+        if not are_aligned:
+            lines = [row.right.source for row in rows]
+        breaks = [r"\\[3pt]" if max(a.right.height, b.right.height) else r"\\" for a, b in pairwise(rows)]
+        body = "\n".join(line + after for line, after in zip(lines, [*breaks, ""], strict=True))
+        written = f"\\begin{{{environment}}}\n{body}\n\\end{{{environment}}}"
         return f"{{\\allowdisplaybreaks\n{written}}}" if len(rows) > _PAGE_OF_ROWS else written
 
     # -- glyphs ---------------------------------------------------------------------------------------------------

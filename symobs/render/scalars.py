@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 #: Beyond this many terms a polynomial is not factored for the sake of its looks.
 FACTORED_UP_TO = 120
 
-_PARENTHESES = 0.6
+_PARENTHESES = 0.4
 
 Monomial = tuple[int, tuple[tuple[str, int], ...]]
 
@@ -35,6 +35,7 @@ def is_leaf(value: Scalar) -> bool:
     return coefficient == 1 and len(powers) == 1 and powers[0][1] == 1
 
 
+@lru_cache(maxsize=4096)
 def spelled(value: Scalar, variable: str) -> Formula:
     """Return the formula that writes `value` out."""
     if is_leaf(value):
@@ -244,6 +245,7 @@ def size(formula: Formula) -> float:
             return 1.0
 
 
+@lru_cache(maxsize=1024)
 def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
     """Return the matrix, or 1/d times one without fractions where several entries share a denominator."""
     broken = [entry for entry in matrix.entries if not entry.denominator.is_one]

@@ -25,7 +25,7 @@ def template_folder() -> Path:
 
 def fill(template: str, values: Mapping[str, object], *, folder: Path | None = None) -> str:
     """Return the template with values put in; `folder` is searched for templates before the built-in ones."""
-    return _environment(folder).get_template(template).render(values)
+    return _environment(folder).get_template(template).render(values).lstrip("\n")
 
 
 def _environment(folder: Path | None) -> Environment:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from copy import copy
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
@@ -36,32 +37,35 @@ class Text:
 
     def render(self, document: Document) -> str:
         """Return the document as plain text."""
-        return TextWriter(printer_for(document, TextPrinter)).body(narrate(document), WIDTH) + "\n"
+        return TextWriter(printer_for(document, TextPrinter), WIDTH).body(narrate(document)) + "\n"
 
 
 class TextWriter:
     """Writes blocks as lines: the text around the mathematics, which the printer writes."""
 
-    def __init__(self, printer: TextPrinter) -> None:
-        """Write mathematics with `printer`."""
-        self.printer = printer
+    def __init__(self, printer: TextPrinter, width: int) -> None:
+        """Write mathematics with `printer`, no line longer than `width` where it can be broken."""
+        self.printer = copy(printer)
+        self.printer.width = width - len(INDENT)
+        self.width = width
 
-    def body(self, blocks: Sequence[Block], width: int) -> str:
+    def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks, an empty line between two; a heading stands directly above what it heads."""
-        pieces = [self.block(block, width) for block in blocks]
+        pieces = [self.block(block) for block in blocks]
         gaps = ["\n" if isinstance(before, Heading) else "\n\n" for before, _ in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
 
-    def block(self, block: Block, width: int) -> str:  # noqa: PLR0911 - one case a kind of block
-        """Return one block, no line longer than `width` where it can be broken."""
+    def block(self, block: Block) -> str:  # noqa: PLR0911 - one case a kind of block
+        """Return one block."""
+        width = self.width
         match block:
             case Title(text, source, conventions):
-                heading = underlined(wrapped(printable(text), width), "=")
+                heading = underlined(wrapped(printable(text), width), "=", width)
                 below = wrapped(f"{printable(source)} {self.sentence(conventions)}", width)
                 return "\n".join(part for part in (heading, below) if part)
             case Heading(number, inlines):
                 title = f"{number} {self.sentence(inlines)}".strip().removesuffix(".")
-                return underlined(wrapped(title, width), "-")
+                return underlined(wrapped(title, width), "-", width)
             case Paragraph(inlines):
                 return wrapped(self.sentence(inlines), width)
             case Display(relations, boxed, _):
@@ -73,8 +77,8 @@ class TextWriter:
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
             case CaseBlock(label, blocks):
-                inside = indented(self.body(blocks, width - len(INDENT)))
-                return f"{wrapped(self.sentence(label), width)}\n{inside}"
+                inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
+                return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text with its mathematics."""
@@ -107,18 +111,18 @@ def wrapped(text: str, width: int, *, first: str = "") -> str:
     """Return the text in lines of at most `width` columns; `first` opens the first line and sets in the others."""
     inside = width - text_width(first)
     lines: list[str] = []
-    for word in text.split(" "):
+    for word in filter(None, text.split(" ")):
         if lines and text_width(lines[-1]) + 1 + text_width(word) <= inside:
             lines[-1] += f" {word}"
-        elif word:
+        else:
             lines.append(word)
     broken = f"\n{' ' * len(first)}".join(lines)
     return first + broken.replace(_NO_BREAK, " ")
 
 
-def underlined(text: str, mark: str) -> str:
+def underlined(text: str, mark: str, width: int) -> str:
     """Return the text with a line of `mark` below it, as wide as its last line; nothing under nothing."""
-    return f"{text}\n{mark * text_width(text.splitlines()[-1])}" if text else ""
+    return f"{text}\n{mark * min(width, text_width(text.splitlines()[-1]))}" if text else ""
 
 
 def indented(text: str) -> str:

@@ -10,6 +10,7 @@ from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_t
 from symobs.exact import Scalar
 from symobs.formula import Formula, Relation
 from symobs.render.glyphs import Box, Level
+from symobs.render.layout import Layout
 from symobs.render.printer import Printer
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 _SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 _SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
+_SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _INDEX = {"k": "ₖ", "k+1": "ₖ₊₁"}
 _BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
 
@@ -37,16 +39,20 @@ class TextBox(Box):
 class TextPrinter(Printer[TextBox]):
     """Formula → Unicode text."""
 
+    slashes = True
+
     def __init__(
         self,
         variable: str = "s",
         symbols: Mapping[str, str] | None = None,
         *,
         discrete: bool = False,
+        width: int = 96,
         flat: bool = False,
     ) -> None:
-        """Print as `Printer` does; `flat` keeps matrices on one line, also in displays."""
+        """Print as `Printer` does, in lines of `width` columns; `flat` keeps every matrix on one line."""
         super().__init__(variable, symbols, discrete=discrete)
+        self.width = width
         self.flat = flat
 
     def inline(self, item: Formula | Relation) -> str:
@@ -56,8 +62,18 @@ class TextPrinter(Printer[TextBox]):
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).line
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = "") -> str:
-        """Return a display."""
-        return "\n\n".join("\n".join(self.relation(relation).lines) for relation in relations)
+        """Return a display, aligned at the first sign of each relation; tall rows stand apart."""
+        rows, _ = Layout(self, self.width, boxed=boxed, end=end).rows(relations)
+        margin = max(int(row.left.width) if row.left else 0 for row in rows)
+        written: list[str] = []
+        was_tall = False
+        for row in rows:
+            box = self.joined([_pad_left(row.left or text_box(""), margin), row.right], Level.SUM)
+            is_tall = len(box.lines) > 1
+            written += [""] if written and (is_tall or was_tall) else []
+            written += [line.rstrip() for line in box.lines]
+            was_tall = is_tall
+        return "\n".join(written)
 
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
@@ -162,6 +178,71 @@ class TextPrinter(Printer[TextBox]):
     def rate(self, box: TextBox) -> TextBox:
         """d/dt before a stack."""
         return self.joined([text_box("d/dt "), box], Level.PRODUCT)
+
+    # -- glyphs of broken lines -----------------------------------------------------------------------------------
+
+    def parentheses(self, content: Sequence[TextBox]) -> tuple[TextBox, TextBox]:
+        """A plain pair."""
+        return text_box("("), text_box(")")
+
+    def brackets(self) -> tuple[TextBox, TextBox]:
+        """A plain pair, square."""
+        return text_box("["), text_box("]")
+
+    def separators(self) -> tuple[TextBox, TextBox]:
+        """Comma and semicolon."""
+        return text_box(", "), text_box("; ")
+
+    def dot(self) -> TextBox:
+        """A centred dot."""
+        return text_box("· ")
+
+    def slash(self) -> TextBox:
+        """A slash."""
+        return text_box("/")
+
+    def digits(self, run: str) -> TextBox:
+        """A part of a number."""
+        return text_box(run)
+
+    def continued(self) -> TextBox:
+        """A hooked arrow."""
+        return text_box("↪ ")
+
+    def star(self, number: int) -> TextBox:
+        """An asterisk with a number."""
+        return text_box(f"*{str(number).translate(_SUBSCRIPTS)}")
+
+    def entry_of(self, matrix: TextBox, indices: Sequence[int]) -> TextBox:
+        """The matrix with its indices in parentheses, as in MATLAB."""
+        base = matrix if matrix.level == Level.ATOM else self.grouped(matrix)
+        return self.joined([base, text_box(f"({','.join(map(str, indices))})")], Level.POWER)
+
+    def indent(self) -> TextBox:
+        """Four columns."""
+        return text_box("    ")
+
+    def framed(self, box: TextBox) -> TextBox:
+        """A frame of rules."""
+        rule = "─" * (int(box.width) + 2)
+        lines = (f"┌{rule}┐", *(f"│ {line} │" for line in box.lines), f"└{rule}┘")
+        return TextBox(box.width + 4, Level.ATOM, lines, box.baseline + 1)
+
+    def stacked(self, lines: Sequence[TextBox]) -> TextBox:
+        """The lines under one another, all but the first indented."""
+        first, *rest = lines
+        boxes = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
+        width = max(box.width for box in boxes)
+        padded = [line + " " * int(width - box.width) for box in boxes for line in box.lines]
+        return TextBox(width, Level.SUM, tuple(padded), first.baseline)
+
+    def punctuation(self, mark: str) -> TextBox:
+        """A comma or full stop."""
+        return text_box(mark)
+
+    def gap(self) -> TextBox:
+        """Four columns."""
+        return text_box("    ")
 
 
 def text_box(text: str, level: Level = Level.ATOM) -> TextBox:

@@ -1,0 +1,244 @@
+"""What observer gains and feedback gains have in common: the result type with its claims, and the choice of answer.
+
+A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says which letters it is written in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Self
+
+from symobs.analysis.strata import strata
+from symobs.certificate import Claim
+from symobs.design.assignment import Pair, remainder
+from symobs.errors import InputError
+from symobs.exact import Field, Matrix, Root, Scalar, roots_of
+from symobs.formula import Environment, Literal, Negative, Sum
+from symobs.formula.term import Term, identity, letter
+from symobs.method import Case, Result
+from symobs.page import relation
+from symobs.specification import DesiredPolynomial
+from symobs.stability import Stability, as_inequality, stability
+from symobs.system import StateSpace
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GainDesign(Result):
+    """A gain with det(sI − A + LC) = φ(s) (det(sI − A + BK) = φ(s)), or the proof that there is none.
+
+    The answer is `gain` (None where φ cannot be assigned) and `polynomial`; `desired` is None where the gain was given.
+    """
+
+    desired: DesiredPolynomial | None
+
+    letter: ClassVar[str]
+
+    # -- the dual sides ----------------------------------------------------------------------------------------------
+
+    @staticmethod
+    def pair(plant: StateSpace) -> Pair:
+        """Return (A, C) of the observer problem this is, or is dual to."""
+        raise NotImplementedError
+
+    @staticmethod
+    def oriented(gain: Matrix) -> Matrix:
+        """Return the column of the observer problem as this task's gain."""
+        raise NotImplementedError
+
+    @staticmethod
+    def closed(environment: Environment) -> Term:
+        """Return the formula A − LC or A − BK."""
+        raise NotImplementedError
+
+    # -- construction ------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
+        """Return the design that assigns φ, or the negative result."""
+        pair = working_pair(cls.pair(plant), desired)
+        gain = pair.gain(desired)
+        answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
+        return cls(plant, method_name, answer, desired)
+
+    @classmethod
+    def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
+        """Return the design with a given gain, its polynomial found."""
+        e = Environment(variable=plant.variable, values=letters_of(plant) | {cls.letter: gain})
+        polynomial = cls.closed(e).value.normal().characteristic_polynomial(plant.variable)
+        return cls(plant, "given", {cls.letter: gain, "polynomial": polynomial}, None)
+
+    # -- claims ------------------------------------------------------------------------------------------------------
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield det(sI − A + LC) = φ(s) for the gain and its family, or the proof that no gain exists."""
+        gain = self.answer[self.letter]
+        if gain is None:
+            yield from self._impossible()
+            return
+        yield self._assigned(gain)
+        if self.family is not None:
+            yield self._assigned(self.family[self.letter])
+
+    def _assigned(self, gain: Matrix) -> Claim:
+        phi = self.answer["polynomial"]
+        values = letters_of(self.plant) | {self.letter: gain, "phi": phi}
+        e = Environment(variable=self.plant.variable, values=values)
+        pencil = letter("s", e) @ identity(self.plant.order, e) - self.closed(e)
+        return Claim(relation(_signs_turned(pencil).apply("det"), letter("phi", e)), e)
+
+    def _impossible(self) -> Iterator[Claim]:
+        """C N = 0 and A N = N X make det(sI − X) a factor of every det(sI − A + LC); it does not divide φ."""
+        pair, variable = self._pair, self.plant.variable
+        quotient, rest = remainder(self.answer["polynomial"], pair.fixed_polynomial, variable)
+        N, X = pair.kernel, pair.restricted
+        values = {"A": pair.A, "C": pair.c, "N": N, "X": X, "phi": self.answer["polynomial"]}
+        e = Environment(variable=variable, values=values)
+        A, C, kernel, restricted = (letter(name, e) for name in ("A", "C", "N", "X"))
+        pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
+        yield Claim(relation(C @ kernel, Matrix.zeros(1, N.shape[1])), e, "C*N = 0")
+        yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
+        yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
+        phi = letter("phi", e)
+        yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")
+        yield Claim(relation(Term(Literal(rest), e), "!==", 0), e, "r is not zero")
+
+    @cached_property
+    def _pair(self) -> Pair:
+        return self.pair(self.plant)
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def verdict(self) -> str:
+        """`no` where φ cannot be assigned."""
+        if self.answer[self.letter] is None:
+            return "no"
+        return super().verdict
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """det 𝒪 (det 𝒞) of a design with a desired polynomial."""
+        if self.desired is None or self._pair.determinant.is_zero:
+            return ()
+        return (self._pair.determinant,)
+
+    @cached_property
+    def fixed_polynomial(self) -> Scalar:
+        """The polynomial of the modes that no gain moves."""
+        return self._pair.fixed_polynomial if self._pair.determinant.is_zero else Scalar.of(1)
+
+    @cached_property
+    def fixed_modes(self) -> tuple[Root, ...]:
+        """The modes that no gain moves."""
+        if self.fixed_polynomial.is_one:
+            return ()
+        return roots_of(self.fixed_polynomial, self.plant.variable)
+
+    @cached_property
+    def family(self) -> dict[str, Any] | None:
+        """The general gain where it is not unique: `parameters` and the gain with them; None where it is unique."""
+        gain = self.answer[self.letter]
+        if gain is None or self.desired is None or not self._pair.determinant.is_zero:
+            return None
+        N = self._pair.kernel
+        taken = self.plant.field.names + tuple(self.plant.symbols.signs) + gain.field.names
+        names = fresh_names("g", N.shape[1], taken)
+        free = Matrix.column([Scalar.symbol(name) for name in names])
+        return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal()}
+
+    @cached_property
+    def cases(self) -> tuple[Case, ...]:
+        """What is true where det 𝒪 (det 𝒞) vanishes: a gain that survives there, or none."""
+        desired = self.desired
+        if desired is None:
+            return ()
+        return strata(
+            self.plant,
+            self.existence,
+            lambda plant, values: type(self).of(plant, desired.substitute(values), self.method),
+        )
+
+    @cached_property
+    def stability(self) -> Stability:
+        """Whether the polynomial is stable, or where."""
+        plant = self.plant
+        return stability(
+            self.answer["polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete
+        )
+
+    @property
+    def stable_if(self) -> list[str]:
+        """The conditions of stability: none where it always holds, `False` where it never does."""
+        if self.stability.verdict == "no":
+            return ["False"]
+        solved = (as_inequality(value, self.plant.symbols.signs) for value in self.stability.positive)
+        return [f"{left} {operator} {right}" for left, operator, right in solved]
+
+    @cached_property
+    def roots(self) -> tuple[Root, ...]:
+        """The roots of the polynomial."""
+        return roots_of(self.answer["polynomial"], self.plant.variable)
+
+    @property
+    def report(self) -> Mapping[str, Any]:
+        """Poles, stability and fixed modes: the fields both tasks share."""
+        return {
+            "poles": self.roots,
+            "stable": self.stability.verdict,
+            "stable_if": self.stable_if,
+            "fixed_modes": self.fixed_modes,
+            "family": self.family,
+        }
+
+
+def working_pair(pair: Pair, desired: DesiredPolynomial) -> Pair:
+    """Return the pair over one context: plant and specification together."""
+    field = pair.A.field | pair.c.field
+    for factor in desired.factors:
+        field = field | Field.of([name for name in factor.field.names if name != desired.variable])
+    return Pair(pair.A.within(field), pair.c.within(field), pair.variable)
+
+
+def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
+    """Return the plant's matrices by their letters."""
+    m = plant.matrices
+    values: dict[str, Scalar | Matrix] = {"A": m.A}
+    if m.has_input:
+        values["B"] = m.B
+    if m.has_output:
+        values["C"] = m.C
+    if m.has_input and m.has_output:
+        values["D"] = m.D
+    return values
+
+
+def _signs_turned(pencil: Term) -> Term:
+    """Write sI − (A − LC) as sI − A + LC."""
+    assert isinstance(pencil.formula, Sum)  # noqa: S101 - built two lines above
+    first, last = pencil.formula.terms[:-1], pencil.formula.terms[-1]
+    assert isinstance(last, Negative)  # noqa: S101
+    inner = last.operand.terms if isinstance(last.operand, Sum) else (last.operand,)
+    turned = tuple(part.operand if isinstance(part, Negative) else Negative(part) for part in inner)
+    return Term(Sum((*first, *turned)), pencil.environment)
+
+
+def fresh_names(stem: str, count: int, taken: object) -> tuple[str, ...]:
+    """Return `stem1`, `stem2`, … that are not among the names taken."""
+    used = set(taken)  # type: ignore[call-overload]
+    names: list[str] = []
+    index = 1
+    while len(names) < count:
+        name = f"{stem}{index}"
+        if name not in used:
+            names.append(name)
+        index += 1
+    return tuple(names)
+
+
+def require_single(count: int, what: str, task: str) -> None:
+    """Raise `InputError` unless there is exactly one output (input)."""
+    if count != 1:
+        message = f"{task} here needs one {what}, the plant has {count}"
+        raise InputError(message, where="plant", repair=f"keep one {what}")

@@ -1,0 +1,281 @@
+"""The pages of gain design: canonical form (the recipe of S0, Example 4.1) and Ackermann's formula, on either side of duality."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symobs.analysis.observability import Controllability, Observability, RankResult
+from symobs.analysis.pages import factored_form, formula_of_factored, square_test
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude, Step
+from symobs.design.gain import GainDesign, fresh_names
+from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
+from symobs.formula import Exactly, Literal, Roots
+from symobs.formula.term import Term, block, product
+from symobs.method import Case
+from symobs.page import Page, predicate, relation, sentence
+from symobs.specification import DesiredPolynomial
+from symobs.stability import as_inequality
+
+#: A coefficient of φ with more terms than this gets a letter of its own on the page.
+_PLAIN_TERMS = 4
+
+
+@dataclass(frozen=True)
+class Side:
+    """The words and letters of one side: observers look at (C, A), state feedback at (A, B)."""
+
+    kind: str
+    gain: str
+    matrix: str
+    test: str
+    phi: str
+    coefficient: str
+    rank: type[RankResult]
+
+
+OBSERVER = Side("observer", "L", "O", "observability", "phi_o", "beta_", Observability)
+FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "phi_c", "alpha_", Controllability)
+
+
+def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
+    """Write how the gain is found, in the style of a method, and the check the reader is shown."""
+    if design.desired is None:
+        _given_gain(page, design, side)
+        return
+    _test(page, design, side, style)
+    if design.answer[side.gain] is None:
+        _impossible(page, design, side)
+        return
+    if not design.fixed_polynomial.is_one:
+        _with_fixed_modes(page, design, side)
+    else:
+        desired = name_coefficients(page, design, side)
+        if style == "canonical_form":
+            _canonical(page, desired, side)
+        else:
+            _ackermann(page, desired, side)
+    page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
+    _verified(page, design, side)
+    for case in design.cases:
+        _case(page, case, side)
+
+
+def closed_loop_matrix(page: Page, side: Side) -> Term:
+    """Return A − LC or A − BK."""
+    return page["A"] - (page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"])
+
+
+def error_determinant(page: Page, side: Side) -> Term:
+    """Return det(sI − A + LC) or det(sI − A + BK)."""
+    moved = page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"]
+    return (page.s @ page.identity(page.plant.order) - page["A"] + moved).apply("det")
+
+
+def define_test_matrix(page: Page, side: Side) -> None:
+    """Define 𝒪 or 𝒞 block by block."""
+    A, order = page["A"], page.plant.order
+    if side.gain == "L":
+        blocks = [[page["C"] @ A**k if k else page["C"]] for k in range(order)]
+    else:
+        blocks = [[A**k @ page["B"] if k else page["B"] for k in range(order)]]
+    page.define(side.matrix, block(blocks), say=f"{side.test}_matrix")
+
+
+def _is_canonical(page: Page) -> bool:
+    """Whether (A, B) is in controllable canonical form."""
+    m, order = page.plant.matrices, page.plant.order
+    chi = m.A.characteristic_polynomial(page.plant.variable)
+    return m.B == Matrix.unit(order, order - 1) and m.A == companion(chi.coefficients(page.plant.variable)[1:])
+
+
+def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
+    if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
+        return
+    if not page.knows(side.matrix):
+        define_test_matrix(page, side)
+        square_test(page, side.matrix, side.rank.of(page.plant, "rank"), side.test)
+    elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
+        return
+    if design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
+        page.conclude(f"assignable_{side.kind}")
+
+
+def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPolynomial:
+    """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
+    desired = design.desired
+    assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
+    variable, coefficients = desired.variable, desired.coefficients
+    grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
+    plain = page.value(desired.polynomial)
+    members = [plain] if len(desired.factors) == 1 else [grouped, plain]
+    if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
+        page.define(side.phi, *members, say=f"asks_{side.kind}")
+        return desired
+    taken = [*page.plant.symbols.signs, *page.plant.field.names, *desired.polynomial.field.names]
+    names = fresh_names(side.coefficient, len(coefficients), taken)
+    symbols = [Scalar.symbol(name) for name in names]
+    named = from_coefficients([Scalar.of(1), *symbols], variable)
+    for name, meaning in zip(names, coefficients, strict=True):
+        page.name_coefficient(name, meaning)
+    page.define(side.phi, grouped, page.value(named), say=f"asks_{side.kind}")
+    page.equal(*(relation(s, m) for s, m in zip(symbols, coefficients, strict=True)), say="coefficients")
+    return DesiredPolynomial(variable, (named,))
+
+
+def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
+    """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
+    plant, order = page.plant, page.plant.order
+    variable = plant.variable
+    wanted = [page.value(c) for c in reversed(desired.coefficients)]
+    if side.gain == "K" and _is_canonical(page):
+        chi = plant.matrices.A.characteristic_polynomial(variable)
+        found = chi.coefficients(variable)[1:]
+        page.remark(
+            "already_canonical",
+            relation(page["A"], companion(found)),
+            relation(page["B"], Matrix.unit(order, order - 1)),
+            chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
+        )
+        page.define("K", _difference(page, wanted, list(found)), say="difference_of_coefficients", answer=True)
+        return
+    A = page["A"].T if side.gain == "L" else page["A"]
+    matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
+    chi = plant.matrices.A.characteristic_polynomial(variable)
+    found = chi.coefficients(variable)[1:]
+    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
+    hankel = page.value(hankel_of(found))
+    V = page.define("V", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
+    page.define("V_inv", V.shown.inverse, say="inverse_of_V", determinant=relation(V.apply("det"), V.apply("det").shown))
+    row = _difference(page, wanted, list(found))
+    if side.gain == "L":
+        page.define_transposed("L", row @ page["V_inv"], row.shown @ page["V_inv"].shown, say="row_observer")
+    else:
+        page.define("K", row @ page["V_inv"], row.shown @ page["V_inv"].shown, say="row_state_feedback", answer=True)
+
+
+def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
+    entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
+    return block([entries])
+
+
+def _ackermann(page: Page, desired: DesiredPolynomial, side: Side) -> None:
+    """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
+    order = page.plant.order
+    unit = page.value(Matrix.unit(order, order - 1))
+    if side.gain == "L":
+        last = page.define("q", page["O"].inverse @ unit, say="last_column")
+    else:
+        last = page.define("q", unit.T @ page["Ctr"].inverse, say="last_row")
+    polynomial = page["A"].apply(f"{side.phi}_at")
+    factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
+    at = product(factors)
+    if side.gain == "L":
+        page.define("L", polynomial @ last, at @ last, say="ackermann_observer", answer=True)
+    else:
+        page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
+
+
+def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
+    """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
+    lead, *rest = factor.coefficients(page.plant.variable)
+    A, degree, order = page["A"], len(rest), page.plant.order
+    total = A**degree if lead.is_one else page.value(lead) @ A**degree
+    for index, coefficient in enumerate(rest):
+        if coefficient.is_zero:
+            continue
+        exponent = degree - 1 - index
+        body = A**exponent if exponent else page.identity(order)
+        negative = coefficient.is_constant and coefficient.fraction() < 0
+        size = -coefficient if negative else coefficient
+        term = body if size.is_one else page.value(size) @ body
+        total = total - term if negative else total + term
+    return total**power
+
+
+def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
+    """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
+    variable = page.plant.variable
+    polynomial, desired = design.fixed_polynomial, design.desired
+    assert desired is not None and design.family is not None  # noqa: S101, PT018 - fixed modes come with a family
+    roots = Roots(Literal(polynomial), roots_of(polynomial, variable))
+    page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
+    page.remark(f"fixed_but_wanted_{side.kind}", roots=roots)
+    page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
+    page.remark(f"family_{side.kind}", gain=page.value(design.family[side.gain]))
+
+
+def _impossible(page: Page, design: GainDesign, side: Side) -> None:
+    """The fixed modes are not among the poles asked for."""
+    polynomial = design.desired.polynomial if design.desired else design.answer["polynomial"]
+    fixed = page.value(design.fixed_polynomial)
+    page.conclude(f"impossible_{side.kind}", fixed=fixed, polynomial=page.value(polynomial))
+
+
+def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
+    """A gain is given: find its polynomial and say whether it is stable."""
+    gain = page.set(side.gain, design.answer[side.gain])
+    page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
+    closed = closed_loop_matrix(page, side)
+    page.equal(relation(closed, closed.shown))
+    polynomial = design.answer["polynomial"]
+    shown = factored_form(page, polynomial)
+    members = [error_determinant(page, side), page.value(polynomial)]
+    if len(polynomial.factors()[1]) > 1:
+        members.append(shown)
+    page.equal(relation(*members), say="its_polynomial", answer=True)
+    found = design.stability
+    time = "discrete" if page.plant.is_discrete else "continuous"
+    if found.verdict == "yes":
+        page.conclude(f"stable_{time}", predicate("stable", page.value(polynomial)))
+    elif found.verdict == "no":
+        page.conclude(f"unstable_{time}", predicate("unstable", page.value(polynomial)))
+    else:
+        inequalities = [as_inequality(value, page.plant.symbols.signs) for value in found.positive]
+        where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
+        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", page.value(polynomial)), where))
+
+
+def _verified(page: Page, design: GainDesign, side: Side) -> None:
+    desired = design.desired
+    assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
+    polynomial = page[side.phi].value
+    grouped = desired.grouped()
+    members = [error_determinant(page, side), page.value(polynomial)]
+    if len(desired.factors) > 1 and polynomial == desired.polynomial:
+        members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
+    page.verified("as_required", check=relation(*members))
+
+
+def _case(page: Page, case: Case, side: Side) -> None:
+    """Say what is true on a stratum."""
+    when = relation(case.when[0].expression, 0)
+    if not isinstance(case.result, GainDesign):
+        page.remark(f"undecided_{side.kind}", when=page.value(case.when[0].expression))
+        return
+    result = case.result
+    fixed = result.fixed_polynomial
+    modes = Roots(Literal(fixed), roots_of(fixed, page.plant.variable))
+    kernel, restricted = result._pair.kernel, result._pair.restricted  # noqa: SLF001 - the witness of the stratum
+    A = page["A"] if side.gain == "L" else page["A"].T
+    row = page["C"] if side.gain == "L" else page["B"].T
+    invariant = relation(A @ page.value(kernel), page.value(kernel) @ page.value(restricted))
+    unseen = relation(row @ page.value(kernel), Matrix.zeros(1, kernel.shape[1]))
+    steps: list[Step] = []
+    if result.answer[side.gain] is None:
+        steps.append(Conclude(sentence(f"case_no_{side.kind}", {"modes": modes}), (invariant, unseen)))
+    else:
+        own = design_gain_on(case, page, side)
+        key = f"case_survives_{side.kind}" if own else f"case_other_{side.kind}"
+        slots = {"modes": modes} if own else {"modes": modes, "gain": page.value(result.answer[side.gain])}
+        steps.append(Conclude(sentence(key, slots), (invariant, unseen)))
+    page.steps.append(CaseStep(when, tuple(case.substitution.items()), tuple(steps)))
+
+
+def design_gain_on(case: Case, page: Page, side: Side) -> bool:
+    """Whether the gain of the main line is still finite on the stratum."""
+    try:
+        page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
+    except ZeroDivisionError:
+        return False
+    return True

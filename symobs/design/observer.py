@@ -1,0 +1,151 @@
+"""The full-order (Luenberger) observer  x̂' = A x̂ + B u + L (y − C x̂ − D u),  error  ė = (A − LC) e."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, ClassVar
+
+from symobs.analysis.pages import given
+from symobs.design.assignment import Pair
+from symobs.design.canonical import canonical_gain
+from symobs.design.gain import GainDesign, require_single
+from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.exact import Matrix
+from symobs.formula import Environment
+from symobs.formula.term import Term, letter
+from symobs.method import Result, choose, method, task
+from symobs.page import Page, relation
+from symobs.specification import (
+    DesiredPolynomial,
+    GainText,
+    Name,
+    Poles,
+    PolynomialText,
+    desired_polynomial,
+    read_gain,
+    reject_both,
+)
+from symobs.system import StateSpace
+
+
+class ObserverDesign(GainDesign):
+    """An observer gain: det(sI − A + LC) = φ(s)."""
+
+    task: ClassVar[str] = "observer"
+    letter: ClassVar[str] = "L"
+
+    @staticmethod
+    def pair(plant: StateSpace) -> Pair:
+        """Return (A, C)."""
+        return Pair(plant.matrices.A, plant.matrices.C, plant.variable)
+
+    @staticmethod
+    def oriented(gain: Matrix) -> Matrix:
+        """Return the column itself."""
+        return gain
+
+    @staticmethod
+    def closed(environment: Environment) -> Term:
+        """Return A − LC."""
+        return letter("A", environment) - letter("L", environment) @ letter("C", environment)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """L, φ, and the observer x̂' = A x̂ + B_u u + B_y y."""
+        m, L = self.plant.matrices, self.answer["L"]
+        return {
+            "L": L,
+            "polynomial": self.answer["polynomial"],
+            "A": None if L is None else m.A - L @ m.C,
+            "B_u": None if L is None or not m.has_input else m.B - L @ m.D,
+            "B_y": L,
+            **self.report,
+        }
+
+    def write(self, page: Page) -> None:
+        """Write data, gain, and the observer with its error equation."""
+        given(page, ("observer", self.desired))
+        with page.section("observer"):
+            write_gain(page, self, OBSERVER, page_style(self.method, self.plant))
+            if self.answer["L"] is not None:
+                write_observer(page)
+
+
+def page_style(method_name: str, plant: StateSpace) -> str:
+    """Return whose page is written: canonical form for small plants unless a method was asked for."""
+    if method_name != "auto":
+        return method_name
+    return "canonical_form" if plant.order <= _CANONICAL_PAGES else "ackermann"
+
+
+_CANONICAL_PAGES = 4
+
+
+def write_observer(page: Page) -> None:
+    """Write the observer in both forms and its error equation, each line checked on signals."""
+    m = page.plant.matrices
+    A, C, L, x, x_hat, y = (page[name] for name in ("A", "C", "L", "x", "x_hat", "y"))
+    model, predicted = A @ x_hat, C @ x_hat
+    if m.has_input:
+        model = model + page["B"] @ page["u"]
+    innovation = y - predicted - page["D"] @ page["u"] if m.has_feedthrough else y - predicted
+    page.dynamics("x_hat", model + L @ innovation, say="observer_equation")
+    page.signal("e", page["x"] - page["x_hat"], silent=True)
+    closed = A - L @ C
+    page.equal(
+        relation(page["e"].derivative, closed @ page["e"], closed.shown @ page["e"]),
+        say="error_equation",
+        error=relation(page["e"], page["x"] - page["x_hat"]),
+    )
+    collected = closed.shown @ page["x_hat"]
+    if m.has_input:
+        driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
+        collected = collected + driven.shown @ page["u"]
+    page.equal(relation(page["x_hat"].derivative, collected + L.shown @ page["y"]), say="observer_collected", answer=True)
+
+
+@method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
+def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
+    pair = ObserverDesign.pair(plant)
+    if pair.determinant.is_zero:
+        return ObserverDesign.of(plant, desired, "canonical_form")
+    answer = {"L": canonical_gain(pair, desired), "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "canonical_form", answer, desired)
+
+
+@method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form")
+def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """L = φ(A) 𝒪⁻¹ eₙ."""
+    return ObserverDesign.of(plant, desired, "ackermann")
+
+
+@task
+def observer(  # noqa: PLR0913 - the keywords of the contract
+    plant: StateSpace,
+    *,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    L: GainText = None,
+    method: Name = "auto",  # noqa: F811 - the keyword's name is fixed
+) -> Result:
+    """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
+
+    plant         n states, one output; B may be missing
+    poles         n desired poles, closed under conjugation; or
+    polynomial    φ, monic of degree n; or
+    L             a given n×1 gain, whose polynomial, poles and stability are reported
+    Returns L (n×1), polynomial, A (A − LC), B_u (B − LD), B_y (L); where (C, A) is not observable either the family of
+    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    Source: S0, (4.18)-(4.20) and Theorem 4.4.
+    """
+    plant.require("C", task="observer")
+    require_single(plant.outputs, "output", "observer")
+    reject_both("L", L, poles, polynomial)
+    if L is not None:
+        return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
+    desired = desired_polynomial(plant, poles, polynomial)
+    assert desired is not None  # noqa: S101 - required
+    found: ObserverDesign = choose("observer", method, "ackermann").solve(plant, desired)
+    return found.renamed(method)

@@ -1,0 +1,166 @@
+"""The narrator: what follows what on a page."""
+
+from __future__ import annotations
+
+import pytest
+
+from symobs.derivation import Conclude, Define, Derivation, Equal, Given, Note, Section, Sentence, Step
+from symobs.errors import DerivationRejected
+from symobs.exact import Matrix
+from symobs.formula import Environment, Letter, Literal, Relation
+from symobs.phrases import PHRASES
+from symobs.render.blocks import Block, CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified, every
+from symobs.render.narrator import LABELS, narrate
+from tests import render_examples as example
+from tests.render_examples import document, equals, number, say, values
+
+A, C = Letter("A"), Letter("C")
+A_IS_ONE, A_IS_TWO = equals(A, values((1,))), equals(A, values((2,)))
+C_IS_ONE = equals(C, values((1,)))
+ONE = equals(number(1), number(1))
+TWO = equals(number(2), number(2))
+
+
+@pytest.fixture(autouse=True)
+def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
+    phrases = example.PHRASES | {
+        "test_small": "and so on",
+        "test_large": "Now",
+        "test_about": "with {A} as it is.",
+        "test_title": "A title.",
+    }
+    for key, phrase in phrases.items():
+        monkeypatch.setitem(PHRASES, key, phrase)
+
+
+def derivation(*steps: Step) -> Derivation:
+    return Derivation(steps, Environment())
+
+
+def told(*steps: Step) -> tuple[Block, ...]:
+    return narrate(document(derivation(*steps)))[1:]
+
+
+def section(*steps: Step) -> Section:
+    return Section(say("title"), steps)
+
+
+def test_the_page_to_aim_at_block_by_block() -> None:
+    kinds = [type(block) for block in narrate(example.target_document())]
+    assert kinds == [
+        Title,
+        *(Heading, Display, Paragraph),
+        *(Heading, Paragraph, Display, Verified),
+        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Verified),
+        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Paragraph, Drawing),
+        *(Heading, Paragraph, Display, Paragraph, Caution),
+    ]
+
+
+def test_every_word_comes_from_a_phrase_or_a_label() -> None:
+    words = " ".join([*PHRASES.values(), *LABELS.values(), "A − LC"]).replace("{", " ").replace("}", " ").split()
+    for block in every(narrate(example.target_document())[1:]):
+        for inline in getattr(block, "inlines", ()):
+            assert not isinstance(inline, str) or set(inline.split()) <= set(words)
+
+
+def test_a_derivation_with_a_false_line_is_not_told() -> None:
+    with pytest.raises(DerivationRejected):
+        told(Equal((equals(number(1), number(2)),)))
+
+
+def test_a_sentence_stands_before_its_display() -> None:
+    assert told(Equal((ONE,), say("large"))) == (Paragraph(("Now",)), Display((ONE,), closing="."))
+
+
+def test_displays_without_a_sentence_between_them_are_one() -> None:
+    assert told(Equal((ONE,)), Equal((TWO,))) == (Display((ONE, TWO), closing="."),)
+
+
+def test_a_box_ends_its_display() -> None:
+    blocks = told(Equal((ONE,)), Equal((TWO,), answer=True), Equal((ONE,)))
+    assert blocks == (Display((ONE, TWO), boxed=True), Display((ONE,), closing="."))
+
+
+def test_sentences_in_a_row_are_one_paragraph() -> None:
+    assert told(Conclude(say("large")), Note(say("small"))) == (Paragraph(("Now and so on",)),)
+
+
+@pytest.mark.parametrize(("key", "mark"), [("small", ","), ("large", ".")])
+def test_a_display_ends_as_the_sentence_after_it_asks(key: str, mark: str) -> None:
+    display, _ = told(Equal((ONE,)), Conclude(say(key)))
+    assert display == Display((ONE,), closing=mark)
+
+
+def test_silent_steps_are_not_shown_but_hold() -> None:
+    blocks = told(Given((A_IS_ONE,), silent=True), Define(equals(C, A), silent=True), Equal((C_IS_ONE,)))
+    assert blocks == (Display((C_IS_ONE,), closing="."),)
+
+
+def test_what_is_given_comes_first_with_the_remark_on_it() -> None:
+    remark = Note(say("about", A=A))
+    blocks = told(section(Equal((ONE,))), Given((A_IS_ONE,)), remark)
+    assert blocks[:3] == (
+        Heading("", ("Given.",)),
+        Display((A_IS_ONE,), closing=","),
+        Paragraph(("with ", A, " as it is.")),
+    )
+    assert blocks[3] == Heading("1.", ("A title.",))
+
+
+def test_what_is_given_is_said_once_on_a_page() -> None:
+    first = derivation(Given((A_IS_ONE,)), Note(say("about", A=A)))
+    second = derivation(Given((A_IS_ONE, C_IS_ONE)), Note(say("about", A=A)))
+    same = derivation(Given((C_IS_ONE,)))
+    assert narrate(document(first, second, same))[4:] == (Heading("", ("Given.",)), Display((C_IS_ONE,), closing="."))
+
+
+def test_another_value_is_given_again() -> None:
+    blocks = narrate(document(*(derivation(Given((given,))) for given in (A_IS_ONE, A_IS_TWO, A_IS_ONE))))
+    assert [block.relations for block in blocks if isinstance(block, Display)] == [(A_IS_ONE,), (A_IS_TWO,), (A_IS_ONE,)]
+
+
+def test_a_condition_keeps_its_place() -> None:
+    b = Literal(example.Scalar.symbol("b"))
+    condition = Relation((b, number(0)), ("!=",))
+    assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
+    assert told(Given((condition,), say("small"))) == (Paragraph(("and so on",)),)
+
+
+def test_sections_are_numbered_through_the_page_and_nest() -> None:
+    first = derivation(section(section(), section()), section())
+    blocks = narrate(document(first, derivation(section(section()))))
+    assert [block.number for block in blocks if isinstance(block, Heading)] == ["1.", "1.1.", "1.2.", "2.", "3.", "3.1."]
+
+
+def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
+    block = narrate(document(example.with_a_case()))[-1]
+    assert isinstance(block, CaseBlock)
+    assert block.label[0] == f"{LABELS['case']} "
+    assert block.blocks == (
+        Paragraph((PHRASES["test_case"],)),
+        Display((equals(C, values((1, 0))),), closing="."),
+    )
+
+
+def test_only_conventions_about_letters_used_are_stated() -> None:
+    title = narrate(example.target_document())[0]
+    assert isinstance(title, Title)
+    words = "".join(part if isinstance(part, str) else "·" for part in title.conventions)
+    assert words == "Conventions: ·, observer matrix ·, error ·."
+    assert narrate(document(derivation(Equal((ONE,)))))[0] == Title("", "", ())
+    gain = Define(equals(Letter("K"), Literal(Matrix.of([[1, 2]]))))
+    assert narrate(document(derivation(gain)))[0] == Title(
+        "", "", ("Conventions: ", equals(example.u, example.minus(example.times(example.K, example.x))), ".")
+    )
+
+
+@pytest.mark.parametrize(("source", "shown"), [("Chapter 4", "Chapter 4."), ("Chapter 4.", "Chapter 4."), (" ", "")])
+def test_the_source_is_a_sentence(source: str, shown: str) -> None:
+    title = narrate(document(source=source))[0]
+    assert title == Title("", shown, ())
+
+
+def test_a_slot_that_is_a_predicate_shows_its_subject() -> None:
+    stable = example.Predicate("never_zero", number(1))
+    assert told(Conclude(Sentence("test_about", (("A", stable),)))) == (Paragraph(("with ", number(1), " as it is.")),)
