@@ -11,7 +11,7 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
@@ -109,6 +109,10 @@ class Result:
     def _binding_conditions(self) -> tuple[Condition, ...]:
         """The conditions that make a verdict conditional: all but those of the domain."""
         return tuple(condition for condition in self.conditions if condition.kind != "domain")
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""
+        return replace(self, answer={**self.answer, name: value})
 
     def renamed(self, requested: str) -> Self:
         """Return this result under the method name that was asked for; `auto` writes the page it finds best."""

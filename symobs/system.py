@@ -395,6 +395,8 @@ def read_time(dt: object, symbols: Symbols) -> TimeDomain:
     if dt is False or dt is None or dt == 0:
         return Continuous()
     value = read_scalar(str(dt) if isinstance(dt, float) else dt, symbols, "plant.dt")
+    if value.is_zero:
+        return Continuous()
     if not value.is_constant or value.fraction() <= 0:
         message = f"{value} is not a sampling period"
         raise InputError(message, where="plant.dt", repair="write 0 for continuous time, true or a positive number")

@@ -19,6 +19,7 @@ from symobs.derivation import (
     Step,
 )
 from symobs.exact import Matrix, Scalar
+from symobs.exact.roots import roots_of
 from symobs.formula import (
     Apply,
     Block,
@@ -59,8 +60,8 @@ PHRASES = {
     "test_as_required": "{check}, as required.",
     "test_full_rank": "The observability matrix has full rank,",
     "test_dual": (
-        "so by Theorem 4.4 the poles of {closed} can be placed at will. We place them for the dual pair ({A}, {C}), whose "
-        "controllability matrix is {dual}:"
+        "so by Theorem 4.4 the poles of {closed} can be placed at will. We place them for the dual pair ({A}, {C}), "
+        "whose controllability matrix is {dual}:"
     ),
     "test_differences": (
         "With {phi}, the differences of coefficients, constant first, are {first} and {second}, hence"
@@ -167,8 +168,6 @@ def given() -> tuple[Step, ...]:
 
 
 def pole_list(factor: Scalar) -> Roots:
-    from symobs.exact.roots import roots_of
-
     polynomial = factor**2
     return Roots(Literal(polynomial), roots_of(polynomial, "s"))
 
@@ -234,7 +233,9 @@ def observer() -> Section:
 def compensator() -> Section:
     gains = plus(A, minus(times(B, K)), minus(times(L, C)))
     written = plus(
-        values((0, 1), (0, -1)), minus(values((0, 0), (4, 3))), minus(values((19, 0), (81, 0))),
+        values((0, 1), (0, -1)),
+        minus(values((0, 0), (4, 3))),
+        minus(values((19, 0), (81, 0))),
     )
     pole_polynomial = s**2 + 23 * s + 161
     row, column = values((4, 3)), values((19,), (81,))
@@ -263,7 +264,13 @@ def compensator() -> Section:
                 say("proper", polynomial=Literal(pole_polynomial)),
                 (Predicate("strictly_proper", Letter("F")), Predicate("stable", Letter("F"))),
             ),
-            Diagram("loop", (("plant", Quotient(number(1), times(Letter("s"), Literal(s + 1)))), ("compensator", Literal(transfer)))),
+            Diagram(
+                "loop",
+                (
+                    ("plant", Quotient(number(1), times(Letter("s"), Literal(s + 1)))),
+                    ("compensator", Literal(transfer)),
+                ),
+            ),
         ),
     )
 
@@ -271,9 +278,7 @@ def compensator() -> Section:
 def closed_loop() -> Section:
     P, F = Letter("P"), Letter("F")
     top, bottom = s**2 + 23 * s + 161, s**4 + 24 * s**3 + 184 * s**2 + 480 * s + 400
-    defect = Relation(
-        (plus(A, minus(times(B, K)), times(number(2), Identity(ORDER))), values((0, 0), (0, 0))), ("!=",)
-    )
+    defect = Relation((plus(A, minus(times(B, K)), times(number(2), Identity(ORDER))), values((0, 0), (0, 0))), ("!=",))
     return Section(
         say("closed_loop"),
         (

@@ -8,9 +8,12 @@ import unicodedata
 from typing import TYPE_CHECKING
 
 import pytest
+from jinja2 import UndefinedError
+from jinja2.sandbox import SecurityError
 
 from symobs.derivation import Derivation, Diagram, Equal, Note
 from symobs.exact import Scalar
+from symobs.exact.roots import roots_of
 from symobs.formula import Environment, Literal, Roots
 from symobs.phrases import PHRASES
 from symobs.render.escape import LETTERS, escape
@@ -23,10 +26,10 @@ from tests.render_examples import document, equals, number, say
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
-
-RequireTool = "Callable[[str], str]"
 s = Scalar.symbol("s")
-FAULTS = re.compile(r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|(?:Over|Under)full .*|Missing character.*)", re.MULTILINE)
+FAULTS = re.compile(
+    r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|(?:Over|Under)full .*|Missing character.*)", re.MULTILINE
+)
 
 
 @pytest.fixture(autouse=True)
@@ -91,7 +94,9 @@ def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> Non
     shown = [chr(code) for code in range(0xA1, 0x2300) if escape(chr(code)) not in {"", "?"}]
     words = "\n".join(escape(character) for character in [*characters, *shown])
     for style in ("", r"\bfseries "):
-        source = fill("article.tex", {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False})
+        source = fill(
+            "article.tex", {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False}
+        )
         assert faults(source) == []
 
 
@@ -141,8 +146,6 @@ def test_a_loop_fits_its_page_whatever_its_labels(degree: int, faults: Callable[
 
 
 def test_roots_in_a_sentence() -> None:
-    from symobs.exact.roots import roots_of
-
     polynomial = (s + 2) ** 2 * (s**2 + 40 * s + 800) * (s**2 + 2 * s - 1) * (s**2 + 1) * (s**3 + s + 1)
     roots = Roots(Literal(polynomial), roots_of(polynomial, "s"))
     page = page_with(Note(say("roots", roots=roots)))
@@ -174,16 +177,12 @@ def test_a_user_replaces_one_block(tmp_path: Path, faults: Callable[[str], list[
 
 
 def test_a_name_a_template_does_not_have_is_an_error(tmp_path: Path) -> None:
-    from jinja2 import UndefinedError
-
     (tmp_path / "sheet.tex").write_text(r"\VAR{titel}", encoding="utf-8")
     with pytest.raises(UndefinedError, match="titel"):
         typeset(document(), "sheet.tex", folder=tmp_path)
 
 
 def test_a_template_cannot_reach_into_python(tmp_path: Path) -> None:
-    from jinja2.sandbox import SecurityError
-
     (tmp_path / "sheet.tex").write_text(r"\VAR{title.__class__.__mro__}", encoding="utf-8")
     with pytest.raises(SecurityError):
         typeset(document(), "sheet.tex", folder=tmp_path)

@@ -117,7 +117,11 @@ def test_what_is_given_is_said_once_on_a_page() -> None:
 
 def test_another_value_is_given_again() -> None:
     blocks = narrate(document(*(derivation(Given((given,))) for given in (A_IS_ONE, A_IS_TWO, A_IS_ONE))))
-    assert [block.relations for block in blocks if isinstance(block, Display)] == [(A_IS_ONE,), (A_IS_TWO,), (A_IS_ONE,)]
+    assert [block.relations for block in blocks if isinstance(block, Display)] == [
+        (A_IS_ONE,),
+        (A_IS_TWO,),
+        (A_IS_ONE,),
+    ]
 
 
 def test_a_condition_keeps_its_place() -> None:
@@ -130,7 +134,14 @@ def test_a_condition_keeps_its_place() -> None:
 def test_sections_are_numbered_through_the_page_and_nest() -> None:
     first = derivation(section(section(), section()), section())
     blocks = narrate(document(first, derivation(section(section()))))
-    assert [block.number for block in blocks if isinstance(block, Heading)] == ["1.", "1.1.", "1.2.", "2.", "3.", "3.1."]
+    assert [block.number for block in blocks if isinstance(block, Heading)] == [
+        "1.",
+        "1.1.",
+        "1.2.",
+        "2.",
+        "3.",
+        "3.1.",
+    ]
 
 
 def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:

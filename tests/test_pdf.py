@@ -135,7 +135,7 @@ def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch,
     program(tmp_path / "pdflatex", f"sleep 100 &\necho $! > {number}\nwait")
     which = {"pdflatex": str(tmp_path / "pdflatex")}
     monkeypatch.setattr(pdf.shutil, "which", which.get)
-    with pytest.raises(TypesettingError, match="stopped after 0.5 seconds"):
+    with pytest.raises(TypesettingError, match=r"stopped after 0\.5 seconds"):
         compiled(article("x"), time_limit=0.5)
     assert ends(int(number.read_text(encoding="utf-8")))
 

@@ -139,5 +139,7 @@ def _cautions(page: Page, design: CompensatorDesign) -> None:
         if power > 1 and factor.degree(plant.variable) == 1:
             pole = -factor.coefficients(plant.variable)[1]
             offset = closed_loop_matrix(page, FEEDBACK) - page.value(pole) @ page.identity(plant.order)
-            page.caution("defective", pole=page.value(pole), matrix=relation(offset, offset.shown))
+            zero = Matrix.zeros(plant.order, plant.order)
+            facts = relation(offset, "!==", zero)
+            page.caution("defective", facts, pole=page.value(pole), matrix=relation(offset, offset.shown))
             return

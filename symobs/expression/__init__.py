@@ -47,7 +47,10 @@ def parse_matrix(value: object, names: Names = None, *, where: str = "") -> Matr
     """
     scope = Scope.of(names, None, where)
     rows = _rows_of_text(value, scope, where) if isinstance(value, str) else _rows_of_lists(value, scope, where)
-    real = [[_real(entry, _cell(where, i, j)) for j, entry in enumerate(row)] for i, row in enumerate(rows)]
+    real = [
+        [entry if isinstance(entry, Scalar) else _real(entry, _cell(where, i, j)) for j, entry in enumerate(row)]
+        for i, row in enumerate(rows)
+    ]
     excess = common_denominator_excess([entry for row in real for entry in row])
     if excess:
         raise BudgetExceeded(f"the common denominator of the matrix would build {excess}", where=where)

@@ -76,13 +76,15 @@ def _bounded(names: frozenset[str], degree: int, terms: int, bits: int) -> Size:
     return Size(names, degree, min(terms, monomials), bits)
 
 
+_ONE = Size(frozenset(), 0, 1, 1)
+
 Parts: TypeAlias = tuple[Size, Size]
 
 
 def parts(value: Number) -> Parts:
     """Return the sizes of numerator and denominator; of a complex number, over one denominator."""
     if isinstance(value, Scalar):
-        return Size.of(value), Size.of(value.denominator)
+        return Size.of(value), _ONE if value.denominator_part.is_one() else Size.of(value.denominator)
     (a, b), (c, d) = parts(value.real), parts(value.imaginary)
     return a * d + c * b, b * d
 
@@ -133,7 +135,7 @@ def power_size(base: Number, exponent: int) -> Parts:
 def common_denominator_excess(entries: Sequence[Scalar]) -> str:
     """Return what is too large about bringing these entries over one denominator, or nothing."""
     fractions = [entry for entry in entries if not entry.denominator_part.is_one()]
-    common, whole, spent = Size(frozenset(), 0, 1, 0), 1, 0
+    common, whole, spent = _ONE, 1, 0
     for denominator in dict.fromkeys(entry.denominator for entry in fractions):
         if denominator.is_constant:
             whole = lcm(whole, int(denominator.fraction()))

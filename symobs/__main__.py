@@ -1,0 +1,5 @@
+"""`python -m symobs`."""
+
+from symobs.cli import main
+
+main()

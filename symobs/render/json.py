@@ -1,0 +1,60 @@
+"""The JSON of results: schema `symobs/1`."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, ClassVar
+
+from symobs.face import to_json
+from symobs.method import Case, Document, Result, output_format
+
+SCHEMA = "symobs/1"
+
+
+@output_format
+class Json:
+    """One object a document, one object a task in it."""
+
+    name: ClassVar[str] = "json"
+    suffix: ClassVar[str] = ".json"
+
+    def render(self, document: Document) -> str:
+        """Return the document as indented JSON."""
+        results = [result_object(result) for result in document.results]
+        whole = {"schema": SCHEMA, "title": document.title, "results": results}
+        return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+
+
+def result_object(result: Result) -> dict[str, Any]:
+    """Return the object of one result: what every task has, then the task's own fields."""
+    answers = {name: to_json(value) for name, value in result.fields.items()}
+    return {
+        "task": result.task,
+        "method": result.method,
+        "verdict": result.verdict,
+        "conditions": [to_json(condition) for condition in result.conditions],
+        "condition_kinds": [condition.kind for condition in result.conditions],
+        "cases": [_case_object(case, answers) for case in result.cases],
+        "certificates": [
+            {"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates
+        ],
+        "symbols": _symbols(result),
+        **answers,
+        "in_convention": {"name": "standard", **answers},
+    }
+
+
+def _symbols(result: Result) -> dict[str, str]:
+    """Return every symbol of the result with its sign."""
+    names = set(result.plant.symbols.signs) | set(result.plant.field.names)
+    return {name: result.plant.symbols.sign(name) for name in sorted(names)}
+
+
+def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
+    """Return a stratum: when it holds, and what differs there."""
+    when = [to_json(condition) for condition in case.when]
+    if case.result is None:
+        return {"when": when, "verdict": "undecided"}
+    inner = {name: to_json(value) for name, value in case.result.fields.items()}
+    differing = {name: value for name, value in inner.items() if outer.get(name) != value}
+    return {"when": when, "verdict": case.result.verdict, **differing}
