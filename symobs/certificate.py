@@ -82,19 +82,27 @@ class Bounds:
 
     def __init__(self, environment: Environment) -> None:
         """Named coefficients enlarge what they stand in."""
-        self.larger = 1.0 + max((_size_of(v).above + _size_of(v).below for v in environment.coefficients.values()), default=0)
-        self.longer = max((_size_of(v).above_bits + _size_of(v).below_bits for v in environment.coefficients.values()), default=0)
+        self.larger = 1.0 + max(
+            (_size_of(v).above + _size_of(v).below for v in environment.coefficients.values()), default=0
+        )
+        self.longer = max(
+            (_size_of(v).above_bits + _size_of(v).below_bits for v in environment.coefficients.values()), default=0
+        )
 
     def leaf(self, value: Scalar | Matrix) -> Bound:
         size = _size_of(value)
         grown = size.above * self.longer, size.below * self.longer
-        return Bound(
-            size.above * self.larger + size.below * self.larger,
-            size.below * self.larger + size.above * self.larger,
-            size.above_bits + sum(grown),
-            size.below_bits + sum(grown),
-            size.shape,
-        ) if self.larger > 1 else size
+        return (
+            Bound(
+                size.above * self.larger + size.below * self.larger,
+                size.below * self.larger + size.above * self.larger,
+                size.above_bits + sum(grown),
+                size.below_bits + sum(grown),
+                size.shape,
+            )
+            if self.larger > 1
+            else size
+        )
 
     def shape(self, value: Bound) -> tuple[int, int] | None:
         return value.shape
@@ -144,8 +152,11 @@ class Bounds:
             return Bound(value.below, value.above, value.below_bits, value.above_bits)
         whole = self._determinant(value, value.shape[0])
         return Bound(
-            whole.above + whole.below, whole.above + whole.below, whole.above_bits + whole.below_bits,
-            whole.above_bits + whole.below_bits, value.shape,
+            whole.above + whole.below,
+            whole.above + whole.below,
+            whole.above_bits + whole.below_bits,
+            whole.above_bits + whole.below_bits,
+            value.shape,
         )
 
     def transpose(self, value: Bound) -> Bound:
@@ -166,7 +177,10 @@ class Bounds:
         height = sum((row[0].shape or (1, 1))[0] for row in rows)
         width = sum((part.shape or (1, 1))[1] for part in rows[0])
         return Bound(
-            max(p.above for p in parts) + below, below, max(p.above_bits for p in parts) + below_bits, below_bits,
+            max(p.above for p in parts) + below,
+            below,
+            max(p.above_bits for p in parts) + below_bits,
+            below_bits,
             (height, width),
         )
 
@@ -219,12 +233,15 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "!=":
         return _excluded_from_zero(difference, environment)
     sign = sign_of(difference, environment.signs)
-    return sign in {
-        ">": ("positive",),
-        ">=": ("positive", "nonnegative", "zero"),
-        "<": ("negative",),
-        "<=": ("negative", "nonpositive", "zero"),
-    }[operator]
+    return (
+        sign
+        in {
+            ">": ("positive",),
+            ">=": ("positive", "nonnegative", "zero"),
+            "<": ("negative",),
+            "<=": ("negative", "nonpositive", "zero"),
+        }[operator]
+    )
 
 
 def _as_scalar(value: Any) -> Scalar:
@@ -238,9 +255,7 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
     if never_zero(value, environment.signs):
         return True
     assumed = set(environment.assumed)
-    return all(
-        factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1]
-    )
+    return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
 
 
 def _holds_at_points(relation: Relation, environment: Environment) -> tuple[str, float]:

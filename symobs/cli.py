@@ -99,7 +99,7 @@ def _run(data: dict[str, Any], format_name: str, output: str | None) -> None:
 
 def _progress(found: Any) -> Any:
     """Return a reporter of the task being run, on a terminal with several tasks only."""
-    if not sys.stderr.isatty() or len(found.tasks) < 2:  # noqa: PLR2004 - several
+    if not sys.stderr.isatty() or len(found.tasks) < 2:
         return None
     return lambda name: click.echo(f"{name} …", err=True)
 
@@ -129,7 +129,9 @@ def _read(file: str) -> str:
                 raw = stream.read(MAX_BYTES + 1)
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(reason, where=file[:200], repair="give the path of a problem file, or - for standard input") from None
+        raise InputError(
+            reason, where=file[:200], repair="give the path of a problem file, or - for standard input"
+        ) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"
         raise InputError(message, where=file[:200], repair="keep one problem to a file")
@@ -176,7 +178,9 @@ def _umask() -> int:
 def _task_command(task: Any) -> click.Command:
     """Return the command of a task: the plant's options, then the task's keywords."""
     parameters: list[click.Parameter] = [
-        click.Option([f"--{name}", f"--{name.replace('_', '-')}"] if "_" in name else [f"--{name}"], help=f"plant: {name}")
+        click.Option(
+            [f"--{name}", f"--{name.replace('_', '-')}"] if "_" in name else [f"--{name}"], help=f"plant: {name}"
+        )
         for name in PLANT_OPTIONS
     ]
     parameters.append(
@@ -187,13 +191,17 @@ def _task_command(task: Any) -> click.Command:
 
         flags = [f"--{name}"] + ([f"--{name.replace('_', '-')}"] if "_" in name else [])
         parameters.append(click.Option([*flags, name], help=KINDS[kind]["description"]))
-    parameters.append(click.Option(["--format", "format_name"], default=None, help="latex (default), text, json, pdf, …"))
+    parameters.append(
+        click.Option(["--format", "format_name"], default=None, help="latex (default), text, json, pdf, …")
+    )
     parameters.append(click.Option(["-o", "--output", "output"], default=None, help="Write to this file."))
 
     def run(**options: Any) -> None:
         _run_task(task, options)
 
-    return click.Command(task.name, params=parameters, callback=run, help=task.function.__doc__, short_help=task.summary)
+    return click.Command(
+        task.name, params=parameters, callback=run, help=task.function.__doc__, short_help=task.summary
+    )
 
 
 def _run_task(task: Any, options: dict[str, Any]) -> None:
@@ -247,7 +255,9 @@ def schema() -> None:
 @cli.command()
 def conventions() -> None:
     """List the conventions a page can be written in."""
-    click.echo("standard: u = -K x_hat, observer matrix A - L C, error e = x - x_hat, compensator F in negative feedback")
+    click.echo(
+        "standard: u = -K x_hat, observer matrix A - L C, error e = x - x_hat, compensator F in negative feedback"
+    )
 
 
 def main() -> NoReturn:

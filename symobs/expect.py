@@ -38,7 +38,7 @@ def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str
             try:
                 if name not in _available(result):
                     message = f"{result.task} has no field {str(name)[:40]!r}"
-                    raise InputError(message, where=where, repair=f"known fields are {', '.join(_available(result))}")  # noqa: TRY301
+                    raise InputError(message, where=where, repair=f"known fields are {', '.join(_available(result))}")
                 if not met(result, name, value, where):
                     lines.append(f"{where}: expected {str(value)[:200]}, found {_shown(_found(result, name))}")
             except SymobsError as error:

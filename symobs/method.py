@@ -23,7 +23,7 @@ from symobs.page import Page
 
 if TYPE_CHECKING:
     from symobs.derivation import Derivation
-    from symobs.exact import Matrix, Scalar
+    from symobs.exact import Scalar
     from symobs.system import StateSpace
 
 Kind = TypeVar("Kind", bound=type)
@@ -300,4 +300,3 @@ def render(document: Document, format_name: str) -> str | bytes:
         raise UsageError(message, repair=f"use one of {', '.join(sorted(known))}")
     rendered: str | bytes = known[format_name].render(document)
     return rendered
-

@@ -42,14 +42,14 @@ LETTERS: dict[str, LetterForm] = {
     "y_hat": LetterForm(r"\hat y", "ŷ", "estimated output"),
     "s": LetterForm("{v}", "{v}", "variable"),
     "chi": LetterForm(r"\chi_A({v})", "χ_A({v})", "characteristic polynomial"),
-    "chi_K": LetterForm(r"\chi_{{A-BK}}({v})", "χ_(A-BK)({v})", "polynomial of the state feedback"),
-    "chi_L": LetterForm(r"\chi_{{A-LC}}({v})", "χ_(A-LC)({v})", "polynomial of the error"),
+    "chi_K": LetterForm(r"\chi_{A-BK}({v})", "χ_(A-BK)({v})", "polynomial of the state feedback"),
+    "chi_L": LetterForm(r"\chi_{A-LC}({v})", "χ_(A-LC)({v})", "polynomial of the error"),
     "phi": LetterForm(r"\varphi({v})", "φ({v})", "desired polynomial"),
-    "phi_c": LetterForm(r"\varphi_{{\mathrm c}}({v})", "φ_c({v})", "desired control polynomial"),
-    "phi_o": LetterForm(r"\varphi_{{\mathrm o}}({v})", "φ_o({v})", "desired observer polynomial"),
+    "phi_c": LetterForm(r"\varphi_{\mathrm c}({v})", "φ_c({v})", "desired control polynomial"),
+    "phi_o": LetterForm(r"\varphi_{\mathrm o}({v})", "φ_o({v})", "desired observer polynomial"),
     "F": LetterForm("F({v})", "F({v})", "compensator"),
     "P": LetterForm("P({v})", "P({v})", "plant"),
-    "G_cl": LetterForm(r"G_{{\mathrm{{cl}}}}({v})", "G_cl({v})", "closed loop"),
+    "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
 }
 
 FUNCTIONS: dict[str, tuple[str, str]] = {
@@ -70,10 +70,7 @@ OPERATORS: dict[str, tuple[str, str]] = {
     ">=": (r"\ge", "≥"),
 }
 
-GREEK = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi "
-    "chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
-).split()
+GREEK = ["alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi", "omicron", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega"]
 _GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
 _GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name not in {"omicron"}} | {"lam": r"\lambda", "omicron": "o"}
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -108,7 +105,7 @@ def _split(name: str) -> tuple[str, str, list[str]]:
 
 def letter_latex(name: str, variable: str) -> str:
     """Return a letter's LaTeX, its variable put in."""
-    return LETTERS[name].latex.replace("{v}", variable).replace("{{", "{").replace("}}", "}")
+    return LETTERS[name].latex.replace("{v}", variable)
 
 
 def letter_text(name: str, variable: str) -> str:

@@ -69,7 +69,8 @@ def predicate(name: str, subject: Member) -> Predicate:
 def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     """Return a phrase with its slots filled."""
     filled = tuple(
-        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly)) else formula_of(slot)) for name, slot in slots.items()
+        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly)) else formula_of(slot))
+        for name, slot in slots.items()
     )
     return Sentence(key, filled)
 
@@ -143,7 +144,7 @@ class Page:
         self.environment = self.environment.having(values={name: value})
         return self[name]
 
-    def define(  # noqa: PLR0913 - what a definition may carry
+    def define(
         self,
         name: str,
         *members: Member,
@@ -230,4 +231,3 @@ class Page:
         finally:
             inner, self.steps = self.steps, outer
             self.steps.append(Section(sentence(key, slots), tuple(inner)))
-

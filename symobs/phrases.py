@@ -28,6 +28,13 @@ PHRASES: dict[str, str] = {
     "control_polynomial": "The control polynomial is to be {polynomial}.",
     "observer_poles": "The observer poles are to be {poles}.",
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
+    # polynomials and transfer functions
+    "its_characteristic_polynomial": "It is",
+    "its_roots": "Its roots are {roots}.",
+    "its_transfer_function": "Adjugate over determinant gives",
+    "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
+    "its_poles": "Its poles are {roots}.",
+    "its_zeros": "Its zeros are {roots}.",
     # gains
     "assignable_observer": "So the poles of A − LC can be placed at will (Theorem 4.4).",
     "assignable_state_feedback": "So the poles of A − BK can be placed at will.",

@@ -140,9 +140,7 @@ def _parse_json(text: str) -> dict[str, Any]:
         return found
 
     try:
-        data = json.loads(
-            text, parse_float=Decimal, parse_constant=refuse_constant, object_pairs_hook=unique
-        )
+        data = json.loads(text, parse_float=Decimal, parse_constant=refuse_constant, object_pairs_hook=unique)
     except InputError:
         raise
     except (ValueError, RecursionError) as error:
@@ -158,15 +156,17 @@ def _parse_toml(text: str) -> dict[str, Any]:
     _guard(text)
     for number, line in enumerate(text.splitlines(), 1):
         head = line.split("=", 1)[0]
-        if head.count(".") > _MAX_DOTTED or len(head) > 2 * _MAX_DOTTED and "=" in line and "#" not in head:
+        if head.count(".") > _MAX_DOTTED or (len(head) > 2 * _MAX_DOTTED and "=" in line and "#" not in head):
             message = "a dotted key is too long"
             raise InputError(message, where=f"line {number}", repair="use the tables [plant] and [specification]")
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except (ValueError, RecursionError) as error:
         message = f"this is not TOML: {str(error)[:120]}"
-        repair = "YAML is not read: write `key = value` lines under [tables]" if _looks_like_yaml(text) else (
-            "write `key = value` lines, texts in quotes"
+        repair = (
+            "YAML is not read: write `key = value` lines under [tables]"
+            if _looks_like_yaml(text)
+            else ("write `key = value` lines, texts in quotes")
         )
         raise InputError(message, repair=repair) from None
 
@@ -216,14 +216,16 @@ def _known_part(specification: Mapping[str, Any], wanted: tuple[Task, ...]) -> d
     return {name: value for name, value in specification.items() if name in known}
 
 
-def _unknown_keys(table: Mapping[str, Any], known: Mapping[str, str] | tuple[str, ...], where: str) -> list[SymobsError]:
+def _unknown_keys(
+    table: Mapping[str, Any], known: Mapping[str, str] | tuple[str, ...], where: str
+) -> list[SymobsError]:
     from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
 
     found: list[SymobsError] = []
     for key in table:
         if key in known:
             continue
-        shown = key if len(key) <= 40 else key[:40] + "…"  # noqa: PLR2004 - keep messages short
+        shown = key if len(key) <= 40 else key[:40] + "…"
         near = get_close_matches(key[:64], list(known), 1)
         repair = f"did you mean {near[0]}?" if near else f"known keys are {', '.join(known)}"
         found.append(InputError(f"unknown key {shown!r}", where=where or "problem", repair=repair))
@@ -268,7 +270,9 @@ def _tasks(data: Mapping[str, Any]) -> tuple[Task, ...]:
     names = [entries] if isinstance(entries, str) else entries
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         message = "no task is named"
-        raise InputError(message, where="tasks", repair=f'write task = "observer"; known are {", ".join(sorted(known))}')
+        raise InputError(
+            message, where="tasks", repair=f'write task = "observer"; known are {", ".join(sorted(known))}'
+        )
     errors = [
         InputError(
             f"{name[:40]!r} is not a task", where=f"tasks[{i}]", repair=f"known tasks are {', '.join(sorted(known))}"
@@ -307,7 +311,7 @@ def schema() -> dict[str, Any]:
     for task in tasks().values():
         for name, kind in task.keywords.items():
             keywords.setdefault(name, {**KINDS[kind], "tasks": []})["tasks"].append(task.name)
-    plant = {name: matrix for name in "ABCD"} | {
+    plant = dict.fromkeys("ABCD", matrix) | {
         "transfer_function": {"type": "string"},
         "dt": {"description": "0 continuous, true or a positive value discrete"},
     }

@@ -77,7 +77,7 @@ class DesiredPolynomial:
         return DesiredPolynomial(self.variable, tuple(f.substitute(values) for f in self.factors), poles)
 
 
-def desired_polynomial(  # noqa: PLR0913 - two ways to say one thing, with their places for messages
+def desired_polynomial(
     plant: StateSpace,
     poles: object,
     polynomial: object,

@@ -23,6 +23,13 @@ class Stability:
     verdict: str
     positive: tuple[Scalar, ...] = ()
 
+    def inequalities(self, signs: Mapping[str, str]) -> list[str]:
+        """Return the conditions as texts: none where it always holds, `False` where it never does."""
+        if self.verdict == "no":
+            return ["False"]
+        solved = (as_inequality(value, signs) for value in self.positive)
+        return [f"{left} {operator} {right}" for left, operator, right in solved]
+
 
 def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> Stability:
     """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does."""

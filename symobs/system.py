@@ -67,7 +67,7 @@ class Symbols:
             name = key if isinstance(key, str) else str(key)
             if not isinstance(key, str):
                 objects[name] = key
-            place = f"{where}.{name if len(name) <= 40 else name[:40] + '…'}"  # noqa: PLR2004 - keep messages short
+            place = f"{where}.{name if len(name) <= 40 else name[:40] + '…'}"
             name = declared_name(name, place)
             details = entry if isinstance(entry, Mapping) else {"sign": entry}
             unknown = [str(k) for k in details if k not in {"sign", "latex"}]
@@ -165,7 +165,10 @@ def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
         message = f"rows of different lengths {sorted(lengths)}"
         raise ShapeMismatch(message, where=where, repair="give every row the same number of entries")
     return Matrix.of(
-        [[read_scalar(entry, symbols, f"{where}[{i}][{j}]") for j, entry in enumerate(row)] for i, row in enumerate(rows)]
+        [
+            [read_scalar(entry, symbols, f"{where}[{i}][{j}]") for j, entry in enumerate(row)]
+            for i, row in enumerate(rows)
+        ]
     )
 
 
@@ -200,7 +203,7 @@ class StateSpace:
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
 
-    def __init__(  # noqa: PLR0913 - the four matrices of a plant, fixed by the contract
+    def __init__(
         self,
         A: object,
         B: object = None,
@@ -314,22 +317,22 @@ class StateSpace:
         return matrix_to_sympy(getattr(self.matrices, name), self.symbols.objects)
 
     @property
-    def A(self) -> Any:  # noqa: N802 - the field's letter
+    def A(self) -> Any:
         """The state matrix as a SymPy `ImmutableMatrix`."""
         return self._face("A")
 
     @property
-    def B(self) -> Any:  # noqa: N802 - the field's letter
+    def B(self) -> Any:
         """The input matrix as a SymPy `ImmutableMatrix`."""
         return self._face("B")
 
     @property
-    def C(self) -> Any:  # noqa: N802 - the field's letter
+    def C(self) -> Any:
         """The output matrix as a SymPy `ImmutableMatrix`."""
         return self._face("C")
 
     @property
-    def D(self) -> Any:  # noqa: N802 - the field's letter
+    def D(self) -> Any:
         """The feedthrough matrix as a SymPy `ImmutableMatrix`."""
         return self._face("D")
 
@@ -409,7 +412,7 @@ def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
 
     def expect(name: str, wanted: str, came: Matrix) -> None:
         message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
-        errors.append(ShapeMismatch(message, where=f"plant.{name}", repair=f"give {name} with {wanted.split(',')[0]}"))
+        errors.append(ShapeMismatch(message, where=f"plant.{name}", repair=f"give {name} with {wanted.split(',', maxsplit=1)[0]}"))
 
     if A is None:
         return [InputError("A is missing", where="plant.A", repair='give the state matrix, for example "[0 1; 0 -1]"')]

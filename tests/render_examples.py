@@ -16,7 +16,6 @@ from symobs.derivation import (
     Note,
     Section,
     Sentence,
-    Step,
 )
 from symobs.exact import Matrix, Scalar
 from symobs.exact.roots import roots_of
@@ -54,13 +53,13 @@ PHRASES = {
     "test_closed_loop": "Closed loop.",
     "test_poles": "control poles {control} and observer poles {observer}.",
     "test_canonical": (
-        "The pair ({A}, {B}) is already in controllable canonical form, with {chi}, so the gain is the difference of "
+        "The pair ($A$, $B$) is already in controllable canonical form, with {chi}, so the gain is the difference of "
         "coefficients. The control poles ask for"
     ),
     "test_as_required": "{check}, as required.",
     "test_full_rank": "The observability matrix has full rank,",
     "test_dual": (
-        "so by Theorem 4.4 the poles of {closed} can be placed at will. We place them for the dual pair ({A}, {C}), "
+        "so by Theorem 4.4 the poles of $A - L C$ can be placed at will. We place them for the dual pair ($Aᵀ$, $Cᵀ$), "
         "whose controllability matrix is {dual}:"
     ),
     "test_differences": (
@@ -68,7 +67,7 @@ PHRASES = {
     ),
     "test_separation": "By the separation principle the compensator is",
     "test_where": "where",
-    "test_transfer": "Its transfer function from Y to −U, equation (4.25), is",
+    "test_transfer": "Its transfer function from $Y$ to $−U$, equation (4.25), is",
     "test_proper": "It is strictly proper and stable: both coefficients of {polynomial} are positive.",
     "test_plant": "With {plant},",
     "test_both": "so the poles are those of the state feedback and those of the observer, as (4.29) says they must be.",
@@ -140,7 +139,7 @@ def say(key: str, **slots: Formula | Fact | str) -> Sentence:
 
 
 def _environment() -> Environment:
-    known = {
+    known: dict[str, Scalar | Matrix] = {
         "A": Matrix.of([[0, 1], [0, -1]]),
         "B": Matrix.of([[0], [1]]),
         "C": Matrix.of([[1, 0]]),
@@ -156,15 +155,15 @@ def _environment() -> Environment:
 
 
 def target_derivation() -> Derivation:
-    steps = (*given(), state_feedback(), observer(), compensator(), closed_loop())
+    steps = (given(), state_feedback(), observer(), compensator(), closed_loop())
     return Derivation(steps, _environment())
 
 
-def given() -> tuple[Step, ...]:
+def given() -> Section:
     plant = equals(Derivative(x), plus(times(values((0, 1), (0, -1)), x), times(values((0,), (1,)), u)))
     output = equals(y, times(values((1, 0)), x))
     poles = say("poles", control=pole_list(s + 2), observer=pole_list(s + 10))
-    return Given((plant, output)), Note(poles)
+    return Section(Sentence("given"), (Given((plant, output)), Note(poles)))
 
 
 def pole_list(factor: Scalar) -> Roots:
@@ -182,7 +181,7 @@ def state_feedback() -> Section:
         (
             Define(
                 equals(Letter("phi_c"), squared(s + 2), Literal(phi)),
-                say("canonical", A=A, B=B, chi=equals(Letter("chi"), Literal(s**2 + s))),
+                say("canonical", chi=equals(Letter("chi"), Literal(s**2 + s))),
             ),
             Define(equals(K, gain, values((4, 3))), answer=True),
             Conclude(say("as_required", check=check), (check,), verified=True),
@@ -206,9 +205,6 @@ def observer() -> Section:
                 equals(Letter("V"), times(values((1, 0), (0, 1)), to_companion), to_companion),
                 say(
                     "dual",
-                    closed="A − LC",
-                    A=Transpose(A),
-                    C=Transpose(C),
                     dual=equals(Transpose(Letter("O")), Identity(ORDER)),
                 ),
             ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from jinja2 import UndefinedError
-from jinja2.sandbox import SecurityError
+from jinja2.exceptions import SecurityError
 
 from symobs.derivation import Derivation, Diagram, Equal, Note
 from symobs.exact import Scalar
@@ -119,8 +119,11 @@ def test_a_case_is_set_in_and_typeset(faults: Callable[[str], list[str]]) -> Non
 
 def test_the_fragment_stands_in_a_plain_document(faults: Callable[[str], list[str]]) -> None:
     fragment = LatexFragment().render(document(*example.target_document().derivations, example.with_a_case()))
-    packages = r"\usepackage{amsmath,amssymb,tikz}\usepackage[a4paper,margin=27mm]{geometry}\usetikzlibrary{positioning,arrows.meta}"
-    assert faults(rf"\documentclass[11pt]{{article}}{packages}\begin{{document}}{fragment}\end{{document}}") == []
+    preamble = r"""\documentclass[11pt,a4paper]{article}
+\usepackage{amsmath,amssymb,tikz}
+\usepackage[margin=27mm]{geometry}
+\usetikzlibrary{positioning,arrows.meta}"""
+    assert faults(rf"{preamble}\begin{{document}}{fragment}\end{{document}}") == []
 
 
 def test_nothing_is_loaded_for_a_drawing_that_is_not_there() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import stat
 import subprocess
 import time
@@ -12,7 +13,6 @@ import pytest
 
 from symobs.errors import TypesettingError
 from symobs.phrases import PHRASES
-from symobs.render import pdf
 from symobs.render.pdf import Pdf, compiled
 from tests import render_examples as example
 from tests.render_examples import document
@@ -125,7 +125,7 @@ def test_without_latexmk_pdflatex_runs_twice(
     calls = tmp_path / "calls"
     program(tmp_path / "pdflatex", f'echo once >> {calls}\nexec {require_tool("pdflatex")} "$@"')
     which = {"pdflatex": str(tmp_path / "pdflatex")}
-    monkeypatch.setattr(pdf.shutil, "which", which.get)
+    monkeypatch.setattr(shutil, "which", which.get)
     assert compiled(article("x")).startswith(b"%PDF-")
     assert calls.read_text(encoding="utf-8").split() == ["once", "once"]
 
@@ -134,7 +134,7 @@ def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch,
     number = tmp_path / "number"
     program(tmp_path / "pdflatex", f"sleep 100 &\necho $! > {number}\nwait")
     which = {"pdflatex": str(tmp_path / "pdflatex")}
-    monkeypatch.setattr(pdf.shutil, "which", which.get)
+    monkeypatch.setattr(shutil, "which", which.get)
     with pytest.raises(TypesettingError, match=r"stopped after 0\.5 seconds"):
         compiled(article("x"), time_limit=0.5)
     assert ends(int(number.read_text(encoding="utf-8")))
@@ -143,7 +143,7 @@ def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch,
 def test_tex_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     program(tmp_path / "pdflatex", "exit 1")
     which = {"pdflatex": str(tmp_path / "pdflatex")}
-    monkeypatch.setattr(pdf.shutil, "which", which.get)
+    monkeypatch.setattr(shutil, "which", which.get)
     with pytest.raises(TypesettingError, match="without an error in its log"):
         compiled(article("x"))
 

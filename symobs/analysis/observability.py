@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
+from symobs.analysis.pages import given, square_test
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
@@ -19,7 +20,6 @@ from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.analysis.pages import given, square_test
 from symobs.specification import Name
 from symobs.system import StateSpace
 
@@ -229,7 +229,7 @@ def controllability_rank(plant: StateSpace) -> Controllability:
 
 
 @task
-def observability(plant: StateSpace, *, method: Name = "auto") -> Result:  # noqa: F811 - the keyword's name is fixed
+def observability(plant: StateSpace, *, method: Name = "auto") -> Result:
     """Decide whether (C, A) is observable: rank [C; CA; …; CAⁿ⁻¹] = n.
 
     plant    n states, p ≥ 1 outputs; B and D do not matter
@@ -243,7 +243,7 @@ def observability(plant: StateSpace, *, method: Name = "auto") -> Result:  # noq
 
 
 @task
-def controllability(plant: StateSpace, *, method: Name = "auto") -> Result:  # noqa: F811 - the keyword's name is fixed
+def controllability(plant: StateSpace, *, method: Name = "auto") -> Result:
     """Decide whether (A, B) is controllable: rank [B, AB, …, Aⁿ⁻¹B] = n.
 
     plant    n states, m ≥ 1 inputs; C and D do not matter

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from symobs.conditions import never_zero, vanishing_factors
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
-from symobs.formula import Literal, Power, Product, Quotient, Relation, Roots
+from symobs.formula import Exactly, Literal, Power, Product, Quotient, Roots
 from symobs.formula.term import Term
-from symobs.page import Page, relation
+from symobs.page import Page, predicate, relation
+from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
     from symobs.analysis.observability import RankResult
@@ -92,7 +93,7 @@ def _power(factor: Scalar, exponent: int) -> Formula:
 def determinant_form(page: Page, value: Scalar) -> Term:
     """Return a determinant as its irreducible factors where it has several, else as it is."""
     unit, factors = value.factors()
-    if len(factors) < 2 and all(power == 1 for _, power in factors):  # noqa: PLR2004 - nothing to factor
+    if len(factors) < 2 and all(power == 1 for _, power in factors):
         return page.value(value)
     return page.term(formula_of_factored(Factored(unit, factors)))
 
@@ -135,11 +136,16 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.conclude(f"modes_{kind}", modes=Roots(Literal(polynomial), roots_of(polynomial, page.plant.variable)))
 
 
-def as_required(page: Page, left: Term, polynomial: Scalar, desired: DesiredPolynomial | None) -> Relation:
-    """Return det(…) = φ, multiplied out and, where that says more, factored as it was asked for."""
-    grouped = desired.grouped() if desired is not None else ()
-    if len(grouped) == 1 and grouped[0][1] == 1:
-        return relation(left, page.value(polynomial))
-    if not grouped:
-        return relation(left, page.value(polynomial))
-    return relation(left, page.value(polynomial), page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
+def say_stability(page: Page, polynomial: Scalar) -> None:
+    """Say whether a polynomial is stable, or exactly where."""
+    plant = page.plant
+    found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    time = "discrete" if plant.is_discrete else "continuous"
+    if found.verdict == "yes":
+        page.conclude(f"stable_{time}", predicate("stable", polynomial))
+    elif found.verdict == "no":
+        page.conclude(f"unstable_{time}", predicate("unstable", polynomial))
+    else:
+        inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
+        where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
+        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", polynomial), where))

@@ -209,7 +209,8 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
             continue
     inside = replace(environment, values=replaced)
     members = tuple(
-        Literal(member.value.substitute(substitution)) if isinstance(member, Literal) else member for member in when.members
+        Literal(member.value.substitute(substitution)) if isinstance(member, Literal) else member
+        for member in when.members
     )
     if verify(Relation(members, when.operators), inside)[0] == "":
         _reject(plain_relation(when, environment.variable))

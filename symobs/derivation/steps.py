@@ -6,7 +6,7 @@ A step says something about letters established before it, and carries the sente
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias, Union
+from typing import TypeAlias
 
 from symobs.exact import Scalar
 from symobs.formula import Fact, Formula, Relation
@@ -112,4 +112,4 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Union[Given, Define, Equal, Solve, Conclude, Note, Diagram, Case, Section]
+Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Case | Section

@@ -29,7 +29,7 @@ class Pair:
 
     @cached_property
     def determinant(self) -> Scalar:
-        """det 𝒪."""
+        """Det 𝒪."""
         return self.krylov.determinant
 
     @cached_property
@@ -66,7 +66,9 @@ class Pair:
         rank = len(pivots)
         if rank == 0:
             return Matrix.zeros(order, 1)
-        T = Matrix.block([[self.krylov.matrix.select(range(rank), range(order))], [unit_rows(order, independent_rows(N))]])
+        T = Matrix.block(
+            [[self.krylov.matrix.select(range(rank), range(order))], [unit_rows(order, independent_rows(N))]]
+        )
         inverse = T.inverse()
         A, c = T @ self.A @ inverse, self.c @ inverse
         part = Pair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)

@@ -161,7 +161,7 @@ class CompensatorDesign(Result):
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
 
     @property
-    def F_stable(self) -> str:  # noqa: N802 - the contract's name
+    def F_stable(self) -> str:
         """Whether the compensator itself is stable."""
         plant = self.plant
         denominator = self.answer["F"].denominator
@@ -217,9 +217,7 @@ def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:
 
 
 @method("compensator/separation", source="S0, section 4.3: separation principle, (4.23)-(4.29)")
-def separation(
-    plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
-) -> CompensatorDesign:
+def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
     """Design K as if x were known, design the observer, use x̂ for x."""
     feedback = StateFeedbackDesign.of(plant, control, "auto")
     estimator = ObserverDesign.of(plant, observer, "auto")
@@ -227,7 +225,7 @@ def separation(
 
 
 @task
-def compensator(  # noqa: PLR0913 - the keywords of the contract
+def compensator(
     plant: StateSpace,
     *,
     control_poles: Poles = None,
@@ -235,7 +233,7 @@ def compensator(  # noqa: PLR0913 - the keywords of the contract
     observer_poles: Poles = None,
     observer_polynomial: PolynomialText = None,
     observer: Name = "full",
-    method: Name = "auto",  # noqa: F811 - the keyword's name is fixed
+    method: Name = "auto",
 ) -> Result:
     """Design the observer-based compensator U = −F(s) Y with F(s) = K (sI − A + BK + LC − LDK)⁻¹ L.
 
@@ -254,7 +252,9 @@ def compensator(  # noqa: PLR0913 - the keywords of the contract
         message = f"{observer[:40]!r} is not an observer this version designs"
         raise InputError(message, where="specification.observer", repair='write "full"')
     chosen = choose("compensator", method, "separation")
-    control = desired_polynomial(plant, control_poles, control_polynomial, names=("control_poles", "control_polynomial"))
+    control = desired_polynomial(
+        plant, control_poles, control_polynomial, names=("control_poles", "control_polynomial")
+    )
     estimate = desired_polynomial(
         plant, observer_poles, observer_polynomial, names=("observer_poles", "observer_polynomial")
     )

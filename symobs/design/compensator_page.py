@@ -9,7 +9,7 @@ from symobs.design.gain_pages import FEEDBACK, OBSERVER, closed_loop_matrix, err
 from symobs.design.observer import page_style, write_observer
 from symobs.exact import Factored, Matrix, Root, Scalar, root_of_pole, roots_of
 from symobs.formula import Literal, Quotient, Roots
-from symobs.formula.term import Term, block
+from symobs.formula.term import block
 from symobs.page import Page, predicate, relation
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
 
 
 def _state_space(page: Page, design: CompensatorDesign) -> None:
-    """u = −K x̂ put into the observer: (4.23), (4.24)."""
+    """U = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
     A, B, C, K, L = (page[name] for name in "ABCKL")
     page.signal("u", -K @ page["x_hat"], say="separation")
@@ -107,7 +107,9 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
     """P/(1 + PF), multiplied out and factored."""
     numerator, characteristic = design.plant_transfer
     page.define("P", factored_form(page, numerator / characteristic), say="plant_transfer", closing=False)
-    page.diagram("loop", plant=factored_form(page, numerator / characteristic), compensator=page.value(design.answer["F"]))
+    page.diagram(
+        "loop", plant=factored_form(page, numerator / characteristic), compensator=page.value(design.answer["F"])
+    )
     form = design.closed_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))

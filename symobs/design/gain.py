@@ -20,7 +20,7 @@ from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
 from symobs.specification import DesiredPolynomial
-from symobs.stability import Stability, as_inequality, stability
+from symobs.stability import Stability, stability
 from symobs.system import StateSpace
 
 
@@ -119,7 +119,7 @@ class GainDesign(Result):
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """det 𝒪 (det 𝒞) of a design with a desired polynomial."""
+        """Det 𝒪 (det 𝒞) of a design with a desired polynomial."""
         if self.desired is None or self._pair.determinant.is_zero:
             return ()
         return (self._pair.determinant,)
@@ -164,17 +164,7 @@ class GainDesign(Result):
     def stability(self) -> Stability:
         """Whether the polynomial is stable, or where."""
         plant = self.plant
-        return stability(
-            self.answer["polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete
-        )
-
-    @property
-    def stable_if(self) -> list[str]:
-        """The conditions of stability: none where it always holds, `False` where it never does."""
-        if self.stability.verdict == "no":
-            return ["False"]
-        solved = (as_inequality(value, self.plant.symbols.signs) for value in self.stability.positive)
-        return [f"{left} {operator} {right}" for left, operator, right in solved]
+        return stability(self.answer["polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
 
     @cached_property
     def roots(self) -> tuple[Root, ...]:
@@ -187,7 +177,7 @@ class GainDesign(Result):
         return {
             "poles": self.roots,
             "stable": self.stability.verdict,
-            "stable_if": self.stable_if,
+            "stable_if": self.stability.inequalities(self.plant.symbols.signs),
             "fixed_modes": self.fixed_modes,
             "family": self.family,
         }

@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symobs.analysis.observability import Controllability, Observability, RankResult
-from symobs.analysis.pages import factored_form, formula_of_factored, square_test
+from symobs.analysis.pages import factored_form, formula_of_factored, say_stability, square_test
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Step
 from symobs.design.gain import GainDesign, fresh_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
-from symobs.formula import Exactly, Literal, Roots
+from symobs.formula import Literal, Roots
 from symobs.formula.term import Term, block, product
 from symobs.method import Case
-from symobs.page import Page, predicate, relation, sentence
+from symobs.page import Page, relation, sentence
 from symobs.specification import DesiredPolynomial
-from symobs.stability import as_inequality
 
 #: A coefficient of φ with more terms than this gets a letter of its own on the page.
 _PLAIN_TERMS = 4
@@ -86,7 +85,7 @@ def _is_canonical(page: Page) -> bool:
     """Whether (A, B) is in controllable canonical form."""
     m, order = page.plant.matrices, page.plant.order
     chi = m.A.characteristic_polynomial(page.plant.variable)
-    return m.B == Matrix.unit(order, order - 1) and m.A == companion(chi.coefficients(page.plant.variable)[1:])
+    return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
 
 
 def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
@@ -146,7 +145,9 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
     V = page.define("V", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
-    page.define("V_inv", V.shown.inverse, say="inverse_of_V", determinant=relation(V.apply("det"), V.apply("det").shown))
+    page.define(
+        "V_inv", V.shown.inverse, say="inverse_of_V", determinant=relation(V.apply("det"), V.apply("det").shown)
+    )
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
         page.define_transposed("L", row @ page["V_inv"], row.shown @ page["V_inv"].shown, say="row_observer")
@@ -224,16 +225,7 @@ def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
     if len(polynomial.factors()[1]) > 1:
         members.append(shown)
     page.equal(relation(*members), say="its_polynomial", answer=True)
-    found = design.stability
-    time = "discrete" if page.plant.is_discrete else "continuous"
-    if found.verdict == "yes":
-        page.conclude(f"stable_{time}", predicate("stable", page.value(polynomial)))
-    elif found.verdict == "no":
-        page.conclude(f"unstable_{time}", predicate("unstable", page.value(polynomial)))
-    else:
-        inequalities = [as_inequality(value, page.plant.symbols.signs) for value in found.positive]
-        where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", page.value(polynomial)), where))
+    say_stability(page, polynomial)
 
 
 def _verified(page: Page, design: GainDesign, side: Side) -> None:

@@ -102,7 +102,9 @@ def write_observer(page: Page) -> None:
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected = collected + driven.shown @ page["u"]
-    page.equal(relation(page["x_hat"].derivative, collected + L.shown @ page["y"]), say="observer_collected", answer=True)
+    page.equal(
+        relation(page["x_hat"].derivative, collected + L.shown @ page["y"]), say="observer_collected", answer=True
+    )
 
 
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
@@ -122,13 +124,13 @@ def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
 
 
 @task
-def observer(  # noqa: PLR0913 - the keywords of the contract
+def observer(
     plant: StateSpace,
     *,
     poles: Poles = None,
     polynomial: PolynomialText = None,
     L: GainText = None,
-    method: Name = "auto",  # noqa: F811 - the keyword's name is fixed
+    method: Name = "auto",
 ) -> Result:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
 

@@ -86,13 +86,13 @@ def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDes
 
 
 @task
-def state_feedback(  # noqa: PLR0913 - the keywords of the contract
+def state_feedback(
     plant: StateSpace,
     *,
     poles: Poles = None,
     polynomial: PolynomialText = None,
     K: GainText = None,
-    method: Name = "auto",  # noqa: F811 - the keyword's name is fixed
+    method: Name = "auto",
 ) -> Result:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s).
 

@@ -51,7 +51,7 @@ class Complex:
 
     def __pow__(self, exponent: int) -> Complex:
         if exponent < 0:
-            return Complex.of(1) / self ** -exponent
+            return Complex.of(1) / self**-exponent
         power, base = Complex.of(1), self
         while exponent:
             if exponent % 2:

@@ -36,7 +36,7 @@ def echelon(matrix: Matrix, relation: Scalar | None = None) -> tuple[tuple[int, 
     return tuple(pivots), tuple(kernel)
 
 
-def _kernel_vector(  # noqa: PLR0913 - the parts of one echelon form
+def _kernel_vector(
     free: int,
     pivots: list[int],
     reduced: list[list[fmpz_mpoly]],

@@ -59,7 +59,7 @@ class Krylov:
 
     @cached_property
     def determinant(self) -> Scalar:
-        """det 𝒪, as it comes: common factors with nothing cancelled but within the fraction itself."""
+        """Det 𝒪, as it comes: common factors with nothing cancelled but within the fraction itself."""
         if not self.field.names:
             return self.matrix.determinant()
         bottom = self.field.one

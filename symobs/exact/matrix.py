@@ -102,9 +102,7 @@ class Matrix:
         if isinstance(self.table, fmpz_mat):
             table = ring.rows_of(self.table, field)
         elif not field.names:
-            return Matrix.of(
-                [[Scalar.of(entry.fraction()) for entry in row] for row in self.rows], self.shape[1]
-            )
+            return Matrix.of([[Scalar.of(entry.fraction()) for entry in row] for row in self.rows], self.shape[1])
         else:
             table = tuple(tuple(field.lift(entry, self.field) for entry in row) for row in self.table)
         return Matrix(field, table, field.lift(self.denominator, self.field), self.shape)
@@ -157,7 +155,9 @@ class Matrix:
         """Return a text that differs between different matrices in practice."""
         if isinstance(self.table, fmpz_mat):
             return f"{self.table.tolist()} {self.denominator}"
-        return " ".join(Scalar(self.field, entry, self.denominator).fingerprint() for row in self.table for entry in row)
+        return " ".join(
+            Scalar(self.field, entry, self.denominator).fingerprint() for row in self.table for entry in row
+        )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Matrix):
@@ -207,9 +207,7 @@ class Matrix:
         a, b = a._scaled(left), b._scaled(right)
         if isinstance(a.table, fmpz_mat) and isinstance(b.table, fmpz_mat):
             return Matrix(field, a.table + b.table, denominator, self.shape)
-        table = tuple(
-            tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(a.table, b.table, strict=True)
-        )
+        table = tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(a.table, b.table, strict=True))
         return Matrix(field, table, denominator, self.shape)
 
     def __neg__(self) -> Matrix:
@@ -259,7 +257,7 @@ class Matrix:
         return power
 
     @cached_property
-    def T(self) -> Matrix:  # noqa: N802 - the field's letter for the transpose
+    def T(self) -> Matrix:
         """The transpose."""
         shape = (self.shape[1], self.shape[0])
         if isinstance(self.table, fmpz_mat):
@@ -316,9 +314,7 @@ class Matrix:
             message = "the matrix is singular"
             raise ZeroDivisionError(message)
         adjugate = ring.transpose(
-            tuple(
-                tuple(ring.cofactor(a.table, j, i, field) for i in range(a.shape[0])) for j in range(a.shape[0])
-            )
+            tuple(tuple(ring.cofactor(a.table, j, i, field) for i in range(a.shape[0])) for j in range(a.shape[0]))
         )
         table = ring.product(adjugate, b.table, field.zero)
         return Matrix(field, table, determinant * b.denominator, b.shape)._scaled(a.denominator)

@@ -23,7 +23,7 @@ PRIME_BITS = 62
 PRIMES_BELOW = 4 * 10**16
 
 
-class VanishingDenominator(Exception):  # noqa: N818 - not an error: the caller draws another point
+class VanishingDenominator(Exception):
     """A denominator is zero at this point."""
 
 
@@ -77,6 +77,8 @@ def block(rows: list[list[nmod_mat | int]], prime: int) -> nmod_mat:
     """Return the matrix of blocks; integers are 1×1 blocks."""
     lines: list[list[int]] = []
     for parts in rows:
-        tables = [[[part]] if isinstance(part, int) else [list(map(int, row)) for row in part.tolist()] for part in parts]
+        tables = [
+            [[part]] if isinstance(part, int) else [list(map(int, row)) for row in part.tolist()] for part in parts
+        ]
         lines += [[entry for table in tables for entry in table[i]] for i in range(len(tables[0]))]
     return nmod_mat(len(lines), len(lines[0]), [entry for line in lines for entry in line], prime)

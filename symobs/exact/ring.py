@@ -112,9 +112,7 @@ def _by_elimination(rows: Rows, field: Field) -> fmpz_mpoly:
 
 def cofactor(rows: Rows, row: int, column: int, field: Field) -> fmpz_mpoly:
     """Return (−1)^(row+column) times the minor without that row and column."""
-    rest = tuple(
-        tuple(entry for j, entry in enumerate(line) if j != column) for i, line in enumerate(rows) if i != row
-    )
+    rest = tuple(tuple(entry for j, entry in enumerate(line) if j != column) for i, line in enumerate(rows) if i != row)
     value = determinant(rest, field)
     return -value if (row + column) % 2 else value
 

@@ -143,7 +143,7 @@ def rational_sqrt(value: Fraction) -> Fraction | None:
 def _square_part(number: int) -> tuple[int, int]:
     """Return (a, b) with number = a² b, small square factors taken out."""
     outside, divisor = 1, 2
-    while divisor * divisor <= number and divisor < 10_000:  # noqa: PLR2004 - larger squares stay under the root
+    while divisor * divisor <= number and divisor < 10_000:
         while number % (divisor * divisor) == 0:
             number //= divisor * divisor
             outside *= divisor
@@ -164,9 +164,9 @@ def roots_of(polynomial: Scalar, variable: str) -> tuple[Root, ...]:
 def _roots_of_factor(factor: Scalar, variable: str) -> list[Root]:
     coefficients = factor.coefficients(variable)
     zero = Scalar.of(0)
-    if len(coefficients) == 2:  # noqa: PLR2004 - a linear factor
+    if len(coefficients) == 2:
         return [Root(factor, variable, -coefficients[1], zero, 1)]
-    if len(coefficients) == 3:  # noqa: PLR2004 - a quadratic factor
+    if len(coefficients) == 3:
         centre = -coefficients[1] / 2
         radicand = centre * centre - coefficients[2]
         return [Root(factor, variable, centre, radicand, sign) for sign in (1, -1)]

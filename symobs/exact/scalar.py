@@ -119,9 +119,7 @@ class Scalar:
         if not isinstance(other, (Scalar, int, Fraction)):
             return NotImplemented
         a, b, field = self._pair(other)
-        return Scalar.reduced(
-            field, a.numerator_part * b.numerator_part, a.denominator_part * b.denominator_part
-        )
+        return Scalar.reduced(field, a.numerator_part * b.numerator_part, a.denominator_part * b.denominator_part)
 
     __rmul__ = __mul__
 
@@ -130,9 +128,7 @@ class Scalar:
         if not b.numerator_part:
             message = "division by zero"
             raise ZeroDivisionError(message)
-        return Scalar.reduced(
-            field, a.numerator_part * b.denominator_part, a.denominator_part * b.numerator_part
-        )
+        return Scalar.reduced(field, a.numerator_part * b.denominator_part, a.denominator_part * b.numerator_part)
 
     def __rtruediv__(self, other: int | Fraction) -> Scalar:
         return Scalar.of(other) / self

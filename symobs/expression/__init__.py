@@ -121,7 +121,7 @@ def _exact(value: object, where: str) -> Number:
         raise InputError(f"{_kind(value)} is not an exact number", where=where, repair=repair)
     if not isinstance(value, numbers.Rational):
         repair = f'write an exact value such as "{_exact_text(value)}"'
-        raise InexactInput(f"{value} is a float", where=where, repair=repair)
+        raise InexactInput(f"{shown(str(value))} is a float", where=where, repair=repair)
     above, below = int(value.numerator), int(value.denominator)
     if max(abs(above), below) >= 10**MOST_DIGITS:
         raise BudgetExceeded(f"a number has more than {MOST_DIGITS} digits", where=where)
@@ -135,7 +135,7 @@ def _exact_text(value: numbers.Complex) -> str:
         exact = str(Fraction(decimals))
     except ValueError:  # complex, infinite or not a number
         return "1/10" if isinstance(value, numbers.Real) else decimals
-    return exact if len(exact) <= _LONGEST_REPAIR else decimals
+    return exact if len(exact) <= _LONGEST_REPAIR else shown(decimals)
 
 
 def _real(value: Number, where: str) -> Scalar:

@@ -34,8 +34,7 @@ GRAMMAR = r"""
 row: sum (_COMMA sum)*
 ?sum: product | sum ADD product -> binary
 ?product: signed | product MULTIPLY signed -> binary
-?signed: power | ADD signed -> sign
-?power: atom | atom POWER signed -> power
+?signed: atom | ADD signed -> sign | atom POWER signed -> power
 ?atom: VALUE | _OPEN sum _CLOSE | LEFT row (_END row)* _RIGHT -> brackets | FUNCTION _OPEN sum _CLOSE -> call
 %declare VALUE FUNCTION ADD MULTIPLY POWER LEFT _RIGHT _OPEN _CLOSE _COMMA _END
 """

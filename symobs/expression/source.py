@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from symobs.errors import ExpressionError, InputError
 
 MOST_SHOWN = 60
-_SHOWN_BEFORE = 24
+#: An error that points into a text shows this much of it, more than half of it before the place.
+_EXCERPT, _BEFORE = 40, 24
 
 
 def shown(text: str, most: int = MOST_SHOWN) -> str:
@@ -29,8 +30,8 @@ class Source:
         """Return the error that says `message` of the character at `position`."""
         before = self.text[:position]
         line, column = before.count("\n") + 1, position - before.rfind("\n")
-        start = max(0, position - _SHOWN_BEFORE)
-        excerpt = shown(("…" if start else "") + self.text[start:])
+        start = max(0, position - _BEFORE)
+        excerpt = shown(("…" if start else "") + self.text[start:], _EXCERPT)
         place = f"line {line}, column {column}" if "\n" in self.text else f"column {column}"
         facts |= {"text": excerpt, "line": line, "column": column}
         return kind(f'{message}, at {place} of "{excerpt}"', where=self.where, repair=repair, **facts)

@@ -315,7 +315,9 @@ def _polynomial_at(polynomial: object, value: Any, environment: Environment, ari
     identity = arithmetic.leaf(Matrix.identity(shape[0]))
     total = arithmetic.leaf(Matrix.zeros(*shape))
     for coefficient in polynomial.coefficients(environment.variable):
-        total = arithmetic.add(arithmetic.matmul(total, value), arithmetic.scale(identity, arithmetic.leaf(coefficient)))
+        total = arithmetic.add(
+            arithmetic.matmul(total, value), arithmetic.scale(identity, arithmetic.leaf(coefficient))
+        )
     return total
 
 

@@ -7,7 +7,7 @@ environment (`evaluate`), and is printed only by a format.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias, Union
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from symobs.exact import Matrix, Root, Scalar
@@ -100,9 +100,7 @@ class Derivative:
     operand: Formula
 
 
-Formula: TypeAlias = Union[
-    Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative
-]
+Formula: TypeAlias = Letter | Literal | Identity | Sum | Negative | Product | Power | Transpose | Quotient | Apply | Block | Derivative
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +138,7 @@ class Exactly:
     where: tuple[Relation, ...]
 
 
-Fact: TypeAlias = Union[Relation, Predicate, Roots, Exactly]
+Fact: TypeAlias = Relation | Predicate | Roots | Exactly
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

@@ -81,7 +81,7 @@ class Term:
         return self._with(Power(self.formula, -1))
 
     @property
-    def T(self) -> Term:  # noqa: N802 - the field's letter for the transpose
+    def T(self) -> Term:
         """The transpose."""
         return self._with(Transpose(self.formula))
 

@@ -11,7 +11,19 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Generic
 
 from symobs.exact import Matrix, Scalar
-from symobs.formula import Apply, Block, Derivative, Formula, Literal, Negative, Power, Product, Quotient, Sum, Transpose
+from symobs.formula import (
+    Apply,
+    Block,
+    Derivative,
+    Formula,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    Transpose,
+)
 from symobs.render.glyphs import B, Level
 from symobs.render.printer import factors, signed_terms
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix

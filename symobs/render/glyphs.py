@@ -80,7 +80,7 @@ class Glyphs(ABC, Generic[B]):
 
     @abstractmethod
     def fraction(self, above: B, below: B) -> B:
-        """above / below."""
+        """Above / below."""
 
     @abstractmethod
     def raised(self, base: B, exponent: int) -> B:

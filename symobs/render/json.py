@@ -35,9 +35,7 @@ def result_object(result: Result) -> dict[str, Any]:
         "conditions": [to_json(condition) for condition in result.conditions],
         "condition_kinds": [condition.kind for condition in result.conditions],
         "cases": [_case_object(case, answers) for case in result.cases],
-        "certificates": [
-            {"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates
-        ],
+        "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
         "symbols": _symbols(result),
         **answers,
         "in_convention": {"name": "standard", **answers},

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
 from symobs.exact import Scalar
 from symobs.formula import Formula, Relation
+from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
 from symobs.render import widths
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
@@ -218,12 +218,12 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(box.width + widths.FRAME, Level.ATOM, rf"\answer{{{box.source}}}", max(1, box.height))
 
     def stacked(self, lines: Sequence[LatexBox]) -> LatexBox:
-        r"""`aligned`, all lines but the first indented."""
+        r"""Lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
-        body = r"\\".join(f"&{line.source}" for line in indented)
+        body = r"\\[4pt]".join(rf"\displaystyle {line.source}" for line in indented)
         width = max(line.width for line in indented)
-        return LatexBox(width, Level.SUM, rf"\begin{{aligned}}{body}\end{{aligned}}", 2)
+        return LatexBox(width, Level.SUM, rf"\begin{{array}}{{@{{}}l@{{}}}}{body}\end{{array}}", 2)
 
     def punctuation(self, mark: str) -> LatexBox:
         """A comma or full stop."""

@@ -139,7 +139,8 @@ class Layout(Generic[B]):
         space = room - max(sign.width, indent.width) - frame - (indent.width if framed else 0.0)
         lines = breaker.lines(breaker.pieces(member, space, head), space, space)
         if framed and len(lines) <= _LONGEST_FRAME:
-            return [printer.joined([sign, printer.framed(printer.stacked(lines))], Level.SUM)]
+            answer = lines[0] if len(lines) == 1 else printer.stacked(lines)
+            return [printer.joined([sign, printer.framed(answer)], Level.SUM)]
         first, *rest = lines
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 

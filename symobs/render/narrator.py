@@ -6,12 +6,10 @@ displays without a sentence between them on one line, what is given said once, s
 
 from __future__ import annotations
 
-import string
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.formula import Predicate
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
 from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     Block,
@@ -27,11 +25,12 @@ from symobs.render.blocks import (
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.derivation import Sentence, Step
+    from symobs.derivation import Step
     from symobs.formula import Formula, Relation
     from symobs.method import Document
     from symobs.render.printer import Printer
@@ -80,29 +79,44 @@ class _Page:
 
     def tell(self, steps: Sequence[Step]) -> None:
         """Tell a derivation: what is given first."""
-        statement, rest = _statement(steps)
-        self.tell_given(statement)
-        for step in rest:
-            self.tell_step(step)
+        self.tell_given([step for step in steps if _is_statement(step)])
+        for step in steps:
+            if not _is_statement(step):
+                self.tell_step(step)
 
-    def tell_given(self, statement: Sequence[Given | Note]) -> None:
-        """Show what is given and not on the page already, then the sentences about it."""
-        relations = [relation for step in statement if isinstance(step, Given) for relation in step.relations]
-        news = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
-        sentences = [step.sentence for step in statement if step.sentence and step.sentence not in self.stated]
-        self.given.update((relation.members[0], relation) for relation in news)
-        self.stated.update(sentences)
-        if news or sentences:
+    def tell_given(self, statement: Sequence[Step]) -> None:
+        """Tell what is given, as far as it is not on the page already."""
+        news = [new for step in statement for new in self.news(step)]
+        if news:
             self.blocks.append(Heading("", (PHRASES["given"],)))
-            self.show(news)
-            for sentence in sentences:
-                self.say(sentence)
+            for step in news:
+                self.tell_step(step)
+
+    def news(self, step: Step) -> Iterator[Step]:
+        """Yield what a step of the statement adds to the page."""
+        match step:
+            case Section(steps=steps):
+                for inner in steps:
+                    yield from self.news(inner)
+            case Given(silent=True):
+                pass
+            case Given(relations=relations):
+                new = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
+                self.given.update((relation.members[0], relation) for relation in new)
+                if new:
+                    yield replace(step, relations=new)
+            case Conclude(sentence=sentence) | Note(sentence=sentence):
+                if sentence and sentence not in self.stated:
+                    self.stated.add(sentence)
+                    yield step
+            case _:
+                yield step
 
     def tell_step(self, step: Step) -> None:  # noqa: C901 - one case a kind of step
         match step:
             case Given(relations=relations, sentence=sentence, silent=silent):
                 self.say(sentence)
-                self.show(() if silent or sentence else relations)
+                self.show(() if silent or (sentence and _is_condition(step)) else relations)
             case Define(relation=relation, sentence=sentence, answer=answer, silent=silent):
                 self.say(sentence)
                 self.show(() if silent else (relation,), boxed=answer)
@@ -112,23 +126,25 @@ class _Page:
             case Solve(equation=equation, solution=solution, sentence=sentence):
                 self.say(sentence)
                 self.show((equation, solution))
-            case Conclude(sentence=sentence, verified=True):
-                self.blocks.append(Verified(_filled(sentence)))
+            case Conclude(sentence=Sentence() as sentence, verified=True):
+                self.blocks.append(Verified(filled(sentence)))
             case Note(sentence=sentence, caution=True):
-                self.blocks.append(Caution(LABELS["caution"], _filled(sentence)))
+                self.blocks.append(Caution(LABELS["caution"], filled(sentence)))
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.say(sentence)
             case Diagram(name=name, labels=labels):
                 self.blocks.append(Drawing(name, labels))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
+            case Section() if _is_statement(step):
+                self.tell_given((step,))
             case Section(title=title, steps=steps):
                 self.tell_section(title, steps)
 
     def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
         self.numbers[-1] += 1
         number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
-        self.blocks.append(Heading(number, _filled(title)))
+        self.blocks.append(Heading(number, filled(title)))
         self.numbers.append(0)
         for step in steps:
             self.tell_step(step)
@@ -145,9 +161,9 @@ class _Page:
         """Add a sentence, to the paragraph before it where there is one."""
         if sentence is None:
             return
-        inlines = _filled(sentence)
+        inlines = filled(sentence)
         if self.blocks and isinstance(last := self.blocks[-1], Paragraph):
-            self.blocks[-1] = Paragraph(_joined((*last.inlines, " ", *inlines)))
+            self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
         else:
             self.blocks.append(Paragraph(inlines))
 
@@ -161,18 +177,11 @@ class _Page:
             self.blocks.append(Display(relations, boxed))
 
 
-def _statement(steps: Sequence[Step]) -> tuple[list[Given | Note], list[Step]]:
-    """Split off the data shown and the remarks that directly follow them; a condition assumed keeps its place."""
-    statement: list[Given | Note] = []
-    rest: list[Step] = []
-    for before, step in zip([None, *steps], steps, strict=False):
-        is_datum = isinstance(step, Given) and not step.silent and not _is_condition(step)
-        is_remark_on_it = isinstance(step, Note) and not step.caution and statement[-1:] == [before]
-        if isinstance(step, Given | Note) and (is_datum or is_remark_on_it):
-            statement.append(step)
-        else:
-            rest.append(step)
-    return statement, rest
+def _is_statement(step: Step) -> bool:
+    """Whether a step states the problem: a section titled as given, or data on their own."""
+    if isinstance(step, Section):
+        return step.title.key == "given"
+    return isinstance(step, Given) and not _is_condition(step)
 
 
 def _is_condition(step: Given) -> bool:
@@ -187,35 +196,12 @@ def _title(document: Document) -> Title:
     listed: list[Inline] = [f"{LABELS['conventions']} "]
     for convention in conventions:
         listed += [*convention, ", "]
-    return Title(document.title, _as_sentence(document.source), _joined((*listed[:-1], ".")))
+    return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
 
 
 def _as_sentence(text: str) -> str:
     text = text.strip()
     return f"{text}." if text and text[-1] not in ".!?" else text
-
-
-def _filled(sentence: Sentence) -> Inlines:
-    """Return the phrase of a sentence with its slots filled; of a predicate the phrase names the subject."""
-    slots = dict(sentence.slots)
-    inlines: list[Inline] = []
-    for text, name, _, _ in string.Formatter().parse(PHRASES[sentence.key]):
-        inlines.append(text)
-        if name is not None:
-            value = slots[name]
-            inlines.append(value.subject if isinstance(value, Predicate) else value)
-    return _joined(inlines)
-
-
-def _joined(inlines: Sequence[Inline]) -> Inlines:
-    """Return the same inlines, neighbouring texts made one and empty ones left out."""
-    joined: list[Inline] = []
-    for inline in inlines:
-        if isinstance(inline, str) and joined and isinstance(before := joined[-1], str):
-            joined[-1] = before + inline
-        elif inline != "":
-            joined.append(inline)
-    return tuple(joined)
 
 
 def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:

@@ -107,7 +107,7 @@ class Printer(Glyphs[B]):
 
     def product(self, formula: Product) -> B:
         """Juxtaposed factors, with a dot before a number that is not the first."""
-        (negative, body), = signed_terms(formula, self.variable, flat=False)
+        ((negative, body),) = signed_terms(formula, self.variable, flat=False)
         parts = self.factor_boxes(body)
         sign = [self.sign(negative=True, leading=True)] if negative else []
         return self.joined([*sign, *self.spaced(parts)], Level.SUM if negative else Level.PRODUCT)
@@ -133,7 +133,7 @@ class Printer(Glyphs[B]):
 
     def quotient(self, formula: Quotient) -> B:
         """A fraction; the minus of its numerator stands in front."""
-        (negative, body), = signed_terms(formula, self.variable, flat=False)
+        ((negative, body),) = signed_terms(formula, self.variable, flat=False)
         if isinstance(body, Quotient):
             box = self.fraction(self.typeset(body.numerator), self.typeset(body.denominator))
         else:
@@ -147,7 +147,7 @@ class Printer(Glyphs[B]):
         return self.at_least(Level.ATOM, self.typeset(formula))
 
     def application(self, function: str, argument: Formula) -> B:
-        """det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
         is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
@@ -195,10 +195,10 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
             written = spelled(value, variable)
             return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
         case Product((first, *rest)):
-            (negative, body), = signed_terms(first, variable, flat=False)
+            ((negative, body),) = signed_terms(first, variable, flat=False)
             return [(True, Product((body, *rest)))] if negative else [(False, formula)]
         case Quotient(above, below):
-            (negative, body), = signed_terms(above, variable, flat=False)
+            ((negative, body),) = signed_terms(above, variable, flat=False)
             return [(True, Quotient(body, below))] if negative else [(False, formula)]
         case _:
             return [(False, formula)]

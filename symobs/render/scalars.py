@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 #: Beyond this many terms a polynomial is not factored for the sake of its looks.
 FACTORED_UP_TO = 120
 
+#: A common denominator of more terms is not put in front of a matrix.
+FRONT_UP_TO = 40
+
 _PARENTHESES = 0.4
 
 Monomial = tuple[int, tuple[tuple[str, int], ...]]
@@ -51,7 +54,7 @@ def spelled(value: Scalar, variable: str) -> Formula:
 
 
 def _rational_function(value: Scalar, variable: str) -> Formula:
-    """numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
+    """Numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
     above, below = value.numerator, value.denominator
     negative = _leads_with_minus(above, variable)
     fraction = Quotient(spelled(-above if negative else above, variable), _denominator(below, variable))
@@ -163,7 +166,9 @@ def _rank(term: Monomial) -> tuple[int, list[tuple[str, int]]]:
 
 
 def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
-    factors = [_power(Literal(_symbol(name)), exponent) for name, exponent in sorted(powers, key=lambda p: p[0].lower())]
+    factors = [
+        _power(Literal(_symbol(name)), exponent) for name, exponent in sorted(powers, key=lambda p: p[0].lower())
+    ]
     parts = [factor for factor in factors if factor is not None]
     if abs(coefficient) != 1 or not parts:
         parts.insert(0, Literal(Scalar.of(abs(coefficient))))
@@ -251,7 +256,9 @@ def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
     broken = [entry for entry in matrix.entries if not entry.denominator.is_one]
     if len(broken) < 2:
         return Literal(matrix)
-    below = _least_common_multiple([entry.denominator for entry in broken])
+    below = _least_common_multiple({entry.denominator: None for entry in broken})
+    if below is None:
+        return Literal(matrix)
     kept = sum(size(spelled(entry, variable)) for entry in matrix.entries)
     cleared = sum(size(spelled(entry * below, variable)) for entry in matrix.entries)
     if cleared + size(spelled(below, variable)) >= kept:
@@ -260,8 +267,11 @@ def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
     return Product((front, Literal(matrix * below)))
 
 
-def _least_common_multiple(values: Sequence[Scalar]) -> Scalar:
+def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
+    """The least common multiple, unless it grows too long to be written."""
     multiple = Scalar.of(1)
     for value in values:
         multiple = multiple * (value / multiple).numerator
+        if multiple.size > FRONT_UP_TO:
+            return None
     return multiple

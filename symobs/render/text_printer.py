@@ -6,9 +6,9 @@ import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_text
 from symobs.exact import Scalar
 from symobs.formula import Formula, Relation
+from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_text
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
 from symobs.render.printer import Printer

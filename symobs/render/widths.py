@@ -25,8 +25,7 @@ _MATH_ITALIC = {
 }
 _PUNCTUATION = {"(": 0.39, ")": 0.39, "[": 0.28, "]": 0.28, ",": 0.45, ".": 0.28, " ": 0.0, "-": 1.0, "+": 1.0}
 _WIDTHLESS = set(
-    "hat dot ddot bar tilde vec check acute grave breve mathcal mathrm mathit mathbf mathsf mathbb text operatorname "
-    "left right big bigl bigr displaystyle textstyle boldsymbol mathstrut".split()
+    ["hat", "dot", "ddot", "bar", "tilde", "vec", "check", "acute", "grave", "breve", "mathcal", "mathrm", "mathit", "mathbf", "mathsf", "mathbb", "text", "operatorname", "left", "right", "big", "bigl", "bigr", "displaystyle", "textstyle", "boldsymbol", "mathstrut"]
 )
 _COMMANDS = {"iota": 0.36, "det": 1.4, "quad": 1.0, "qquad": 2.0, "psi": 0.69, "Omega": 0.73, "prime": 0.28}
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[\^_{}]|.", re.DOTALL)

@@ -1,0 +1,93 @@
+"""The transfer function  P(s) = C (sI − A)⁻¹ B + D  with its poles and zeros."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import Any, ClassVar
+
+from symobs.analysis.pages import factored_form, given
+from symobs.certificate import Claim
+from symobs.errors import InputError
+from symobs.exact import Scalar, roots_of, transfer
+from symobs.formula import Environment, Literal, Quotient, Roots
+from symobs.formula.term import identity, letter
+from symobs.method import Result, choose, method, task
+from symobs.page import Page, relation
+from symobs.specification import Name
+from symobs.stability import monic
+from symobs.system import StateSpace
+
+
+class TransferFunction(Result):
+    """P with P(s) = C (sI − A)⁻¹ B + D."""
+
+    task: ClassVar[str] = "transfer_function"
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the definition."""
+        m = self.plant.matrices
+        values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "P": self.answer["transfer_function"]}
+        e = Environment(variable=self.plant.variable, values=values)
+        resolvent = (letter("s", e) @ identity(self.plant.order, e) - letter("A", e)).inverse
+        response = letter("C", e) @ resolvent @ letter("B", e)
+        if m.has_feedthrough:
+            response = response + letter("D", e)
+        yield Claim(relation(letter("P", e), response), e)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The reduced function, its poles and zeros."""
+        P: Scalar = self.answer["transfer_function"]
+        variable = self.plant.variable
+        return {
+            "transfer_function": P,
+            "poles": roots_of(P.denominator, variable),
+            "zeros": roots_of(P.numerator, variable) if P else (),
+        }
+
+    def write(self, page: Page) -> None:
+        """Write adjugate over determinant, then the reduced function."""
+        given(page)
+        P: Scalar = self.answer["transfer_function"]
+        m, variable = page.plant.matrices, self.plant.variable
+        with page.section("transfer_function"):
+            A, B, C = page["A"], page["B"], page["C"]
+            pencil = page.s @ page.identity(self.plant.order) - A
+            characteristic = m.A.characteristic_polynomial(variable)
+            adjugate = page.value(pencil.value.adjugate())
+            one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
+            stages = [C @ pencil.inverse @ B, one_over @ C.shown @ adjugate @ B.shown]
+            if m.has_feedthrough:
+                stages = [stage + page["D"] for stage in stages]
+            page.define("P", *stages, factored_form(page, P), say="its_transfer_function", answer=True, closing=False)
+            if P.denominator.degree(variable) < self.plant.order:
+                page.conclude("cancelled", order=page.value(P.denominator.degree(variable)))
+            for part, key in ((P.denominator, "its_poles"), (P.numerator, "its_zeros")):
+                roots = roots_of(part, variable) if part else ()
+                if roots and all(root.is_closed for root in roots):
+                    page.conclude(key, roots=Roots(Literal(monic(part, variable)), roots))
+
+
+@method("transfer_function/resolvent", source="definition")
+def resolvent(plant: StateSpace) -> TransferFunction:
+    """C adj(sI − A) B over det(sI − A), as a bordered determinant, reduced."""
+    m = plant.matrices
+    numerator, characteristic = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
+    return TransferFunction(plant, "resolvent", {"transfer_function": numerator / characteristic})
+
+
+@task
+def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros.
+
+    plant    n states, one input, one output
+    Returns transfer_function, poles, zeros (both with multiplicity).  Raises `InputError` where B or C is missing.
+    Source: S0, chapter 4.
+    """
+    plant.require("B", "C", task="transfer_function")
+    if (plant.inputs, plant.outputs) != (1, 1):
+        message = f"the plant has {plant.inputs} inputs and {plant.outputs} outputs"
+        raise InputError(message, where="plant", repair="keep one input and one output")
+    found: Result = choose("transfer_function", method, "resolvent").solve(plant)
+    return found
