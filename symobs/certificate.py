@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 #: Claims whose values have at most this many terms are checked exactly.
-EXACT_UP_TO = 160
+EXACT_UP_TO = 60
 #: The error bound every certificate at random points stays below.
 ERROR_GOAL = 2.0**-50
 _DRAWS = 20

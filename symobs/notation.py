@@ -29,7 +29,6 @@ LETTERS: dict[str, LetterForm] = {
     "O": LetterForm(r"\mathcal O", "𝒪", "observability matrix"),
     "Ctr": LetterForm(r"\mathcal C", "𝒞", "controllability matrix"),
     "V": LetterForm("V", "V", "transformation to canonical form"),
-    "V_inv": LetterForm("V^{-1}", "V⁻¹", "its inverse"),
     "A_c": LetterForm(r"A_{\mathrm c}", "A_c", "compensator matrix"),
     "A_cl": LetterForm(r"A_{\mathrm{cl}}", "A_cl", "closed-loop matrix"),
     "q": LetterForm("q", "q", "auxiliary vector"),
@@ -122,11 +121,14 @@ class Theorem:
 
 
 THEOREMS: dict[str, Theorem] = {
-    "observability_rank": Theorem("the algebraic test for observability", "Theorem 4.2"),
-    "duality": Theorem("the duality theorem", "Theorem 4.1"),
-    "observer_poles": Theorem("the pole assignment theorem for observers", "Theorem 4.4"),
-    "separation": Theorem("the separation principle", "section 4.3"),
-    "compensator": Theorem("the transfer function of the compensator", "equation (4.25)"),
-    "closed_loop": Theorem("the closed loop in plant state and error", "equation (4.29)"),
-    "ackermann": Theorem("Ackermann's formula", "Ackermann 1972, Regelungstechnik 20, 297–300"),
+    "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
+    "duality": Theorem("duality", "S0, Theorem 4.1"),
+    "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),
+    "canonical_form": Theorem("placement through canonical form", "S0, Example 4.1"),
+    "ackermann": Theorem("Ackermann's formula", "J. Ackermann, Regelungstechnik 20 (1972), 297-300"),
+    "observer": Theorem("full-order observer", "S0, (4.18)-(4.20)"),
+    "error": Theorem("error equation", "S0, (4.19)"),
+    "separation": Theorem("separation principle", "S0, (4.23)-(4.24)"),
+    "compensator": Theorem("compensator in transfer form", "S0, (4.25)"),
+    "closed_loop": Theorem("closed loop in state and error", "S0, (4.26)-(4.29)"),
 }

@@ -1,15 +1,15 @@
 """Every sentence a derivation can say, in one place: the language of the prose lives here and nowhere else.
 
-A phrase is plain text with slots in braces; a slot is filled by a formula or fact (set as mathematics) or by a word.
-Steps name a phrase by its key; a step whose slots do not match its phrase cannot be made.
+A phrase is plain text with slots in braces, filled by a formula or fact (set as mathematics) or by a word; between dollar
+signs stand formulas in the letters of `notation` that only name things.  Steps name a phrase by its key; a step whose slots do not match its
+phrase cannot be made.  `RESTS_ON` says which theorem a phrase appeals to, so that the page can name its source.
 """
 
 from __future__ import annotations
 
 import string
 
-PHRASES: dict[str, str] = {
-    # titles
+TITLES: dict[str, str] = {
     "given": "Given.",
     "observability": "Observability.",
     "controllability": "Controllability.",
@@ -19,113 +19,148 @@ PHRASES: dict[str, str] = {
     "observer": "Observer.",
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
-    # data
-    "realised": "We realise it in controllable canonical form.",
+}
+
+DATA: dict[str, str] = {
+    "realised": "In controllable canonical form this is",
     "declared": "Throughout, {sign}.",
-    "desired_poles": "The desired poles are {poles}.",
-    "desired_polynomial": "The desired polynomial is {polynomial}.",
+    "desired_poles": "The poles asked for are {poles}.",
+    "desired_polynomial": "The polynomial asked for is {polynomial}.",
     "control_poles": "The control poles are to be {poles}.",
     "control_polynomial": "The control polynomial is to be {polynomial}.",
     "observer_poles": "The observer poles are to be {poles}.",
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
-    # polynomials and transfer functions
-    "its_characteristic_polynomial": "It is",
+}
+
+POLYNOMIALS: dict[str, str] = {
+    "its_characteristic_polynomial": "The characteristic polynomial is",
     "its_roots": "Its roots are {roots}.",
     "its_transfer_function": "Adjugate over determinant gives",
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
-    "its_poles": "Its poles are {roots}.",
-    "its_zeros": "Its zeros are {roots}.",
-    # gains
-    "assignable_observer": "So the poles of A − LC can be placed at will (Theorem 4.4).",
-    "assignable_state_feedback": "So the poles of A − BK can be placed at will.",
+    "its_poles": "The poles are {roots}.",
+    "its_zeros": "The zeros are {roots}.",
+    "stable_continuous": "All its roots lie in the open left half plane: it is stable.",
+    "stable_discrete": "All its roots lie inside the unit circle: it is stable.",
+    "unstable_continuous": "Not all its roots lie in the open left half plane: it is not stable.",
+    "unstable_discrete": "Not all its roots lie inside the unit circle: it is not stable.",
+    "stable_if_continuous": "All its roots lie in the open left half plane exactly where {where}.",
+    "stable_if_discrete": "All its roots lie inside the unit circle exactly where {where}.",
+}
+
+RANK: dict[str, str] = {
+    "observability_matrix": "The observability matrix is",
+    "controllability_matrix": "The controllability matrix is",
+    "yes_observability": "It has full rank, so the pair ($C$, $A$) is observable.",
+    "yes_controllability": "It has full rank, so the pair ($A$, $B$) is controllable.",
+    "full_rank_observability": "Since {rank}, the pair ($C$, $A$) is observable.",
+    "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
+    "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
+    "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero. From here on we assume {condition}.",
+    "also_provided": "We assume {condition} as well.",
+    "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
+    "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
+    "kernel_observability": "A state in this direction is never seen at the output:",
+    "kernel_controllability": "The input never moves the state along this direction:",
+    "modes_observability": "The unobservable modes are {modes}.",
+    "modes_controllability": "The uncontrollable modes are {modes}.",
+}
+
+GAINS: dict[str, str] = {
+    "assignable_observer": "By the pole assignment theorem the poles of $A - L C$ can therefore be placed at will.",
+    "assignable_state_feedback": "By the pole assignment theorem the poles of $A - B K$ can therefore be placed at will.",
     "asks_observer": "The observer poles ask for",
     "asks_state_feedback": "The control poles ask for",
     "coefficients": "with the coefficients",
-    "already_canonical": "The pair (A, B) is already in controllable canonical form, with {chi}, so the gain is the difference of "
+    "already_canonical": "The pair ($A$, $B$) is already in controllable canonical form, with {chi}, so the gain is the difference of "
     "coefficients, constant first.",
-    "difference_of_coefficients": "Hence",
-    "open_observer": "We place them for the dual pair (Aᵀ, Cᵀ). The characteristic polynomial is",
-    "open_state_feedback": "The characteristic polynomial is",
-    "canonical_observer": "The transformation that brings the dual pair to controllable canonical form is",
-    "canonical_state_feedback": "The transformation that brings the pair to controllable canonical form is",
-    "inverse_of_V": "with {determinant} and",
-    "row_observer": "The differences of coefficients, constant first, carried back by the inverse, give",
-    "row_state_feedback": "The differences of coefficients, constant first, carried back by the inverse, give",
-    "last_column": "Ackermann's formula needs the last column of the inverse of the observability matrix,",
-    "last_row": "Ackermann's formula needs the last row of the inverse of the controllability matrix,",
-    "ackermann_observer": "The gain is the desired polynomial at A times this column,",
-    "ackermann_state_feedback": "The gain is this row times the desired polynomial at A,",
+    "open_observer": "We place them for the dual pair ($Aᵀ$, $Cᵀ$), whose controllability matrix is $Oᵀ$ and whose characteristic polynomial is",
+    "open_state_feedback": "The characteristic polynomial of $A$ is",
+    "canonical_observer": "The dual pair is brought to controllable canonical form by",
+    "canonical_state_feedback": "The pair is brought to controllable canonical form by",
+    "row_observer": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
+    "row_state_feedback": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
+    "last_column": "Ackermann's formula takes the last column of the inverse of the observability matrix,",
+    "last_row": "Ackermann's formula takes the last row of the inverse of the controllability matrix,",
+    "ackermann_observer": "and puts $A$ into the polynomial asked for:",
+    "ackermann_state_feedback": "and puts $A$ into the polynomial asked for:",
     "as_required": "{check}, as required.",
-    "fixed_but_wanted_observer": "The unobservable modes {roots} stay whatever the gain is; they are among the poles asked for.",
-    "fixed_but_wanted_state_feedback": "The uncontrollable modes {roots} stay whatever the gain is; they are among the poles "
-    "asked for.",
-    "one_gain_observer": "One gain that places the others is",
-    "one_gain_state_feedback": "One gain that places the others is",
-    "family_observer": "All of them are {gain}.",
-    "family_state_feedback": "All of them are {gain}.",
-    "impossible_observer": "Every gain leaves the factor {fixed} in the polynomial of A − LC, and it does not divide {polynomial}: no "
-    "gain places these poles.",
-    "impossible_state_feedback": "Every gain leaves the factor {fixed} in the polynomial of A − BK, and it does not divide "
+    "fixed_but_wanted_observer": "No gain moves the unobservable modes {roots}, but they are among the poles asked for.",
+    "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable modes {roots}, but they are among the poles asked for.",
+    "one_gain_observer": "A gain that places the others is",
+    "one_gain_state_feedback": "A gain that places the others is",
+    "family_observer": "It is not the only one: all of them are {gain}.",
+    "family_state_feedback": "It is not the only one: all of them are {gain}.",
+    "impossible_observer": "Every gain leaves the factor {fixed} in the polynomial of $A - L C$, and this factor does not divide "
+    "{polynomial}: no gain places these poles.",
+    "impossible_state_feedback": "Every gain leaves the factor {fixed} in the polynomial of $A - B K$, and this factor does not divide "
     "{polynomial}: no gain places these poles.",
     "gain_given_observer": "The observer gain is given,",
     "gain_given_state_feedback": "The feedback gain is given,",
-    "its_polynomial": "Its characteristic polynomial is",
-    "stable_continuous": "All its roots lie in the open left half plane: stable.",
-    "stable_discrete": "All its roots lie inside the unit circle: stable.",
-    "unstable_continuous": "Not all its roots lie in the open left half plane: not stable.",
-    "unstable_discrete": "Not all its roots lie inside the unit circle: not stable.",
-    "stable_if_continuous": "All its roots lie in the open left half plane exactly where {where}.",
-    "stable_if_discrete": "All its roots lie inside the unit circle exactly where {where}.",
-    "case_survives_observer": "There the pair (C, A) is not observable, but the fixed mode {modes} is among the poles asked for, so this "
-    "L still works (it is no longer the only one).",
-    "case_survives_state_feedback": "There the pair (A, B) is not controllable, but the fixed mode {modes} is among the poles asked "
-    "for, so this K still works (it is no longer the only one).",
-    "case_other_observer": "There the pair (C, A) is not observable, but the fixed mode {modes} is among the poles asked for; one gain "
-    "that works there is {gain}.",
-    "case_other_state_feedback": "There the pair (A, B) is not controllable, but the fixed mode {modes} is among the poles asked for; "
-    "one gain that works there is {gain}.",
-    "case_no_observer": "There the pair (C, A) is not observable and its fixed mode {modes} is not among the poles asked for: no gain "
-    "exists.",
-    "case_no_state_feedback": "There the pair (A, B) is not controllable and its fixed mode {modes} is not among the poles asked for: no "
-    "gain exists.",
+    "closed_matrix": "which makes",
+    "its_polynomial": "The characteristic polynomial is",
+    "case_survives_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for, so this $L$ "
+    "still works; it is no longer the only one.",
+    "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for, "
+    "so this $K$ still works; it is no longer the only one.",
+    "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for. A gain that "
+    "works there is {gain}.",
+    "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for. "
+    "A gain that works there is {gain}.",
+    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed mode {modes} is not among the poles asked for: no gain "
+    "places them.",
+    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed mode {modes} is not among the poles asked for: no "
+    "gain places them.",
     "undecided_observer": "What is true where {when} vanishes is not decided here.",
     "undecided_state_feedback": "What is true where {when} vanishes is not decided here.",
-    # the observer itself
-    "observer_equation": "The observer copies the plant and corrects it by the output error,",
-    "error_equation": "so the error {error} obeys, whatever the input,",
-    "observer_collected": "Collected, with these numbers,",
-    # the compensator
-    "separation": "By the separation principle the feedback uses the estimate,",
-    "observer_closed": "so the observer, fed by the output only, becomes",
-    "compensator_matrix": "where",
-    "transfer_function_of_compensator": "Its transfer function from Y to −U, equation (4.25), is",
+}
+
+COMPENSATION: dict[str, str] = {
+    "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
+    "error_equation": "Whatever the input, the error {error} then obeys",
+    "observer_collected": "Collected and with the numbers put in, the observer reads",
+    "separation": "By the separation principle the control law uses the estimate in place of the state:",
+    "observer_closed": "Put into the observer, it leaves a system that is driven by $y$ alone,",
+    "compensator_matrix": "with the matrix",
+    "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
-    "compensator_unstable": "It is strictly proper, and it is not stable itself; the loop is.",
+    "compensator_unstable": "It is strictly proper. By itself it is not stable, although the loop is.",
     "compensator_proper": "It is strictly proper.",
-    "control_in_error": "With the estimation error, (4.27) and (4.28) are",
-    "closed_loop_matrix": "and together with the error equation they give (4.29), whose matrix is block triangular,",
-    "polynomial_splits": "so its polynomial is the product of those of the feedback and of the observer,",
-    "estimate_coordinates": "In the coordinates of state and estimate the same loop reads",
-    "plant_transfer": "The plant has the transfer function",
-    "return_path": "With F in the return path of a negative feedback loop,",
-    "loop_poles": "The poles {poles} are those of the state feedback and those of the observer, as they must be.",
-    "defective": "The repeated pole {pole} is defective, since {matrix} is not zero: its exponential comes with a power of t, so the "
-    "transients are not bounded by a multiple of the exponential alone. Distinct poles avoid this.",
-    # rank tests
-    "observability_matrix": "The observability matrix stacks the output and what its derivatives show of the state,",
-    "controllability_matrix": "The controllability matrix collects what the input and its derivatives reach,",
-    "yes_observability": "It has full rank, so the pair (C, A) is observable.",
-    "yes_controllability": "It has full rank, so the pair (A, B) is controllable.",
-    "full_rank_observability": "Since {rank}, the pair (C, A) is observable.",
-    "full_rank_controllability": "Since {rank}, the pair (A, B) is controllable.",
-    "provided_observability": "The pair (C, A) is observable only where {condition}, which we assume from here on.",
-    "provided_controllability": "The pair (A, B) is controllable only where {condition}, which we assume from here on.",
-    "no_observability": "Here {rank}, so the pair (C, A) is not observable.",
-    "no_controllability": "Here {rank}, so the pair (A, B) is not controllable.",
-    "kernel_observability": "A state in this direction is never seen at the output,",
-    "kernel_controllability": "The input never moves the state along this row,",
-    "modes_observability": "The unobservable modes are {modes}.",
-    "modes_controllability": "The uncontrollable modes are {modes}.",
+    "compensator_stable_if": "It is strictly proper, and by itself stable exactly where {where}.",
+    "control_in_error": "In terms of the error,",
+    "closed_loop_matrix": "so that plant and error together are block triangular,",
+    "polynomial_splits": "and the polynomial of the loop is the product of the two that were asked for:",
+    "estimate_coordinates": "In state and estimate the same loop reads",
+    "plant_transfer": "As a transfer function the plant is",
+    "return_path": "With $F$ in the return path,",
+    "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
+    "loop_polynomial": "Its denominator is the product of the two polynomials asked for, as it must be.",
+    "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "
+    "not bounded by a multiple of the exponential alone. With distinct poles they are.",
+}
+
+PHRASES: dict[str, str] = TITLES | DATA | POLYNOMIALS | RANK | GAINS | COMPENSATION
+
+#: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
+RESTS_ON: dict[str, str] = {
+    "yes_observability": "observability_rank",
+    "full_rank_observability": "observability_rank",
+    "provided_observability": "observability_rank",
+    "no_observability": "observability_rank",
+    "yes_controllability": "duality",
+    "provided_controllability": "duality",
+    "no_controllability": "duality",
+    "assignable_observer": "observer_poles",
+    "open_observer": "duality",
+    "canonical_observer": "canonical_form",
+    "canonical_state_feedback": "canonical_form",
+    "already_canonical": "canonical_form",
+    "last_column": "ackermann",
+    "last_row": "ackermann",
+    "observer_equation": "observer",
+    "error_equation": "error",
+    "separation": "separation",
+    "transfer_function_of_compensator": "compensator",
+    "closed_loop_matrix": "closed_loop",
 }
 
 

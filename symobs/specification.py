@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from symobs.errors import InputError, ShapeMismatch
-from symobs.exact import Complex, Matrix, Scalar, product_of
+from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, read_complex, read_matrix, read_scalar
 
@@ -129,8 +129,9 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         raise InputError(message, where=where, repair=f"give as many poles as the order asks for, {degree}")
-    s = Scalar.symbol(variable)
-    waiting = list(poles)
+    field = Field.of([variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)])
+    s = Scalar.symbol(variable).within(field)
+    waiting = [Complex(pole.real.within(field), pole.imaginary.within(field)) for pole in poles]
     factors: list[Scalar] = []
     while waiting:
         pole = waiting.pop(0)

@@ -196,6 +196,14 @@ def test_marks_of_templates_in_a_title_mean_nothing() -> None:
     assert r"\textbackslash{}VAR\{body\} \textbackslash{}BLOCK\{raw\} \%\% x" in latex
 
 
+def test_an_installed_package_has_its_templates_inside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "symobs").mkdir()
+    monkeypatch.setattr("symobs.render.templates._PACKAGE", tmp_path / "symobs")
+    assert template_folder() == tmp_path / "latex_templates"
+    (tmp_path / "symobs" / "latex_templates").mkdir()
+    assert template_folder() == tmp_path / "symobs" / "latex_templates"
+
+
 def test_templates_are_found() -> None:
     assert {path.name for path in template_folder().iterdir()} >= {"article.tex", "fragment.tex"}
 

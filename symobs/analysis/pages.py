@@ -120,8 +120,9 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
         page.conclude(f"yes_{kind}")
         return
     page.equal(relation(det, shown))
-    for factor in open_factors:
-        page.assume(f"provided_{kind}", factor, condition=relation(factor, "!=", 0))
+    for index, factor in enumerate(open_factors):
+        key = "also_provided" if index else f"provided_{kind}"
+        page.assume(key, factor, condition=relation(factor, "!=", 0))
 
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:

@@ -8,12 +8,16 @@ from symobs.analysis.pages import factored_form, formula_of_factored, given
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, closed_loop_matrix, error_determinant, write_gain
 from symobs.design.observer import page_style, write_observer
 from symobs.exact import Factored, Matrix, Root, Scalar, root_of_pole, roots_of
-from symobs.formula import Literal, Quotient, Roots
+from symobs.formula import Exactly, Literal, Quotient, Roots
 from symobs.formula.term import block
 from symobs.page import Page, predicate, relation
+from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
     from symobs.design.compensator import CompensatorDesign
+
+#: Conditions with more terms than this are left to the JSON.
+_READABLE_TERMS = 40
 
 
 def write_compensator(page: Page, design: CompensatorDesign) -> None:
@@ -70,9 +74,22 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     properness = predicate("strictly_proper", F)
     key = {"yes": "compensator_stable", "no": "compensator_unstable"}.get(found)
     if key is None:
-        page.conclude("compensator_proper", properness)
+        _stable_where(page, F)
     else:
         page.conclude(key, properness, predicate("stable" if found == "yes" else "unstable", F.denominator))
+
+
+def _stable_where(page: Page, F: Scalar) -> None:
+    """Say for which parameters the compensator itself is stable, where the conditions are few."""
+    plant = page.plant
+    found = stability(F.denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    proper = predicate("strictly_proper", F)
+    if sum(value.size for value in found.positive) > _READABLE_TERMS:
+        page.conclude("compensator_proper", proper)
+        return
+    inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
+    where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
+    page.conclude("compensator_stable_if", proper, where=Exactly(predicate("stable", F.denominator), where))
 
 
 def _error_coordinates(page: Page, design: CompensatorDesign) -> None:

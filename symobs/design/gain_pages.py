@@ -90,6 +90,7 @@ def _is_canonical(page: Page) -> bool:
 
 def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
     if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
+        _say_canonical(page)
         return
     if not page.knows(side.matrix):
         define_test_matrix(page, side)
@@ -122,21 +123,26 @@ def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPoly
     return DesiredPolynomial(variable, (named,))
 
 
+def _say_canonical(page: Page) -> None:
+    """Say that (A, B) is in controllable canonical form already."""
+    order, variable = page.plant.order, page.plant.variable
+    chi = page.plant.matrices.A.characteristic_polynomial(variable)
+    page.remark(
+        "already_canonical",
+        relation(page["A"], companion(chi.coefficients(variable)[1:])),
+        relation(page["B"], Matrix.unit(order, order - 1)),
+        chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
+    )
+
+
 def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
     if side.gain == "K" and _is_canonical(page):
-        chi = plant.matrices.A.characteristic_polynomial(variable)
-        found = chi.coefficients(variable)[1:]
-        page.remark(
-            "already_canonical",
-            relation(page["A"], companion(found)),
-            relation(page["B"], Matrix.unit(order, order - 1)),
-            chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
-        )
-        page.define("K", _difference(page, wanted, list(found)), say="difference_of_coefficients", answer=True)
+        found = plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
+        page.define("K", _difference(page, wanted, list(found)), answer=True)
         return
     A = page["A"].T if side.gain == "L" else page["A"]
     matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
@@ -145,14 +151,12 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
     V = page.define("V", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
-    page.define(
-        "V_inv", V.shown.inverse, say="inverse_of_V", determinant=relation(V.apply("det"), V.apply("det").shown)
-    )
+    page.equal(relation(V.inverse, V.inverse.shown), relation(V.apply("det"), V.apply("det").shown))
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
-        page.define_transposed("L", row @ page["V_inv"], row.shown @ page["V_inv"].shown, say="row_observer")
+        page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")
     else:
-        page.define("K", row @ page["V_inv"], row.shown @ page["V_inv"].shown, say="row_state_feedback", answer=True)
+        page.define("K", row @ V.inverse, row.shown @ V.inverse.shown, say="row_state_feedback", answer=True)
 
 
 def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
@@ -218,7 +222,7 @@ def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
     closed = closed_loop_matrix(page, side)
-    page.equal(relation(closed, closed.shown))
+    page.equal(relation(closed, closed.shown), say="closed_matrix")
     polynomial = design.answer["polynomial"]
     shown = factored_form(page, polynomial)
     members = [error_determinant(page, side), page.value(polynomial)]

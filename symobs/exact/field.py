@@ -57,7 +57,13 @@ class Field:
 
     def lift(self, polynomial: fmpz_mpoly, source: Field) -> fmpz_mpoly:
         """Carry a polynomial of `source` over; generators it does not use may be missing here."""
-        return polynomial if source is self else polynomial.project_to_context(self.context)
+        if source is self:
+            return polynomial
+        if not polynomial:
+            return self.zero
+        if polynomial.is_constant():
+            return self.context.constant(polynomial.leading_coefficient())
+        return polynomial.project_to_context(self.context)
 
 
 @lru_cache(maxsize=4096)

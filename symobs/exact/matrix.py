@@ -13,7 +13,7 @@ from flint import fmpz, fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
 from symobs.exact.field import RATIONALS, Field
-from symobs.exact.scalar import Scalar, length_bits
+from symobs.exact.scalar import Scalar, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -155,9 +155,8 @@ class Matrix:
         """Return a text that differs between different matrices in practice."""
         if isinstance(self.table, fmpz_mat):
             return f"{self.table.tolist()} {self.denominator}"
-        return " ".join(
-            Scalar(self.field, entry, self.denominator).fingerprint() for row in self.table for entry in row
-        )
+        texts = [polynomial_fingerprint(entry) for row in self.table for entry in row]
+        return f"{' '.join(texts)} {polynomial_fingerprint(self.denominator)}"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Matrix):

@@ -70,15 +70,20 @@ def strip_row_contents(rows: Rows, field: Field) -> tuple[fmpz_mpoly, Rows]:
 
 
 def _by_minors(rows: Rows, field: Field) -> fmpz_mpoly:
-    """Expand along the rows from the bottom, keeping every minor of the lower rows."""
-    order = len(rows)
+    """Expand along the rows from the bottom."""
+    return maximal_minors(rows, field).get(tuple(range(len(rows))), field.zero)
+
+
+def maximal_minors(rows: Rows, field: Field) -> dict[tuple[int, ...], fmpz_mpoly]:
+    """Return every minor that uses all rows, by its columns: each row extends the minors of the rows below it."""
+    width = len(rows[0])
     minors: dict[tuple[int, ...], fmpz_mpoly] = {(): field.one}
     for row in reversed(rows):
         larger: dict[tuple[int, ...], fmpz_mpoly] = {}
         for columns, minor in minors.items():
             if not minor:
                 continue
-            for column in range(order):
+            for column in range(width):
                 entry = row[column]
                 if column in columns or not entry:
                     continue
@@ -91,7 +96,7 @@ def _by_minors(rows: Rows, field: Field) -> fmpz_mpoly:
                 else:
                     larger[chosen] = term if known is None else known + term
         minors = larger
-    return minors.get(tuple(range(order)), field.zero)
+    return minors
 
 
 def _by_elimination(rows: Rows, field: Field) -> fmpz_mpoly:

@@ -199,10 +199,7 @@ class Scalar:
 
     def fingerprint(self) -> str:
         """Return a text that differs between different values in practice: whole where short, else a summary."""
-        if self.size <= _WHOLE_TEXT:
-            return str(self)
-        above, below = self.numerator_part, self.denominator_part
-        return f"{len(above)} {above.degrees()} {above.leading_coefficient()} {len(below)} {below.degrees()} {below.content()}"
+        return f"{polynomial_fingerprint(self.numerator_part)}/{polynomial_fingerprint(self.denominator_part)}"
 
     @property
     def numerator(self) -> Scalar:
@@ -288,6 +285,13 @@ class Scalar:
         return _compose(self.numerator_part, self.field, relevant) / _compose(
             self.denominator_part, self.field, relevant
         )
+
+
+def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
+    """Return FLINT's text of a polynomial where it is short, else a summary of it."""
+    if len(polynomial) <= _WHOLE_TEXT:
+        return str(polynomial)
+    return f"{len(polynomial)} {polynomial.degrees()} {polynomial.leading_coefficient()}"
 
 
 def _degree(polynomial: fmpz_mpoly) -> int:

@@ -95,9 +95,9 @@ class Meter:
 
     spent: int = 0
 
-    def charge(self, sizes: Parts) -> str:
+    def charge(self, cost: int, sizes: Parts) -> str:
         """Add an operation that builds these sizes; return what is too large about it, or nothing."""
-        self.spent += work(*sizes)
+        self.spent += cost
         excess = sizes[0].excess or sizes[1].excess
         return excess or ("too much, all operations so far together" if self.spent > MOST_WORK else "")
 
@@ -105,11 +105,11 @@ class Meter:
 def work(above: Size, below: Size) -> int:
     """Return the cost of building a numerator and a denominator and of finding their common divisor.
 
-    The divisor's share was measured on sparse polynomials of high degree, where it is largest: it grows with the
-    terms and with the square of the lower degree.
+    The divisor's share was measured where it is largest, on sparse polynomials of high degree: it grows with their
+    words and with the square of the lower degree.
     """
-    divisor = (above.terms + below.terms) * len(above.names) * min(above.degree, below.degree) ** 2 // 20
-    return above.words + below.words + divisor
+    words = above.words + below.words
+    return words + words * min(above.degree, below.degree) ** 2 // 20
 
 
 def operation_size(sign: str, left: Number, right: Number) -> Parts:
@@ -117,18 +117,17 @@ def operation_size(sign: str, left: Number, right: Number) -> Parts:
     (a, b), (c, d) = parts(left), parts(right)
     if sign == "*":
         return a * c, b * d
+    are_real = isinstance(left, Scalar) and isinstance(right, Scalar)
     if sign == "/":
-        return (a * d, b * c) if isinstance(right, Scalar) else (a * d * c, b * c * c)
+        return (a * d, b * c) if are_real else (a * d * c, b * c * c)
     if isinstance(left, Scalar) and isinstance(right, Scalar) and left.denominator == right.denominator:
         return a + c, b
     return a * d + c * b, b * d
 
 
-def power_size(base: Number, exponent: int) -> Parts:
+def power_size(base: Scalar, exponent: int) -> Parts:
     """Return a bound of base ** exponent."""
     above, below = parts(base)
-    if exponent < 0 and isinstance(base, Complex):
-        above, below = above * below, above * above
     return above ** abs(exponent), below ** abs(exponent)
 
 

@@ -15,12 +15,12 @@ from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ShapeMismatch
 from symobs.exact import Complex, Scalar
-from symobs.expression.budget import MOST_EXPONENT, Meter, Number, Parts, operation_size, power_size
+from symobs.expression.budget import MOST_EXPONENT, Meter, Number, Parts, operation_size, power_size, work
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from typing import TypeAlias
 
     from symobs.expression.names import Scope
@@ -95,7 +95,14 @@ def unequal_row(rows: Sequence[Sequence[object]]) -> tuple[str, int] | None:
     return None
 
 
-_OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}
+_OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+#: What one operation with complex numbers takes of operations with scalars.
+_SCALAR_OPERATIONS = 12
 
 
 class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
@@ -124,14 +131,7 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
         return grid.rows[0][0] if grid.shape == (1, 1) else grid
 
     def binary(self, parts: tuple[Entry, Token, Entry]) -> Number:
-        first, token, second = self._number(parts[0]), parts[1], self._number(parts[2])
-        sign = token.value
-        if sign == "/":
-            self._require_nonzero(second, token)
-        self._spend(operation_size(sign, first, second), token)
-        if isinstance(first, Complex) or isinstance(second, Complex):
-            first, second = Complex.of(first), Complex.of(second)
-        return _simplest(_OPERATIONS[sign](first, second))
+        return self._combined(self._number(parts[0]), parts[1].value, self._number(parts[2]), parts[1])
 
     def sign(self, parts: tuple[Token, Entry]) -> Number:
         number = self._number(parts[1])
@@ -139,10 +139,12 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
 
     def power(self, parts: tuple[Entry, Token, Entry]) -> Number:
         base, token, exponent = self._number(parts[0]), parts[1], self._exponent(self._number(parts[2]), parts[1])
+        if isinstance(base, Complex):
+            return self._complex_power(base, exponent, token)
         if exponent < 0:
             self._require_nonzero(base, token)
         self._spend(power_size(base, exponent), token)
-        return _simplest(base**exponent)
+        return base**exponent
 
     def call(self, parts: tuple[Token, Entry]) -> Number:
         """Return sqrt of the square of a rational number, the one call with a value in the field."""
@@ -174,12 +176,34 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
             raise self.source.error(message, start(token), kind=BudgetExceeded)
         return exponent
 
+    def _combined(self, left: Number, sign: str, right: Number, token: Token) -> Number:
+        if sign == "/":
+            self._require_nonzero(right, token)
+        sizes = operation_size(sign, left, right)
+        if isinstance(left, Scalar) and isinstance(right, Scalar):
+            self._spend(sizes, token)
+            real: Scalar = _OPERATIONS[sign](left, right)
+            return real
+        self._spend(sizes, token, _SCALAR_OPERATIONS)
+        result: Complex = _OPERATIONS[sign](Complex.of(left), Complex.of(right))
+        return result.real if result.is_real else result
+
+    def _complex_power(self, base: Number, exponent: int, token: Token) -> Number:
+        if exponent < 0:
+            base, exponent = self._combined(Scalar.of(1), "/", base, token), -exponent
+        power: Number = Scalar.of(1)
+        for digit in f"{exponent:b}":
+            power = self._combined(power, "*", power, token)
+            if digit == "1":
+                power = self._combined(power, "*", base, token)
+        return power
+
     def _require_nonzero(self, value: Number, token: Token) -> None:
         if isinstance(value, Scalar) and value.is_zero:
             raise self.source.error("division by zero", start(token))
 
-    def _spend(self, sizes: Parts, token: Token) -> None:
-        excess = self.meter.charge(sizes)
+    def _spend(self, sizes: Parts, token: Token, times: int = 1) -> None:
+        excess = self.meter.charge(times * work(*sizes), sizes)
         if excess:
             raise self.source.error(f"this would build {excess}", start(token), kind=BudgetExceeded)
 
@@ -187,8 +211,3 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
 def start(token: Token) -> int:
     """Return where a token begins in the text."""
     return token.start_pos or 0
-
-
-def _simplest(value: Number) -> Number:
-    """Return a complex number without imaginary part as a scalar."""
-    return value.real if isinstance(value, Complex) and value.is_real else value

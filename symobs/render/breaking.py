@@ -96,7 +96,7 @@ class Breaker(Generic[B]):
                 return self._quotient(written, room)
             case Literal() | Block():
                 return self._matrix(formula, room)
-            case Power(base, exponent):
+            case Power(base, exponent) if exponent != 1:
                 *body, last = self._operand(base, Level.ATOM, room - 1)
                 return [*body, replace(last, box=self.printer.raised(last.box, exponent))]
             case Transpose(operand):
@@ -113,6 +113,8 @@ class Breaker(Generic[B]):
     def _written(self, formula: Formula) -> Formula:
         """The formula, an exact value spelled out."""
         match formula:
+            case Power(base, 1):
+                return self._written(base)
             case Literal(Scalar() as value):
                 return formula if is_leaf(value) else spelled(value, self.printer.variable)
             case Literal(Matrix() as table):
@@ -128,7 +130,7 @@ class Breaker(Generic[B]):
         box = self.printer.at_least(level, inner)
         if box.width <= room:
             return [Piece(box)]
-        if inner.level >= level and not (level >= Level.FRACTION and self._has_slash(formula, room)):
+        if inner.level >= level:
             return self._opened(formula, room)
         return self._between_parentheses(self._opened(formula, room - 2))
 
@@ -161,34 +163,44 @@ class Breaker(Generic[B]):
     def _product(self, formula: Formula, room: float) -> list[Piece[B]]:
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
         pieces: list[Piece[B]] = []
+        is_after_fraction = False
         for factor in factors(body, self.printer.variable):
             first, *rest = self._operand(factor, Level.FRACTION, room - 2)
-            pieces += [self._following(pieces, first), *rest]
+            first = self._following(pieces, first)
+            joined = self._together(pieces[-1], first) if is_after_fraction else None
+            if joined is not None and joined.box.width <= room - 2:
+                pieces = [*pieces[:-1], joined, *rest]
+            else:
+                pieces += [first, *rest]
+            is_after_fraction = isinstance(self._written(factor), Quotient) and not rest
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
 
+    def _together(self, front: Piece[B], piece: Piece[B]) -> Piece[B]:
+        """Two pieces as one: 1/d stays on the line of what follows it."""
+        boxes = [front.box, piece.within, piece.box] if piece.within else [front.box, piece.box]
+        return replace(front, box=self.printer.joined(boxes, Level.PRODUCT))
+
     def _quotient(self, formula: Quotient, room: float) -> list[Piece[B]]:
-        """1/denominator · (numerator), or (numerator) / (denominator) where the denominator is wide as well."""
+        """1/denominator · (numerator); a denominator that is wide as well gets a name."""
+        printer = self.printer
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
         if not isinstance(body, Quotient):
             return self._opened(body, room)
-        if self._has_slash(body, room):
-            pieces = self._operand(body.numerator, Level.FRACTION, room - 2)
-            first, *rest = self._operand(body.denominator, Level.POWER, room - 2)
-            slash = self.printer.slash()
-            pieces += [replace(first, within=slash, at_start=slash), *rest]
+        below = printer.typeset(body.denominator)
+        if below.width > _WIDEST_DENOMINATOR * room:
+            above = printer.typeset(body.numerator)
+            if above.width > room - 2:
+                above = self._name(self.named, body.numerator, None)
+            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator, None)))]
+        elif printer.slashes:
+            pieces = self._operand(body.numerator, Level.PRODUCT, room - 2)
+            slash = printer.slash()
+            pieces.append(Piece(printer.at_least(Level.POWER, below), slash, slash))
         else:
-            one = self.printer.leaf(Scalar.of(1))
-            pieces = [Piece(self.printer.fraction(one, self.printer.typeset(body.denominator)))]
+            pieces = [Piece(printer.fraction(printer.leaf(Scalar.of(1)), below))]
             first, *rest = self._operand(body.numerator, Level.FRACTION, room - 2)
             pieces += [self._following(pieces, first), *rest]
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
-
-    def _has_slash(self, formula: Formula, room: float) -> bool:
-        """Whether a fraction is broken as (numerator) / (denominator)."""
-        written = self._written(formula)
-        if not isinstance(written, Quotient):
-            return False
-        return self.printer.slashes or self.printer.typeset(written.denominator).width > _WIDEST_DENOMINATOR * room
 
     def _digits(self, value: Scalar) -> list[Piece[B]]:
         """A number in runs of digits; the next line begins with a sign that it goes on."""

@@ -3,7 +3,7 @@ r"""Formulas in LaTeX, for amsmath: `\[ … \]` where a display fits the line, `
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,8 @@ from symobs.render.printer import Printer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-_ENDS_IN_COMMAND = re.compile(r"\\[A-Za-z]+$")
+_WORD = r"\mathit"
+_FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
 #: amsmath's matrices have ten columns; wider ones are set as arrays.
 _MATRIX_COLUMNS = 10
 #: A display of more lines may be broken over pages.
@@ -78,8 +79,7 @@ class LatexPrinter(Printer[LatexBox]):
             source = rf"\dot {source}" if re.fullmatch(r"\w", source) else rf"\dot{{{source}}}"
         elif mark:
             source = f"{source}_{{{mark}}}"
-        is_plain = not re.search(r"[\^_(]", source)
-        return LatexBox(widths.source_width(source), Level.ATOM if is_plain else Level.POWER, source)
+        return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def leaf(self, value: Scalar) -> LatexBox:
         """A whole number or a symbol."""
@@ -109,14 +109,18 @@ class LatexPrinter(Printer[LatexBox]):
 
     def joined(self, parts: Sequence[LatexBox], level: Level) -> LatexBox:
         """The sources one after the other, a space where a command would swallow a letter."""
-        source = ""
-        for part in parts:
-            source = adjoined(source, part.source)
-        return LatexBox(sum(part.width for part in parts), level, source, max(part.height for part in parts))
+        sources = [parts[0].source]
+        for before, after in pairwise(part.source for part in parts):
+            sources += [" ", after] if swallows(before, after) else [after]
+        width, height = sum(part.width for part in parts), max(part.height for part in parts)
+        return LatexBox(width, level, "".join(sources), height)
 
-    def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:  # noqa: ARG002
-        r"""`\cdot` before a number."""
-        return LatexBox(0.7, Level.PRODUCT, r"\cdot ") if right.source[0].isdigit() else None
+    def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:
+        r"""`\cdot` before a number, a thin space beside a word."""
+        if right.source[0].isdigit():
+            return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
+        is_word = left.source.startswith(_WORD) or right.source.startswith(_WORD)
+        return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
     def grouped(self, box: LatexBox) -> LatexBox:
         """Parentheses that grow with what they hold."""
@@ -144,18 +148,19 @@ class LatexPrinter(Printer[LatexBox]):
 
     def applied(self, function: str, argument: LatexBox) -> LatexBox:
         """A function's name and its argument."""
-        name = FUNCTIONS.get(function, (rf"\operatorname{{{function.replace('_', ' ')}}}", function))[0]
-        source = adjoined(name, argument.source)
+        name = FUNCTIONS[function][0] if function in FUNCTIONS else rf"\operatorname{{{function.replace('_', ' ')}}}"
+        source = f"{name} {argument.source}" if swallows(name, argument.source) else name + argument.source
         width = widths.source_width(name) + argument.width + 0.2
         return LatexBox(width, Level.PRODUCT, source, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
         """A table in brackets."""
+        rows = [[_opened(entry) for entry in row] for row in rows]
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
-        tall = any(entry.height for row in rows for entry in row)
-        body = (r"\\[3pt]" if tall else r"\\").join("&".join(entry.source for entry in row) for row in rows)
+        gap = ("", "[3pt]", "[6pt]")[min(2, max(entry.height for row in rows for entry in row))]
+        body = rf"\\{gap}".join("&".join(entry.source for entry in row) for row in rows)
         if columns <= _MATRIX_COLUMNS:
             source = rf"\begin{{bmatrix}}{body}\end{{bmatrix}}"
         else:
@@ -211,7 +216,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def indent(self) -> LatexBox:
         r"""`\quad`."""
-        return LatexBox(1.0, Level.SUM, r"\quad ")
+        return LatexBox(1.0, Level.SUM, r"\quad{}")
 
     def framed(self, box: LatexBox) -> LatexBox:
         r"""`\answer`, a macro of the template."""
@@ -234,8 +239,14 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(2.0, Level.SUM, r"\qquad ")
 
 
-def adjoined(left: str, right: str) -> str:
-    """Return right after left; a space keeps a command from swallowing a letter."""
-    if _ENDS_IN_COMMAND.search(left) and right[:1].isalpha():
-        return f"{left} {right}"
-    return left + right
+def swallows(left: str, right: str) -> bool:
+    """Whether a command at the end of `left` would take the beginning of `right` as part of its name."""
+    command = left[left.rfind("\\") + 1 :] if "\\" in left else ""
+    return bool(command) and command.isascii() and command.isalpha() and right[:1].isalpha()
+
+
+def _opened(entry: LatexBox) -> LatexBox:
+    """An entry of a matrix; a fraction with more than numbers in it is set large."""
+    if not _FRACTION_OF_LETTERS.match(entry.source):
+        return entry
+    return replace(entry, source=entry.source.replace(r"\frac", r"\dfrac", 1), height=2)

@@ -6,6 +6,7 @@ The result is rows; a format only writes them down.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import TYPE_CHECKING, Generic
 
 from symobs.render.breaking import Breaker
@@ -42,18 +43,20 @@ class Layout(Generic[B]):
         self.width = width
         self.boxed = boxed
         self.end = end
+        self.breaker = Breaker(printer)
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[Row[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
-        whole = [self._on_one_line(relation, is_last=relation is relations[-1]) for relation in relations]
-        packed = self._packed(whole)
+        last = len(relations) - 1
+        whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
+        packed = self._packed(whole, self.width)
         if all(row.width <= self.width for row in packed) and (len(packed) == 1 or 2 * len(packed) <= len(whole)):
             return [Row(None, row) for row in packed], False
         lefts = [self.printer.typeset(relation.members[0]).width for relation in relations]
         margin = max((left for left in lefts if left <= _WIDEST_LEFT * self.width), default=0.0)
         rows: list[Row[B]] = []
-        for relation in relations:
-            rows += self._aligned(relation, margin, is_last=relation is relations[-1])
+        for index, relation in enumerate(relations):
+            rows += self._aligned(relation, margin, is_last=index == last)
         return rows, True
 
     # -- one line -------------------------------------------------------------------------------------------------
@@ -73,12 +76,12 @@ class Layout(Generic[B]):
         mark = ("" if self.boxed else self.end) if is_last else ","
         return [self.printer.punctuation(mark)] if mark else []
 
-    def _packed(self, whole: Sequence[B]) -> list[B]:
-        """As many relations on a line as fit."""
+    def _packed(self, whole: Sequence[B], width: float) -> list[B]:
+        """As many boxes on a line as fit, the others on further lines."""
         lines: list[list[B]] = []
         for box in whole:
             longer = [*lines[-1], self.printer.gap(), box] if lines else [box]
-            if lines and sum(part.width for part in longer) <= self.width:
+            if lines and sum(part.width for part in longer) <= width:
                 lines[-1] = longer
             else:
                 lines.append([box])
@@ -87,80 +90,97 @@ class Layout(Generic[B]):
     # -- aligned --------------------------------------------------------------------------------------------------
 
     def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[Row[B]]:
-        """The rows of one relation, then those of what its matrices left out."""
-        printer, breaker = self.printer, Breaker(self.printer)
+        """The rows of one relation, then those of what it left out."""
+        printer, told = self.printer, len(self.breaker.named)
+        framed = self.boxed and is_last
         left = printer.typeset(relation.members[0])
-        room = self.width - margin
-        rows: list[Row[B]] = []
-        links = list(zip(relation.operators, relation.members[1:], strict=True))
         head = left if left.width <= _WIDEST_HEAD else None
+        room = self.width - margin - (self._frame() if framed else 0.0)
+        links = list(zip(relation.operators, relation.members[1:], strict=True))
         if left.width <= margin:
-            rights = self._links(breaker, links, room, head, framed=self.boxed and is_last)
-            rows.append(Row(left, rights[0]))
-            rows += [Row(None, right) for right in rights[1:]]
+            rights, has_frame = self._links(links, room, head, framed=framed)
+            left = left if has_frame or not framed else printer.framed(left)
+            rows = [Row(left, rights[0]), *(Row(None, right) for right in rights[1:])]
         else:
             indent = printer.indent()
-            lines = breaker.lines(breaker.pieces(relation.members[0], room - indent.width), room, room - indent.width)
-            rights = self._links(breaker, links, room - indent.width, head, framed=self.boxed and is_last)
-            rows.append(Row(None, lines[0]))
-            rows += [Row(None, printer.joined([indent, line], Level.SUM)) for line in [*lines[1:], *rights]]
-        return self._told(rows, breaker, room, is_last=is_last)
+            space = room - indent.width
+            lines = self.breaker.lines(self.breaker.pieces(relation.members[0], space), room, space)
+            rights, _ = self._links(links, space, head, framed=framed)
+            followers = [printer.joined([indent, line], Level.SUM) for line in [*lines[1:], *rights]]
+            rows = [Row(None, line) for line in [lines[0], *followers]]
+        return self._told(rows, told, room, is_last=is_last)
+
+    def _frame(self) -> float:
+        """The width a frame adds."""
+        indent = self.printer.indent()
+        return self.printer.framed(indent).width - indent.width
 
     def _links(
-        self, breaker: Breaker[B], links: Sequence[tuple[str, Formula]], room: float, head: B | None, *, framed: bool
-    ) -> list[B]:
-        """= b = c …: as many links on a line as fit, a link that fits on none broken."""
+        self, links: Sequence[tuple[str, Formula]], room: float, head: B | None, *, framed: bool
+    ) -> tuple[list[B], bool]:
+        """= b = c …: as many links on a line as fit, one that fits on none broken; and whether the answer is framed."""
         printer = self.printer
         finished: list[B] = []
         line: list[B] = []
+        has_frame = framed
         for index, (operator, member) in enumerate(links):
-            sign, box = printer.comparison(operator), printer.typeset(member)
             is_answer = framed and index + 1 == len(links)
+            sign, box = printer.comparison(operator), printer.typeset(member)
             if is_answer:
                 box = printer.framed(box)
-            if line and sum(part.width for part in line) + sign.width + box.width <= room:
-                line += [sign, box]
-                continue
-            if line:
+            if line and sum(part.width for part in line) + sign.width + box.width > room:
                 finished.append(printer.joined(line, Level.SUM))
-            line = [sign, box]
-            if sign.width + box.width > room:
-                *broken, last = self._broken(breaker, sign, member, room, head, framed=is_answer)
-                finished += broken
-                line = [last]
-        return [*finished, printer.joined(line, Level.SUM)]
+                line = []
+            if sign.width + box.width <= room:
+                line += [sign, box]
+            else:
+                lines = self._broken(sign, member, room, head, framed=is_answer)
+                has_frame = framed and len(lines) == 1
+                finished += lines[:-1]
+                line = [lines[-1]]
+        return [*finished, printer.joined(line, Level.SUM)], has_frame
 
-    def _broken(
-        self, breaker: Breaker[B], sign: B, member: Formula, room: float, head: B | None, *, framed: bool
-    ) -> list[B]:
-        """The lines of one link; a frame goes round all of them while they are few."""
+    def _broken(self, sign: B, member: Formula, room: float, head: B | None, *, framed: bool) -> list[B]:
+        """The lines of one link; a frame makes one box of them while they are few."""
         printer, indent = self.printer, self.printer.indent()
-        frame = printer.framed(printer.indent()).width - indent.width if framed else 0.0
-        space = room - max(sign.width, indent.width) - frame - (indent.width if framed else 0.0)
-        lines = breaker.lines(breaker.pieces(member, space, head), space, space)
+        space = room - max(sign.width, indent.width) - (self._frame() + indent.width if framed else 0.0)
+        lines = self.breaker.lines(self.breaker.pieces(member, space, head), space, space)
         if framed and len(lines) <= _LONGEST_FRAME:
             answer = lines[0] if len(lines) == 1 else printer.stacked(lines)
             return [printer.joined([sign, printer.framed(answer)], Level.SUM)]
         first, *rest = lines
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
-    def _told(self, rows: list[Row[B]], breaker: Breaker[B], room: float, *, is_last: bool) -> list[Row[B]]:
-        """Add what the names in matrices stand for, and the punctuation."""
-        printer, indent = self.printer, self.printer.indent()
-        told = 0
-        while told < len(breaker.named):
-            name, entry = breaker.named[told]
-            rows[-1] = self._with(rows[-1], ",")
-            sign = printer.joined([name, printer.comparison("=")], Level.SUM)
-            space = room - max(sign.width, indent.width)
-            first, *rest = breaker.lines(breaker.pieces(entry, space), space, room - indent.width)
-            rows.append(Row(None, printer.joined([sign, first], Level.SUM)))
-            rows += [Row(None, printer.joined([indent, line], Level.SUM)) for line in rest]
+    def _told(self, rows: list[Row[B]], told: int, room: float, *, is_last: bool) -> list[Row[B]]:
+        """Add what the new names stand for, short ones side by side, and the punctuation."""
+        is_framed = self.boxed and is_last
+        mark = self.end if is_last else ","
+        if told == len(self.breaker.named):
+            return [*rows[:-1], rows[-1] if is_framed else self._marked(rows[-1], mark)]
+        groups: list[list[B]] = []
+        while told < len(self.breaker.named):
+            groups.append(self._definition(*self.breaker.named[told], room))
             told += 1
-        is_framed = self.boxed and is_last and not told
-        return [*rows[:-1], rows[-1] if is_framed else self._with(rows[-1], self.end if is_last else ",")]
+        comma, closing = (self.printer.punctuation(sign) if sign else None for sign in (",", mark))
+        for index, group in enumerate(groups):
+            after = comma if index + 1 < len(groups) else closing
+            group[-1] = group[-1] if after is None else self.printer.joined([group[-1], after], Level.SUM)
+        added: list[B] = []
+        for are_short, run in groupby(groups, key=lambda group: len(group) == 1):
+            lines = [line for group in run for line in group]
+            added += self._packed(lines, room) if are_short else lines
+        first = rows[-1] if is_framed else self._marked(rows[-1], ",")
+        return [*rows[:-1], first, *(Row(None, line) for line in added)]
 
-    def _with(self, row: Row[B], mark: str) -> Row[B]:
+    def _definition(self, name: B, entry: Formula, room: float) -> list[B]:
+        """The lines of name = entry."""
+        printer, indent = self.printer, self.printer.indent()
+        sign = printer.joined([name, printer.comparison("=")], Level.SUM)
+        space = room - max(sign.width, indent.width) - printer.punctuation(",").width
+        first, *rest = self.breaker.lines(self.breaker.pieces(entry, space), space, space)
+        return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
+
+    def _marked(self, row: Row[B], mark: str) -> Row[B]:
         """A row closed by a punctuation mark."""
         if not mark:
             return row

@@ -85,7 +85,7 @@ class Printer(Glyphs[B]):
             case Quotient():
                 return self.quotient(formula)
             case Power(base, exponent):
-                return self.raised(self.base(base), exponent)
+                return self.typeset(base) if exponent == 1 else self.raised(self.base(base), exponent)
             case Transpose(operand):
                 return self.transposed(self.base(operand))
             case Apply(function, argument):

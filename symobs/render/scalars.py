@@ -146,7 +146,8 @@ def _shortest(value: Scalar) -> Formula:
     if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
         return expanded
     factored = _factored(value)
-    return factored if size(factored) < size(expanded) else expanded
+    is_worth_it = size(factored) < size(expanded) and not isinstance(factored, Negative | Sum)
+    return factored if is_worth_it or _is_negative_product(factored, expanded) else expanded
 
 
 def _expanded(terms: Sequence[Monomial]) -> Formula:

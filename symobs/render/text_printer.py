@@ -84,8 +84,8 @@ class TextPrinter(Printer[TextBox]):
         if mark == "dot":
             dotted = unicodedata.normalize("NFC", f"{text}\u0307")
             return text_box(dotted if len(dotted) == 1 else f"d{text}/dt", Level.POWER)
-        is_plain = not mark and text[-1] not in _SUPERSCRIPT_DIGITS + ")"
-        return text_box(text + _INDEX.get(mark, ""), Level.ATOM if is_plain else Level.POWER)
+        level = Level.POWER if text[-1] in _SUPERSCRIPT_DIGITS else Level.ATOM
+        return text_box(text + _INDEX.get(mark, ""), level)
 
     def leaf(self, value: Scalar) -> TextBox:
         """A whole number or a symbol."""
@@ -120,11 +120,13 @@ class TextPrinter(Printer[TextBox]):
 
     def between(self, left: TextBox, right: TextBox) -> TextBox | None:
         """A dot before a number; no space after one, nor at a parenthesis."""
-        if right.line[0].isdigit():
+        before, after = left.line.rstrip(_SUPERSCRIPT_DIGITS), right.line
+        if after[0].isdigit():
             return text_box("·")
-        is_open = left.line.isdigit() or left.line.endswith(")") or right.line.startswith("(")
-        is_variable_matrix = left.line == self.variable and right.line == "I"
-        return None if is_open or is_variable_matrix else text_box(" ")
+        if before.isdigit():
+            return text_box(" ") if after[:2].isalpha() and after[:2].isascii() else None
+        is_open = before.endswith(")") or after.startswith("(") or (before == self.variable and after == "I")
+        return None if is_open else text_box(" ")
 
     def grouped(self, box: TextBox) -> TextBox:
         """Parentheses, as tall as what they hold."""
@@ -182,8 +184,13 @@ class TextPrinter(Printer[TextBox]):
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[TextBox]) -> tuple[TextBox, TextBox]:
-        """A plain pair."""
-        return text_box("("), text_box(")")
+        """A pair as tall as the content."""
+        above = max(box.baseline for box in content)
+        below = max(len(box.lines) - box.baseline for box in content)
+        if above + below == 1:
+            return text_box("("), text_box(")")
+        left, right = (tuple(_tall(shape, above + below)) for shape in _BRACKETS["("])
+        return TextBox(1, Level.SUM, left, above), TextBox(1, Level.SUM, right, above)
 
     def brackets(self) -> tuple[TextBox, TextBox]:
         """A plain pair, square."""
