@@ -1,7 +1,7 @@
 """symobs: exact design of observers and observer-based compensators, with the derivation a textbook would print.
 
-One function a task (`symobs.observer`, `symobs.compensator`, …), found in the registry when first used; nothing heavy is
-imported before.
+One function a task (`symobs.observer`, `symobs.compensator`, …), found in the registry when first used; nothing
+heavy is imported before.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Claims and their certificates: the check every result must pass.  [trusted]
+"""Claims and their certificates: the check every result must pass (trusted).
 
 A claim is a relation between two formulas in an environment: `det(sI − A + LC) = φ(s)`.  Checking it needs products
 and a comparison, never the method that met it.  Small claims are evaluated exactly.  Large ones are evaluated at
@@ -10,6 +10,7 @@ seeded by the SHA-256 of the claim, so runs repeat.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import random
 from dataclasses import dataclass
 from math import log2
@@ -185,7 +186,8 @@ class Bounds:
         )
 
     def equal(self, left: Bound, right: Bound) -> bool:
-        raise AssertionError
+        message = f"sizes are not compared: {left}, {right}"
+        raise AssertionError(message)
 
 
 def _size_of(value: Scalar | Matrix) -> Bound:
@@ -291,7 +293,7 @@ def _error_bound(relation: Relation, environment: Environment) -> float:
     arithmetic = Bounds(environment)
     total = 0.0
     sizes = [evaluate(member, environment, arithmetic) for member in relation.members]
-    for left, right in zip(sizes[:-1], sizes[1:], strict=True):
+    for left, right in itertools.pairwise(sizes):
         for first, second in _paired(left, right):
             degree = max(first.above + second.below, second.above + first.below)
             bits = 1 + max(first.above_bits + second.below_bits, second.above_bits + first.below_bits)

@@ -1,8 +1,10 @@
 """Declared signs, what they imply, and the conditions under which a result holds.
 
 A condition is one relation `expression op 0` on the parameters, of one of four kinds: *domain* (a denominator of the
-plant: where it vanishes there is no plant), *claim* (a denominator of the answer), *existence* (a factor whose vanishing
-costs observability or controllability), *route* (what one method's witness needs).  What the declared signs imply is not repeated.
+plant: where it vanishes there is no plant), *claim* (a denominator of the answer), *existence* (a factor whose
+vanishing
+costs observability or controllability), *route* (what one method's witness needs).  What the declared signs imply is
+not repeated.
 """
 
 from __future__ import annotations
@@ -46,10 +48,10 @@ def _product_sign(left: str, right: str) -> str:
     if "nonzero" in (left, right):
         weak = {"nonnegative", "nonpositive"} & {left, right}
         return "real" if weak else "nonzero"
-    weak = left.startswith("non") or right.startswith("non")
+    either_weak = left.startswith("non") or right.startswith("non")
     down = {"negative", "nonpositive"}
     negative = (left in down) != (right in down)
-    if weak:
+    if either_weak:
         return "nonpositive" if negative else "nonnegative"
     return "negative" if negative else "positive"
 

@@ -5,19 +5,21 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank, root_of_pole
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
-from symobs.method import Result
+
+if TYPE_CHECKING:
+    from symobs.method import Result
 
 _RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
 
 
 def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str]:
-    """Return one line for every expected answer that is not met; raises `ProblemErrors` for entries that cannot be read.
+    """Return one line for each expected answer that is not met; raises `ProblemErrors` for what cannot be read.
 
     `[expect.TASK]` belongs to one task; other keys belong to every task that has the field, and at least one must.
     """

@@ -1,4 +1,4 @@
-"""Results, and the registries of tasks, methods and formats.  [trusted]
+"""Results, and the registries of tasks, methods and formats (trusted).
 
 A `Result` cannot exist unless its claims hold: the constructor checks them, and the claims belong to the result's type,
 not to the method that found the answer.  Tasks, methods and output formats register themselves by decorators; their
@@ -143,7 +143,7 @@ class Result:
         return [*super().__dir__(), *self.fields]
 
     def to(self, format_name: str) -> str | bytes:
-        """Return the result in a format: latex, fragment, text, json, pdf, …"""
+        """Return the result in a format: latex, fragment, text, json or pdf."""
         return render(Document("", "", (self,)), format_name)
 
     def to_latex(self) -> str:
@@ -167,14 +167,10 @@ class Result:
 
 def _denominators(values: Iterable[Any]) -> list[Scalar]:
     """Return the denominators of scalars and matrices."""
-    found = []
-    for value in values:
-        if hasattr(value, "common_denominator"):
-            found.append(value.common_denominator())
-    return found
+    return [value.common_denominator() for value in values if hasattr(value, "common_denominator")]
 
 
-# -- registries ---------------------------------------------------------------------------------------------------------
+# -- registries --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -69,15 +69,51 @@ OPERATORS: dict[str, tuple[str, str]] = {
     ">=": (r"\ge", "≥"),
 }
 
-GREEK = ["alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu", "nu", "xi", "omicron", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi", "Psi", "Omega"]
+GREEK = [
+    "alpha",
+    "beta",
+    "gamma",
+    "delta",
+    "epsilon",
+    "zeta",
+    "eta",
+    "theta",
+    "iota",
+    "kappa",
+    "lambda",
+    "mu",
+    "nu",
+    "xi",
+    "omicron",
+    "pi",
+    "rho",
+    "sigma",
+    "tau",
+    "upsilon",
+    "phi",
+    "chi",
+    "psi",
+    "omega",
+    "Gamma",
+    "Delta",
+    "Theta",
+    "Lambda",
+    "Xi",
+    "Pi",
+    "Sigma",
+    "Upsilon",
+    "Phi",
+    "Psi",
+    "Omega",
+]
 _GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
-_GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name not in {"omicron"}} | {"lam": r"\lambda", "omicron": "o"}
+_GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name != "omicron"} | {"lam": r"\lambda", "omicron": "o"}
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _NAME = re.compile(r"^([A-Za-z]+?)_?(\d*)((?:_[A-Za-z0-9]+)*)$")
 
 
 def symbol_latex(name: str, declared: str | None = None) -> str:
-    r"""Return the LaTeX of a parameter's name: `omega_0` → `\omega_{0}`, `h1` → `h_{1}`, `mass_cart` → …"""
+    r"""Return the LaTeX of a parameter's name: `omega_0` → `\omega_{0}`, and `h1` → `h_{1}`."""
     if declared:
         return declared
     stem, digits, rest = _split(name)

@@ -1,11 +1,10 @@
-"""Writing a derivation: a `Page` collects steps and hands out terms, so that a method's page reads like the textbook's."""
+"""Writing a derivation: a `Page` collects steps and hands out terms, so that code reads like the textbook's page."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.derivation import (
     Conclude,
@@ -34,7 +33,11 @@ from symobs.formula import (
     Roots,
 )
 from symobs.formula.term import Term
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int

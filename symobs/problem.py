@@ -203,8 +203,7 @@ def validate(data: Mapping[str, Any]) -> Problem:
     expect = attempt(lambda: _table(data, "expect"), {})
     plant = attempt(lambda: _plant(data, symbols)) if symbols is not None else None
     if not errors:
-        problem = Problem(title, source, ids, wanted, plant, specification, expect)
-        return problem
+        return Problem(title, source, ids, wanted, plant, specification, expect)
     if plant is not None and wanted:
         attempt(lambda: Problem(title, source, ids, wanted, plant, _known_part(specification, wanted)).solve())
     distinct = {str(error): error for error in errors}

@@ -119,7 +119,7 @@ def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ..
         if isinstance(entry, Complex):
             poles.append(entry)
         elif type(entry).__module__.startswith("sympy"):
-            poles.append(read_complex(entry, symbols, place))
+            poles.append(read_complex(entry, place))
         else:
             poles += parse_poles([entry], symbols.names, where=place)
     return tuple(poles)
@@ -129,7 +129,9 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         raise InputError(message, where=where, repair=f"give as many poles as the order asks for, {degree}")
-    field = Field.of([variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)])
+    field = Field.of(
+        [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
+    )
     s = Scalar.symbol(variable).within(field)
     waiting = [Complex(pole.real.within(field), pole.imaginary.within(field)) for pole in poles]
     factors: list[Scalar] = []

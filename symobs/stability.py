@@ -1,7 +1,7 @@
-"""Stability of a polynomial, decided exactly: Liénard and Chipart in continuous time, the bilinear map in discrete time.
+"""Stability of a polynomial, exactly: Liénard and Chipart in continuous time, the bilinear map in discrete time.
 
-A polynomial a₀ sⁿ + … + aₙ with a₀ > 0 has all its roots in Re s < 0 exactly when aₙ, aₙ₋₂, … and the Hurwitz determinants
-Δₙ₋₁, Δₙ₋₃, … are positive.  For |z| < 1 the same is asked of (w − 1)ⁿ a((w + 1)/(w − 1)).
+A polynomial a₀ sⁿ + … + aₙ with a₀ > 0 has all its roots in Re s < 0 exactly when aₙ, aₙ₋₂, … and the Hurwitz
+determinants Δₙ₋₁, Δₙ₋₃, … are positive.  For |z| < 1 the same is asked of (w − 1)ⁿ a((w + 1)/(w − 1)).
 """
 
 from __future__ import annotations
@@ -72,8 +72,7 @@ def _lienard_chipart(coefficients: Sequence[Scalar]) -> list[Scalar]:
     order = len(coefficients) - 1
     conditions = [coefficients[k] for k in range(order, 0, -2)]
     hurwitz = hurwitz_matrix(coefficients)
-    for k in range(order - 1, 1, -2):
-        conditions.append(hurwitz.select(range(k), range(k)).determinant())
+    conditions += [hurwitz.select(range(k), range(k)).determinant() for k in range(order - 1, 1, -2)]
     if order % 2 == 0:
         conditions.append(coefficients[1])
     return conditions
@@ -103,10 +102,7 @@ def _essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
         sign = sign_of(factor, signs)
         if sign == "positive" or (power % 2 == 0 and sign in {"negative", "nonzero"}):
             continue
-        if sign == "negative":
-            kept = -kept
-        else:
-            kept = kept * (factor if power % 2 else factor**2)
+        kept = -kept if sign == "negative" else kept * (factor if power % 2 else factor**2)
     return kept
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import formula_of_factored, given, say_stability
 from symobs.certificate import Claim
@@ -13,9 +12,13 @@ from symobs.formula import Environment, Literal, Roots
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.specification import Name
 from symobs.stability import stability
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.specification import Name
+    from symobs.system import StateSpace
 
 
 class CharacteristicPolynomial(Result):
@@ -79,5 +82,4 @@ def characteristic_polynomial(plant: StateSpace, *, method: Name = "auto") -> Re
     Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.
     Source: S0, chapter 4.
     """
-    found: Result = choose("characteristic_polynomial", method, "determinant").solve(plant)
-    return found
+    return choose("characteristic_polynomial", method, "determinant").solve(plant)

@@ -1,4 +1,4 @@
-"""Observability and its dual: the matrix, its rank with the exact exceptions, the kernel, the modes nobody can see or move.
+"""Observability and its dual: the matrix, its rank with the exact exceptions, the kernel, the hidden modes.
 
 (C, A) is observable exactly when 𝒪 = [C; CA; …; CAⁿ⁻¹] has rank n; (A, B) is controllable exactly when (Bᵀ, Aᵀ) is
 observable.  With parameters the rank is the generic one, and every stratum where it drops is a case.
@@ -6,10 +6,9 @@ observable.  With parameters the rank is the generic one, and every stratum wher
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.pages import given, square_test
 from symobs.analysis.strata import strata
@@ -20,8 +19,12 @@ from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.specification import Name
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.specification import Name
+    from symobs.system import StateSpace
 
 
 def power_rows(A: Matrix, C: Matrix) -> Matrix:
@@ -174,8 +177,7 @@ class Observability(RankResult):
         given(page)
         with page.section("observability"):
             rows, C, A = [[page["C"]]], page["C"], page["A"]
-            for k in range(1, self.plant.order):
-                rows.append([C @ A**k])
+            rows += [[C @ A**k] for k in range(1, self.plant.order)]
             page.define("O", block(rows), say="observability_matrix")
             square_test(page, "O", self, "observability")
 
@@ -206,8 +208,7 @@ class Controllability(RankResult):
         given(page)
         with page.section("controllability"):
             columns, B, A = [page["B"]], page["B"], page["A"]
-            for k in range(1, self.plant.order):
-                columns.append(A**k @ B)
+            columns += [A**k @ B for k in range(1, self.plant.order)]
             page.define("Ctr", block([columns]), say="controllability_matrix")
             square_test(page, "Ctr", self, "controllability")
 
@@ -238,8 +239,7 @@ def observability(plant: StateSpace, *, method: Name = "auto") -> Result:
     Source: S0, Theorem 4.2 and (4.12)-(4.15).
     """
     plant.require("C", task="observability")
-    found: Result = choose("observability", method, "rank").solve(plant)
-    return found
+    return choose("observability", method, "rank").solve(plant)
 
 
 @task
@@ -252,5 +252,4 @@ def controllability(plant: StateSpace, *, method: Name = "auto") -> Result:
     Source: S0, Theorem 4.1 (duality) with Theorem 4.2.
     """
     plant.require("B", task="controllability")
-    found: Result = choose("controllability", method, "rank").solve(plant)
-    return found
+    return choose("controllability", method, "rank").solve(plant)

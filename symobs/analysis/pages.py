@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from symobs.conditions import never_zero, vanishing_factors
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
 from symobs.formula import Exactly, Literal, Power, Product, Quotient, Roots
-from symobs.formula.term import Term
 from symobs.page import Page, predicate, relation
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
     from symobs.analysis.observability import RankResult
     from symobs.formula import Formula
+    from symobs.formula.term import Term
     from symobs.specification import DesiredPolynomial
 
 

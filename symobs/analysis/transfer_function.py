@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import factored_form, given
 from symobs.certificate import Claim
@@ -14,9 +13,13 @@ from symobs.formula import Environment, Literal, Quotient, Roots
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.specification import Name
 from symobs.stability import monic
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.specification import Name
+    from symobs.system import StateSpace
 
 
 class TransferFunction(Result):
@@ -89,5 +92,4 @@ def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
     if (plant.inputs, plant.outputs) != (1, 1):
         message = f"the plant has {plant.inputs} inputs and {plant.outputs} outputs"
         raise InputError(message, where="plant", repair="keep one input and one output")
-    found: Result = choose("transfer_function", method, "resolvent").solve(plant)
-    return found
+    return choose("transfer_function", method, "resolvent").solve(plant)

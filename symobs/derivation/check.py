@@ -1,14 +1,14 @@
-"""Derivations, and the check without which none is shown.  [trusted]
+"""Derivations, and the check without which none is shown (trusted).
 
 `Derivation.check` walks the steps in order, builds the environment from what is given and defined, and verifies every
-link of every relation, also those inside sentences; a false line raises `DerivationRejected`, and so does a letter that was
-not established before.  Renderers accept checked derivations only.
+link of every relation, also those inside sentences; a false line raises `DerivationRejected`, and so does a letter
+that was not established before.  Renderers accept checked derivations only.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
 from symobs.certificate import verify
 from symobs.conditions import never_zero
@@ -190,7 +190,7 @@ def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> 
                 value = last.value
             return environment.having(values={name: value})
         case _:
-            _reject("only a letter, a derivative or a named coefficient can be introduced")
+            return _reject("only a letter, a derivative or a named coefficient can be introduced")
 
 
 def _established(formula: Formula, environment: Environment) -> None:
@@ -217,7 +217,7 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
     return inside
 
 
-def _reject(line: str) -> None:
+def _reject(line: str) -> NoReturn:
     message = f"the line {line} is not true"
     raise DerivationRejected(message, repair="please report this: it is a bug of symobs", line=line)
 

@@ -6,11 +6,13 @@ A step says something about letters established before it, and carries the sente
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.exact import Scalar
-from symobs.formula import Fact, Formula, Relation
 from symobs.phrases import slots_of
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+    from symobs.formula import Fact, Formula, Relation
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ class Solve:
 
 @dataclass(frozen=True, slots=True)
 class Conclude:
-    """A finding; `verified` marks the check of an answer that the reader is shown.  Without sentence it only binds the page."""
+    """A finding; `verified` marks a check the reader is shown; without sentence it only binds the page."""
 
     sentence: Sentence | None
     facts: tuple[Fact, ...] = ()

@@ -1,6 +1,7 @@
-"""Placing the poles of A − l c for one output row c: the core that observers use, and state feedback through the dual pair.
+"""Placing the poles of A − l c for one output row c: what observers use, and state feedback through the dual pair.
 
-Where (c, A) is observable the gain is unique, l = φ(A) 𝒪⁻¹ eₙ.  Where it is not, the unobservable modes stay whatever l is; φ can
+Where (c, A) is observable the gain is unique, l = φ(A) 𝒪⁻¹ eₙ.  Where it is not, the unobservable modes stay
+whatever l is; φ can
 be assigned exactly when their polynomial divides it, and then every gain differs by a vector of ker 𝒪.
 """
 
@@ -8,10 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, apply_polynomial, echelon, independent_rows, kernel, unit_rows
 from symobs.exact.krylov import Krylov
-from symobs.specification import DesiredPolynomial
+
+if TYPE_CHECKING:
+    from symobs.specification import DesiredPolynomial
 
 
 @dataclass(frozen=True)
@@ -24,7 +28,7 @@ class Pair:
 
     @cached_property
     def krylov(self) -> Krylov:
-        """The rows c, cA, …"""
+        """The rows c, cA, … of 𝒪."""
         return Krylov.of(self.A, self.c)
 
     @cached_property

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.certificate import Certificate, Claim, check
-from symobs.conditions import Condition
 from symobs.design.gain import GainDesign, letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.design.state_feedback import StateFeedbackDesign
@@ -20,14 +18,20 @@ from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText, desired_polynomial
 from symobs.stability import stability
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.conditions import Condition
+    from symobs.system import StateSpace
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CompensatorDesign(Result):
     """Both gains and F: det(sI − A + BK) = φ_c, det(sI − A + LC) = φ_o, F(s) = K (sI − A + BK + LC − LDK)⁻¹ L.
 
-    `feedback` and `estimator` are the two designs, each with its own claims; where one of them is impossible there is no F.
+    `feedback` and `estimator` are the two designs, each with its own claims; where one of them is impossible there
+    is no F.
     """
 
     feedback: StateFeedbackDesign
@@ -241,7 +245,8 @@ def compensator(
     control_poles or control_polynomial     the n poles of A − BK
     observer_poles or observer_polynomial   the n poles of A − LC
     observer                                `full`: order n
-    Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop (P/(1 + PF), F in the return path), closed_loop_matrix in (x, e) and
+    Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop (P/(1 + PF), F in the return path),
+    closed_loop_matrix in (x, e) and
     closed_loop_matrix_estimate in (x, x̂).  Raises `InputError` for wrong poles or shapes.
     Source: S0, section 4.3, (4.23)-(4.29).
     """
@@ -258,5 +263,4 @@ def compensator(
     estimate = desired_polynomial(
         plant, observer_poles, observer_polynomial, names=("observer_poles", "observer_polynomial")
     )
-    found: CompensatorDesign = chosen.solve(plant, control, estimate)
-    return found.renamed(method)
+    return chosen.solve(plant, control, estimate).renamed(method)

@@ -1,4 +1,4 @@
-"""The page of the compensator: gains, F(s) through its four stages (S0, Example 4.2), closed loop in (x, e) and as a transfer function."""
+"""The page of the compensator: gains, F(s) through its four stages (S0, Example 4.2), and the closed loop."""
 
 from __future__ import annotations
 

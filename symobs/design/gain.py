@@ -5,10 +5,9 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
@@ -19,9 +18,13 @@ from symobs.formula import Environment, Literal, Negative, Sum
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
-from symobs.specification import DesiredPolynomial
 from symobs.stability import Stability, stability
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.specification import DesiredPolynomial
+    from symobs.system import StateSpace
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,8 +1,9 @@
-"""The pages of gain design: canonical form (the recipe of S0, Example 4.1) and Ackermann's formula, on either side of duality."""
+"""The pages of gain design: canonical form (S0, Example 4.1) and Ackermann's formula, on either side of duality."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from symobs.analysis.observability import Controllability, Observability, RankResult
 from symobs.analysis.pages import factored_form, formula_of_factored, say_stability, square_test
@@ -12,9 +13,11 @@ from symobs.design.gain import GainDesign, fresh_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
 from symobs.formula import Literal, Roots
 from symobs.formula.term import Term, block, product
-from symobs.method import Case
-from symobs.page import Page, relation, sentence
+from symobs.page import Page, Slot, relation, sentence
 from symobs.specification import DesiredPolynomial
+
+if TYPE_CHECKING:
+    from symobs.method import Case
 
 #: A coefficient of φ with more terms than this gets a letter of its own on the page.
 _PLAIN_TERMS = 4
@@ -263,7 +266,9 @@ def _case(page: Page, case: Case, side: Side) -> None:
     else:
         own = design_gain_on(case, page, side)
         key = f"case_survives_{side.kind}" if own else f"case_other_{side.kind}"
-        slots = {"modes": modes} if own else {"modes": modes, "gain": page.value(result.answer[side.gain])}
+        slots: dict[str, Slot] = {"modes": modes}
+        if not own:
+            slots["gain"] = page.value(result.answer[side.gain])
         steps.append(Conclude(sentence(key, slots), (invariant, unseen)))
     page.steps.append(CaseStep(when, tuple(case.substitution.items()), tuple(steps)))
 

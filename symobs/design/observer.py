@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
 from symobs.design.assignment import Pair
 from symobs.design.canonical import canonical_gain
 from symobs.design.gain import GainDesign, require_single
 from symobs.design.gain_pages import OBSERVER, write_gain
-from symobs.exact import Matrix
-from symobs.formula import Environment
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
@@ -26,7 +23,13 @@ from symobs.specification import (
     read_gain,
     reject_both,
 )
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Matrix
+    from symobs.formula import Environment
+    from symobs.system import StateSpace
 
 
 class ObserverDesign(GainDesign):
@@ -85,7 +88,7 @@ _CANONICAL_PAGES = 4
 def write_observer(page: Page) -> None:
     """Write the observer in both forms and its error equation, each line checked on signals."""
     m = page.plant.matrices
-    A, C, L, x, x_hat, y = (page[name] for name in ("A", "C", "L", "x", "x_hat", "y"))
+    A, C, L, x_hat, y = (page[name] for name in ("A", "C", "L", "x_hat", "y"))
     model, predicted = A @ x_hat, C @ x_hat
     if m.has_input:
         model = model + page["B"] @ page["u"]
@@ -149,5 +152,4 @@ def observer(
         return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    found: ObserverDesign = choose("observer", method, "ackermann").solve(plant, desired)
-    return found.renamed(method)
+    return choose("observer", method, "ackermann").solve(plant, desired).renamed(method)

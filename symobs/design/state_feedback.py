@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
 from symobs.design.assignment import Pair
@@ -12,11 +11,8 @@ from symobs.design.canonical import canonical_gain
 from symobs.design.gain import GainDesign, require_single
 from symobs.design.gain_pages import FEEDBACK, write_gain
 from symobs.design.observer import page_style
-from symobs.exact import Matrix
-from symobs.formula import Environment
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
-from symobs.page import Page
 from symobs.specification import (
     DesiredPolynomial,
     GainText,
@@ -27,7 +23,14 @@ from symobs.specification import (
     read_gain,
     reject_both,
 )
-from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Matrix
+    from symobs.formula import Environment
+    from symobs.page import Page
+    from symobs.system import StateSpace
 
 
 class StateFeedbackDesign(GainDesign):
@@ -100,8 +103,8 @@ def state_feedback(
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n; or
     K             a given 1×n gain, whose polynomial, poles and stability are reported
-    Returns K (1×n), polynomial, closed_loop_matrix (A − BK); where (A, B) is not controllable either the family of gains or
-    verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    Returns K (1×n), polynomial, closed_loop_matrix (A − BK); where (A, B) is not controllable either the family of
+    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
     Source: S0, Example 4.2 and the pole assignment theorem.
     """
     plant.require("B", task="state_feedback")
@@ -111,5 +114,4 @@ def state_feedback(
         return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    found: StateFeedbackDesign = choose("state_feedback", method, "ackermann").solve(plant, desired)
-    return found.renamed(method)
+    return choose("state_feedback", method, "ackermann").solve(plant, desired).renamed(method)

@@ -24,7 +24,7 @@ def echelon(matrix: Matrix, relation: Scalar | None = None) -> tuple[tuple[int, 
     """
     field = matrix.field if relation is None else matrix.field | relation.field
     lifted = matrix.within(field)
-    rows = lifted.table if not isinstance(lifted.table, fmpz_mat) else ring.rows_of(lifted.table, field)
+    rows = lifted.polynomials
     modulus = None if relation is None else relation.within(field).numerator_part
 
     def vanishes(entry: fmpz_mpoly) -> bool:

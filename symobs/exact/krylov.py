@@ -1,6 +1,7 @@
 """The rows c, cA, …, cAⁿ⁻¹ and what observer design needs of them, without fractions.
 
-Row k is kept as an integral row over its own denominator dₖ, so 𝒪 = diag(1/dₖ) N, det 𝒪 = det N / Π dₖ and 𝒪⁻¹ eₙ = dₙ₋₁ N⁻¹ eₙ.
+Row k is kept as an integral row over its own denominator dₖ, so 𝒪 = diag(1/dₖ) N, det 𝒪 = det N / Π dₖ and 𝒪⁻¹ eₙ =
+dₙ₋₁ N⁻¹ eₙ.
 """
 
 from __future__ import annotations
@@ -9,13 +10,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import fmpz_mat
-
 from symobs.exact import ring
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
+    from flint import fmpz_mpoly
+
     from symobs.exact.field import Field
 
 
@@ -47,19 +48,15 @@ class Krylov:
         return Matrix.block([[row] for row in self.rows])
 
     @cached_property
-    def _last_cofactors(self) -> Matrix:
-        """The column of cofactors of N's last row."""
+    def _last_cofactors(self) -> tuple[fmpz_mpoly, ...]:
+        """The cofactors of N's last row."""
         order = len(self.rows)
-        table = tuple(
-            row.table[0] if not isinstance(row.table, fmpz_mat) else ring.rows_of(row.table, self.field)[0]
-            for row in self.rows
-        )
-        column = tuple((ring.cofactor(table, order - 1, i, self.field),) for i in range(order))
-        return Matrix(self.field, column, self.field.one, (order, 1))
+        table = tuple(row.polynomials[0] for row in self.rows)
+        return tuple(ring.cofactor(table, order - 1, i, self.field) for i in range(order))
 
     @cached_property
     def determinant(self) -> Scalar:
-        """Det 𝒪, as it comes: common factors with nothing cancelled but within the fraction itself."""
+        """The determinant of 𝒪 as it comes: common factors with nothing cancelled but within the fraction itself."""
         if not self.field.names:
             return self.matrix.determinant()
         bottom = self.field.one
@@ -67,10 +64,8 @@ class Krylov:
             bottom = bottom * row.denominator
         return Scalar.reduced(self.field, self._integral_determinant(), bottom)
 
-    def _integral_determinant(self) -> object:
-        last = self.rows[-1].table[0]
-        column = tuple(entry[0] for entry in self._last_cofactors.table)
-        return ring.dot(last, column, self.field.zero)
+    def _integral_determinant(self) -> fmpz_mpoly:
+        return ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
 
     def solve_last(self) -> Matrix:
         """Return 𝒪⁻¹ eₙ; raises ZeroDivisionError where det 𝒪 = 0 identically."""
@@ -82,5 +77,5 @@ class Krylov:
             message = "not observable"
             raise ZeroDivisionError(message)
         scale = self.rows[-1].denominator
-        column = tuple((entry[0] * scale,) for entry in self._last_cofactors.table)
+        column = tuple((cofactor * scale,) for cofactor in self._last_cofactors)
         return Matrix(self.field, column, below, (order, 1))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from flint import fmpz, fmpz_mat, fmpz_mpoly
+from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
 from symobs.exact.field import RATIONALS, Field
@@ -107,6 +107,11 @@ class Matrix:
             table = tuple(tuple(field.lift(entry, self.field) for entry in row) for row in self.table)
         return Matrix(field, table, field.lift(self.denominator, self.field), self.shape)
 
+    @property
+    def polynomials(self) -> ring.Rows:
+        """The table as rows of polynomials, in the numeric case too."""
+        return ring.rows_of(self.table, self.field) if isinstance(self.table, fmpz_mat) else self.table
+
     # -- reading --------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -115,10 +120,7 @@ class Matrix:
         return tuple(tuple(self._reduced(i, j) for j in range(self.shape[1])) for i in range(self.shape[0]))
 
     def _reduced(self, i: int, j: int) -> Scalar:
-        if isinstance(self.table, fmpz_mat):
-            entry = self.field.context.constant(self.table[i, j])
-        else:
-            entry = self.table[i][j]
+        entry = self.field.context.constant(self.table[i, j]) if isinstance(self.table, fmpz_mat) else self.table[i][j]
         return Scalar.reduced(self.field, entry, self.denominator)
 
     def __getitem__(self, index: tuple[int, int]) -> Scalar:
@@ -203,19 +205,21 @@ class Matrix:
             raise ValueError(message)
         a, b, field = self._fit(other)
         denominator, left, right = _align(a.denominator, b.denominator)
-        a, b = a._scaled(left), b._scaled(right)
+        a, b = a.scaled(left), b.scaled(right)
         if isinstance(a.table, fmpz_mat) and isinstance(b.table, fmpz_mat):
             return Matrix(field, a.table + b.table, denominator, self.shape)
-        table = tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(a.table, b.table, strict=True))
+        table = tuple(
+            tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(a.polynomials, b.polynomials, strict=True)
+        )
         return Matrix(field, table, denominator, self.shape)
 
     def __neg__(self) -> Matrix:
-        return self._scaled(self.field.context.constant(-1))
+        return self.scaled(self.field.context.constant(-1))
 
     def __sub__(self, other: Matrix) -> Matrix:
         return self + (-other)
 
-    def _scaled(self, factor: fmpz_mpoly) -> Matrix:
+    def scaled(self, factor: fmpz_mpoly) -> Matrix:
         """Return the table times a polynomial of the field, over the same denominator."""
         if factor.is_one():
             return self
@@ -229,7 +233,7 @@ class Matrix:
         scalar = Scalar.of(factor)
         field = self.field | scalar.field
         scalar, matrix = scalar.within(field), self.within(field)
-        scaled = matrix._scaled(scalar.numerator_part)
+        scaled = matrix.scaled(scalar.numerator_part)
         return Matrix(field, scaled.table, matrix.denominator * scalar.denominator_part, self.shape)
 
     __rmul__ = __mul__
@@ -245,7 +249,7 @@ class Matrix:
             return _lowest(Matrix(field, a.table * b.table, denominator, shape))
         if 0 in (*shape, self.shape[1]):
             return Matrix.zeros(*shape).within(field)
-        return Matrix(field, ring.product(a.table, b.table, field.zero), denominator, shape)
+        return Matrix(field, ring.product(a.polynomials, b.polynomials, field.zero), denominator, shape)
 
     def __pow__(self, exponent: int) -> Matrix:
         if exponent < 0:
@@ -292,7 +296,7 @@ class Matrix:
     def adjugate_column(self, index: int) -> Matrix:
         """Return one column of adj(M): the cofactors of row `index`."""
         order = self.shape[0]
-        rows = self.table if not isinstance(self.table, fmpz_mat) else ring.rows_of(self.table, self.field)
+        rows = self.polynomials
         column = tuple((ring.cofactor(rows, index, i, self.field),) for i in range(order))
         return build(self.field, column, self.denominator ** (order - 1), (order, 1))
 
@@ -304,19 +308,19 @@ class Matrix:
         """Return X with M X = right; raises ZeroDivisionError where det M = 0."""
         a, b, field = self._fit(right)
         if isinstance(a.table, fmpz_mat) and isinstance(b.table, fmpz_mat):
-            solution = a.table.solve(b.table)
-            table, below = solution.numer_denom()
+            table, below = fmpq_mat(a.table).solve(fmpq_mat(b.table)).numer_denom()
             top, bottom = a.denominator, b.denominator * field.context.constant(below)
             return _lowest(Matrix(field, table * top.leading_coefficient(), bottom, b.shape))
-        determinant = ring.determinant(a.table, field)
+        rows, order = a.polynomials, a.shape[0]
+        determinant = ring.determinant(rows, field)
         if not determinant:
             message = "the matrix is singular"
             raise ZeroDivisionError(message)
         adjugate = ring.transpose(
-            tuple(tuple(ring.cofactor(a.table, j, i, field) for i in range(a.shape[0])) for j in range(a.shape[0]))
+            tuple(tuple(ring.cofactor(rows, j, i, field) for i in range(order)) for j in range(order))
         )
-        table = ring.product(adjugate, b.table, field.zero)
-        return Matrix(field, table, determinant * b.denominator, b.shape)._scaled(a.denominator)
+        product = ring.product(adjugate, b.polynomials, field.zero)
+        return Matrix(field, product, determinant * b.denominator, b.shape).scaled(a.denominator)
 
     def characteristic_polynomial(self, variable: str) -> Scalar:
         """Return det(variable · I − M) for a matrix free of `variable`."""
@@ -333,7 +337,7 @@ class Matrix:
         diagonal = generator * lifted.denominator
         rows = tuple(
             tuple((diagonal - entry) if i == j else -entry for j, entry in enumerate(row))
-            for i, row in enumerate(lifted.table)
+            for i, row in enumerate(lifted.polynomials)
         )
         return Scalar.reduced(field, ring.determinant(rows, field), lifted.denominator**order)
 

@@ -7,12 +7,12 @@ most h / (61 · 4·10¹⁶), there being more than 4·10¹⁶ such primes.
 
 from __future__ import annotations
 
-import random
 from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mat, nmod, nmod_mat
 
 if TYPE_CHECKING:
+    import random
     from collections.abc import Iterable
 
     from symobs.exact.matrix import Matrix

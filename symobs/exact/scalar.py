@@ -50,7 +50,7 @@ class Scalar:
         return Scalar(field, numerator, denominator)
 
     @staticmethod
-    def of(value: Scalar | int | Fraction) -> Scalar:
+    def of(value: object) -> Scalar:
         """Return the scalar equal to an integer, a fraction or a scalar."""
         if isinstance(value, Scalar):
             return value
@@ -193,7 +193,7 @@ class Scalar:
         return len(self.numerator_part) + len(self.denominator_part)
 
     def sizes(self) -> tuple[int, int, float, float]:
-        """Return the total degrees of numerator and denominator and bounds of log₂ of the sums of their |coefficients|."""
+        """Return the total degrees of both parts and bounds of log₂ of the sums of their |coefficients|."""
         above, below = self.numerator_part, self.denominator_part
         return _degree(above), _degree(below), length_bits(above), length_bits(below)
 
@@ -278,7 +278,7 @@ class Scalar:
         return Scalar.rational(above, below), tuple(found)
 
     def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
-        """Return the value with each named generator replaced; raises ZeroDivisionError where a denominator vanishes."""
+        """Return the value with generators replaced; raises ZeroDivisionError where a denominator vanishes."""
         relevant = {name: value for name, value in values.items() if name in self.field.position}
         if not relevant:
             return self
@@ -333,14 +333,14 @@ def _factor(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_
             unit, parts = _factor_over_rationals(field, polynomial)
     else:
         unit, parts = _factor_over_rationals(field, polynomial)
-    unit, found = int(unit), []
+    whole, found = int(unit), []
     for part, power in parts:
         positive = part
         if part.leading_coefficient() < 0:
-            positive, unit = -part, unit * (-1) ** (power % 2)
+            positive, whole = -part, whole * (-1) ** (power % 2)
         found.append((positive, int(power)))
     found.sort(key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
-    return unit, found
+    return whole, found
 
 
 def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import sympy
+import sympy  # noqa: TID253 - this module is imported only where SymPy objects come or go
 
 from symobs.errors import InexactInput, InputError
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
-from symobs.exact.roots import Factored, Root
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from symobs.exact.roots import Factored, Root
 
 
 def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> sympy.Expr:

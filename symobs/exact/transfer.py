@@ -24,19 +24,19 @@ def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple
 
 
 def _bordered(A: Matrix, b: Matrix, c: Matrix, field: Field, variable: str) -> tuple[Scalar, Scalar]:
-    """Return c adj(sI − A) b = −det [sI − A, b; c, 0] and det(sI − A), from the minors of the rows [sI − A, b] alone."""
+    """Return c adj(sI − A) b = −det [sI − A, b; c, 0] and det(sI − A), both from the minors of [sI − A, b]."""
     field = field | Field.of((variable,))
     A, b, c = A.within(field), b.within(field), c.within(field)
     diagonal = field.context.gen(field.position[variable]) * A.denominator
     order = A.shape[0]
     rows = tuple(
-        (*((diagonal - e) if i == j else -e for j, e in enumerate(row)), b.table[i][0])  # type: ignore[index]
-        for i, row in enumerate(A.table)  # type: ignore[arg-type]
+        (*((diagonal - e) if i == j else -e for j, e in enumerate(row)), b.polynomials[i][0])
+        for i, row in enumerate(A.polynomials)
     )
     shared, rows = ring.strip_row_contents(rows, field)
     minors = ring.maximal_minors(rows, field)
     total = field.zero
-    for j, entry in enumerate(c.table[0]):  # type: ignore[index]
+    for j, entry in enumerate(c.polynomials[0]):
         minor = minors.get((*range(j), *range(j + 1, order + 1)), field.zero)
         if entry and minor:
             total = total + entry * minor if (order - 1 - j) % 2 == 0 else total - entry * minor

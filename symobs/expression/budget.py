@@ -117,12 +117,11 @@ def operation_size(sign: str, left: Number, right: Number) -> Parts:
     (a, b), (c, d) = parts(left), parts(right)
     if sign == "*":
         return a * c, b * d
-    are_real = isinstance(left, Scalar) and isinstance(right, Scalar)
+    if isinstance(left, Complex) or isinstance(right, Complex):
+        return (a * d * c, b * c * c) if sign == "/" else (a * d + c * b, b * d)
     if sign == "/":
-        return (a * d, b * c) if are_real else (a * d * c, b * c * c)
-    if isinstance(left, Scalar) and isinstance(right, Scalar) and left.denominator == right.denominator:
-        return a + c, b
-    return a * d + c * b, b * d
+        return a * d, b * c
+    return (a + c, b) if left.denominator == right.denominator else (a * d + c * b, b * d)
 
 
 def power_size(base: Scalar, exponent: int) -> Parts:

@@ -63,7 +63,7 @@ class _Ready(Lexer):
     def __init__(self, _configuration: object) -> None:
         pass
 
-    def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]  # noqa: ANN401 - lark's one-argument form
+    def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]
         return iter(tokens)
 
 

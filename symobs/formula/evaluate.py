@@ -64,9 +64,10 @@ class Environment:
         """Return the value of a letter."""
         return Scalar.symbol(self.variable) if name == "s" else self.values[name]
 
-    def having(self, **updates: Mapping[str, object]) -> Environment:
+    def having(self, **updates: Mapping[str, Any]) -> Environment:
         """Return an environment with entries added to the named mappings."""
-        return replace(self, **{key: {**getattr(self, key), **new} for key, new in updates.items()})
+        changed: dict[str, Any] = {key: {**getattr(self, key), **new} for key, new in updates.items()}
+        return replace(self, **changed)
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ class Sum:
 
 @dataclass(frozen=True, slots=True)
 class Negative:
-    """−operand."""
+    """The negative of an operand."""
 
     operand: Formula
 
@@ -100,7 +100,9 @@ class Derivative:
     operand: Formula
 
 
-Formula: TypeAlias = Letter | Literal | Identity | Sum | Negative | Product | Power | Transpose | Quotient | Apply | Block | Derivative
+Formula: TypeAlias = (
+    Letter | Literal | Identity | Sum | Negative | Product | Power | Transpose | Quotient | Apply | Block | Derivative
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +118,7 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
-    """A property of a value that no equation states: `stable`, `strictly_proper`, `never_zero`, …"""
+    """A property of a value that no equation states: `stable`, `strictly_proper`, `never_zero`."""
 
     name: str
     subject: Formula

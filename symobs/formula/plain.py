@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from symobs.exact import Matrix, Scalar
+from typing import TYPE_CHECKING
+
 from symobs.formula.nodes import (
     Apply,
     Block,
@@ -19,6 +20,9 @@ from symobs.formula.nodes import (
     Sum,
     Transpose,
 )
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix, Scalar
 
 _FUNCTIONS_OF_THE_VARIABLE = {"chi", "chi_K", "chi_L", "phi", "phi_c", "phi_o", "F", "P", "G_cl"}
 _LONG = 400

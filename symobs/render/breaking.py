@@ -54,7 +54,7 @@ class Breaker(Generic[B]):
     def __init__(self, printer: Printer[B]) -> None:
         """Break with the boxes of `printer`."""
         self.printer = printer
-        self.named: list[tuple[B, Formula]] = []
+        self.named: dict[Formula, B] = {}
 
     def lines(self, pieces: Sequence[Piece[B]], first: float, rest: float) -> list[B]:
         """Fill lines: the first of width `first`, all others of width `rest`."""
@@ -190,8 +190,8 @@ class Breaker(Generic[B]):
         if below.width > _WIDEST_DENOMINATOR * room:
             above = printer.typeset(body.numerator)
             if above.width > room - 2:
-                above = self._name(self.named, body.numerator, None)
-            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator, None)))]
+                above = self._name(self.named, body.numerator)
+            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator)))]
         elif printer.slashes:
             pieces = self._operand(body.numerator, Level.PRODUCT, room - 2)
             slash = printer.slash()
@@ -242,7 +242,7 @@ class Breaker(Generic[B]):
         boxes = [[self.printer.block_entry(entry) for entry in row] for row in rows]
         bound = room
         while bound > 1:
-            named = list(self.named)
+            named = dict(self.named)
             table = [
                 [
                     box if box.width <= bound else self._name(named, entry, self._place(head, i, j, rows))
@@ -264,14 +264,9 @@ class Breaker(Generic[B]):
         is_vector = len(rows) == 1 or len(rows[0]) == 1
         return self.printer.entry_of(head, (i + j + 1,) if is_vector else (i + 1, j + 1))
 
-    def _name(self, named: list[tuple[B, Formula]], entry: Formula, place: B | None) -> B:
+    def _name(self, named: dict[Formula, B], entry: Formula, place: B | None = None) -> B:
         """The name of an entry, the same for equal entries: its place, or a star."""
-        known = next((name for name, formula in named if formula == entry), None)
-        if known is not None:
-            return known
-        name = self.printer.star(len(named) + 1) if place is None else place
-        named.append((name, entry))
-        return name
+        return named.setdefault(entry, place or self.printer.star(len(named) + 1))
 
     def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[Piece[B]]:
         """[a, b; c, d], its entries broken where they must be."""

@@ -89,7 +89,7 @@ class LatexWriter:
         gaps = [_gap(before, after) for before, after in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
 
-    def block(self, block: Block) -> str:  # noqa: PLR0911 - one case a kind of block
+    def block(self, block: Block) -> str:
         """Return one block."""
         match block:
             case Heading(number, inlines):

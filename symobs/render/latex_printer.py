@@ -3,11 +3,11 @@ r"""Formulas in LaTeX, for amsmath: `\[ … \]` where a display fits the line, `
 from __future__ import annotations
 
 import re
+from copy import copy
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
 from symobs.render import widths
@@ -18,10 +18,18 @@ from symobs.render.printer import Printer
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from symobs.exact import Scalar
+
 _WORD = r"\mathit"
 _FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
 #: amsmath's matrices have ten columns; wider ones are set as arrays.
 _MATRIX_COLUMNS = 10
+#: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
+_NARROW = 3.0
+_WIDE = 14.0
+_LONG_NUMBER = 16
+_DIGITS = 5
+_UNBREAKABLE = _LONG_NUMBER * widths.DIGIT
 #: A display of more lines may be broken over pages.
 _PAGE_OF_ROWS = 8
 
@@ -48,9 +56,16 @@ class LatexPrinter(Printer[LatexBox]):
         """Print as `Printer` does, in lines of `width` em."""
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
+        self.running = False
 
     def inline(self, item: Formula | Relation) -> str:
-        """Return mathematics for a line of text, without delimiters."""
+        """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
+        running = copy(self)
+        running.running = True
+        return running.unbroken(item)
+
+    def unbroken(self, item: Formula | Relation) -> str:
+        """Return display mathematics without delimiters or line breaks, such as a label in a drawing."""
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).source
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
@@ -71,10 +86,8 @@ class LatexPrinter(Printer[LatexBox]):
 
     def letter(self, name: str, mark: str) -> LatexBox:
         r"""A letter; `\dot x`, `x_{k}`, `x_{k+1}`."""
-        if name in LETTERS:
-            source = letter_latex(name, self.variable)
-        else:
-            source = symbol_latex(name, self.symbols.get(name))
+        known = name in LETTERS
+        source = letter_latex(name, self.variable) if known else symbol_latex(name, self.symbols.get(name))
         if mark == "dot":
             source = rf"\dot {source}" if re.fullmatch(r"\w", source) else rf"\dot{{{source}}}"
         elif mark:
@@ -85,6 +98,9 @@ class LatexPrinter(Printer[LatexBox]):
         """A whole number or a symbol."""
         if value.is_constant:
             digits = str(value.fraction().numerator)
+            if self.running and len(digits) > _LONG_NUMBER:
+                runs = [digits[start : start + _DIGITS] for start in range(0, len(digits), _DIGITS)]
+                return LatexBox(_UNBREAKABLE, Level.ATOM, r"\allowbreak ".join(runs))
             return LatexBox(len(digits) * widths.DIGIT, Level.ATOM, digits)
         (name,) = value.names
         source = symbol_latex(name, self.symbols.get(name))
@@ -119,6 +135,8 @@ class LatexPrinter(Printer[LatexBox]):
         r"""`\cdot` before a number, a thin space beside a word."""
         if right.source[0].isdigit():
             return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
+        if self.running and left.width + right.width > _WIDE:
+            return LatexBox(0.0, Level.PRODUCT, r"\allowbreak ")
         is_word = left.source.startswith(_WORD) or right.source.startswith(_WORD)
         return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
@@ -126,12 +144,19 @@ class LatexPrinter(Printer[LatexBox]):
         """Parentheses that grow with what they hold."""
         if box.height == 0:
             return LatexBox(box.width + 0.8, Level.ATOM, f"({box.source})")
+        if self.running:
+            return LatexBox(box.width + 1.0, Level.ATOM, rf"\bigl({box.source}\bigr)", box.height)
         return LatexBox(box.width + 1.6, Level.ATOM, rf"\left({box.source}\right)", box.height)
 
     def fraction(self, above: LatexBox, below: LatexBox) -> LatexBox:
-        r"""`\frac`."""
-        width = max(above.width, below.width) + widths.FRACTION_BAR
-        return LatexBox(width, Level.FRACTION, rf"\frac{{{above.source}}}{{{below.source}}}", 1)
+        r"""`\frac`; in running text a slash where one part is long."""
+        width = max(above.width, below.width)
+        if self.running and (width > _NARROW or min(above.level, below.level) < Level.PRODUCT):
+            slash = LatexBox(0.5, Level.SUM, "/")
+            parts = [self.at_least(Level.PRODUCT, above), slash, self.at_least(Level.POWER, below)]
+            return self.joined(parts, Level.PRODUCT)
+        source = rf"\frac{{{above.source}}}{{{below.source}}}"
+        return LatexBox(width + widths.FRACTION_BAR, Level.FRACTION, source, 1)
 
     def raised(self, base: LatexBox, exponent: int) -> LatexBox:
         """A power."""
@@ -154,14 +179,20 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.PRODUCT, source, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
-        """A table in brackets."""
-        rows = [[_opened(entry) for entry in row] for row in rows]
+        """A table in brackets; in running text small, or a list where it is wide."""
+        if not self.running:
+            rows = [[_opened(entry) for entry in row] for row in rows]
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
+        if self.running and width > _WIDE:
+            source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
+            return LatexBox(width, Level.ATOM, f"[{source}]")
         gap = ("", "[3pt]", "[6pt]")[min(2, max(entry.height for row in rows for entry in row))]
         body = rf"\\{gap}".join("&".join(entry.source for entry in row) for row in rows)
-        if columns <= _MATRIX_COLUMNS:
+        if self.running and len(rows) > 1:
+            source = rf"\left[\begin{{smallmatrix}}{body}\end{{smallmatrix}}\right]"
+        elif columns <= _MATRIX_COLUMNS:
             source = rf"\begin{{bmatrix}}{body}\end{{bmatrix}}"
         else:
             source = rf"\left[\begin{{array}}{{@{{}}*{{{columns}}}{{c}}@{{}}}}{body}\end{{array}}\right]"
@@ -232,7 +263,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def punctuation(self, mark: str) -> LatexBox:
         """A comma or full stop."""
-        return LatexBox(0.3, Level.SUM, mark)
+        return LatexBox(0.45, Level.SUM, mark)
 
     def gap(self) -> LatexBox:
         r"""`\qquad`."""

@@ -158,9 +158,9 @@ class Layout(Generic[B]):
         if told == len(self.breaker.named):
             return [*rows[:-1], rows[-1] if is_framed else self._marked(rows[-1], mark)]
         groups: list[list[B]] = []
-        while told < len(self.breaker.named):
-            groups.append(self._definition(*self.breaker.named[told], room))
-            told += 1
+        while told + len(groups) < len(self.breaker.named):
+            entry, name = list(self.breaker.named.items())[told + len(groups)]
+            groups.append(self._definition(name, entry, room))
         comma, closing = (self.printer.punctuation(sign) if sign else None for sign in (",", mark))
         for index, group in enumerate(groups):
             after = comma if index + 1 < len(groups) else closing

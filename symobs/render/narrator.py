@@ -112,7 +112,7 @@ class _Page:
             case _:
                 yield step
 
-    def tell_step(self, step: Step) -> None:  # noqa: C901 - one case a kind of step
+    def tell_step(self, step: Step) -> None:
         match step:
             case Given(relations=relations, sentence=sentence, silent=silent):
                 self.say(sentence)

@@ -22,6 +22,7 @@ FACTORED_UP_TO = 120
 #: A common denominator of more terms is not put in front of a matrix.
 FRONT_UP_TO = 40
 
+_CLEARLY = 0.85
 _PARENTHESES = 0.4
 
 Monomial = tuple[int, tuple[tuple[str, int], ...]]
@@ -79,7 +80,7 @@ def _polynomial(value: Scalar, variable: str) -> Formula:
     coefficients = value.coefficients(variable)
     separate = _collected(coefficients, variable)
     if value.denominator.is_one:
-        return separate
+        return _with_content(value, coefficients, separate, variable)
     whole = Quotient(_collected(value.numerator.coefficients(variable), variable), _constant(value.denominator))
     is_gentle = coefficients[0].denominator.is_one or value.denominator.is_constant
     patience = 1.5 if is_gentle else 1.0
@@ -90,6 +91,26 @@ def _polynomial(value: Scalar, variable: str) -> Formula:
         opposite = _collected((-value.numerator).coefficients(variable), variable)
         return Negative(Quotient(opposite, whole.denominator))
     return whole
+
+
+def _with_content(value: Scalar, coefficients: Sequence[Scalar], separate: Formula, variable: str) -> Formula:
+    """An expression in parameters that divides all coefficients goes in front, where that is clearly shorter."""
+    content = _common_divisor([coefficient for coefficient in coefficients if not coefficient.is_zero])
+    if content.is_constant or content == value:
+        return separate
+    rest = _collected((value / content).coefficients(variable), variable)
+    front = _product((_constant(content), rest))
+    return front if size(front) < _CLEARLY * size(separate) else separate
+
+
+def _common_divisor(values: Sequence[Scalar]) -> Scalar:
+    """The greatest common divisor of polynomials; 1 as soon as it is a number."""
+    divisor = values[0]
+    for value in values[1:]:
+        if divisor.is_constant:
+            return Scalar.of(1)
+        divisor = divisor / (divisor / value).numerator
+    return divisor
 
 
 def _collected(coefficients: Sequence[Scalar], variable: str) -> Formula:
@@ -146,8 +167,8 @@ def _shortest(value: Scalar) -> Formula:
     if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
         return expanded
     factored = _factored(value)
-    is_worth_it = size(factored) < size(expanded) and not isinstance(factored, Negative | Sum)
-    return factored if is_worth_it or _is_negative_product(factored, expanded) else expanded
+    is_sign_only = isinstance(factored, Negative) and isinstance(factored.operand, Sum)
+    return factored if size(factored) < size(expanded) and not is_sign_only else expanded
 
 
 def _expanded(terms: Sequence[Monomial]) -> Formula:

@@ -55,7 +55,7 @@ class TextWriter:
         gaps = ["\n" if isinstance(before, Heading) else "\n\n" for before, _ in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
 
-    def block(self, block: Block) -> str:  # noqa: PLR0911 - one case a kind of block
+    def block(self, block: Block) -> str:
         """Return one block."""
         width = self.width
         match block:

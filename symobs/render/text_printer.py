@@ -6,7 +6,6 @@ import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_text
 from symobs.render.glyphs import Box, Level
@@ -15,6 +14,8 @@ from symobs.render.printer import Printer
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from symobs.exact import Scalar
 
 _SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 _SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
@@ -124,7 +125,7 @@ class TextPrinter(Printer[TextBox]):
         if after[0].isdigit():
             return text_box("·")
         if before.isdigit():
-            return text_box(" ") if after[:2].isalpha() and after[:2].isascii() else None
+            return text_box(" ") if _starts_with_word(after) else None
         is_open = before.endswith(")") or after.startswith("(") or (before == self.variable and after == "I")
         return None if is_open else text_box(" ")
 
@@ -262,14 +263,18 @@ def text_width(text: str) -> int:
     return sum(not unicodedata.combining(character) for character in text)
 
 
+def _starts_with_word(text: str) -> bool:
+    return len(text) > 1 and text[:2].isascii() and text[:2].isalpha()
+
+
 def _line_at(box: TextBox, offset: int) -> str:
     index = box.baseline + offset
     return box.lines[index] if 0 <= index < len(box.lines) else " " * int(box.width)
 
 
 def _tall(shape: str, rows: int) -> str:
-    top, middle, bottom = shape
-    return top + middle * (rows - 2) + bottom
+    """The top of a fence, its middle as often as needed, its bottom."""
+    return shape[0] + shape[1] * (rows - 2) + shape[2]
 
 
 def _tight(entry: str) -> str:

@@ -24,8 +24,12 @@ _MATH_ITALIC = {
     **dict(zip("STUVWXYZ", (0.65, 0.7, 0.77, 0.77, 1.07, 0.89, 0.76, 0.73), strict=True)),
 }
 _PUNCTUATION = {"(": 0.39, ")": 0.39, "[": 0.28, "]": 0.28, ",": 0.45, ".": 0.28, " ": 0.0, "-": 1.0, "+": 1.0}
-_WIDTHLESS = set(
-    ["hat", "dot", "ddot", "bar", "tilde", "vec", "check", "acute", "grave", "breve", "mathcal", "mathrm", "mathit", "mathbf", "mathsf", "mathbb", "text", "operatorname", "left", "right", "big", "bigl", "bigr", "displaystyle", "textstyle", "boldsymbol", "mathstrut"]
+_WIDTHLESS = frozenset(
+    (
+        *("hat", "dot", "ddot", "bar", "tilde", "vec", "check", "acute", "grave", "breve", "mathstrut"),
+        *("mathcal", "mathrm", "mathit", "mathbf", "mathsf", "mathbb", "boldsymbol", "text", "operatorname"),
+        *("left", "right", "big", "bigl", "bigr", "displaystyle", "textstyle"),
+    )
 )
 _COMMANDS = {"iota": 0.36, "det": 1.4, "quad": 1.0, "qquad": 2.0, "psi": 0.69, "Omega": 0.73, "prime": 0.28}
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[\^_{}]|.", re.DOTALL)
@@ -34,19 +38,16 @@ _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[\^_{}]|.", re.DOTALL)
 def source_width(source: str) -> float:
     """Return the width of a symbol's LaTeX: letters, commands, accents, sub- and superscripts."""
     width, scales, scale = 0.0, [1.0], 1.0
-    for token in _TOKEN.findall(source):
-        if token in "^_":
+    for part in _TOKEN.findall(source):
+        if part in "^_":
             scale = scales[-1] * SCRIPT
-        elif token == "{":
+        elif part == "{":
             scales.append(scale)
-        elif token == "}":
-            if len(scales) > 1:
-                scales.pop()
+        elif part == "}":
+            scales = scales[:-1] or [1.0]
             scale = scales[-1]
-        elif token.startswith("\\") and token[1:] in _WIDTHLESS:
-            continue
-        else:
-            width += scale * _token_width(token)
+        elif part[1:] not in _WIDTHLESS:
+            width += scale * _token_width(part)
             scale = scales[-1]
     return width
 

@@ -1,195 +1,19 @@
-"""Plants: ẋ = A x + B u, y = C x + D u, with exact entries.  Shapes and exactness are checked here and only here.
-
-The time domain is a type, `Continuous` or `Discrete`.  Symbols carry declared signs; they stay with symobs, the SymPy
-symbols a caller gets back are plain (or the caller's own objects).
-"""
+"""Plants: ẋ = A x + B u, y = C x + D u, with exact entries.  Shapes and exactness are checked here and only here."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import SIGNS
-from symobs.errors import InexactInput, InputError, ShapeMismatch, SymobsError
-from symobs.exact import Complex, Field, Matrix, Scalar, companion
-from symobs.expression import declared_name, parse_matrix, parse_scalar
+from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
+from symobs.exact import Field, Matrix, Scalar, companion
+from symobs.expression import parse_scalar
+from symobs.system.reading import read_matrix, read_scalar
+from symobs.system.symbols import Symbols
+from symobs.system.time import Continuous, Discrete, read_time
 
-
-@dataclass(frozen=True, slots=True)
-class Continuous:
-    """Continuous time: ẋ, the variable s, stability in the open left half plane."""
-
-    variable = "s"
-
-
-@dataclass(frozen=True, slots=True)
-class Discrete:
-    """Discrete time: x(k+1), the variable z, stability in the open unit disc; `period` if it is known."""
-
-    period: Scalar | None = None
-    variable = "z"
-
-
-TimeDomain = Continuous | Discrete
-
-
-@dataclass(frozen=True)
-class Symbols:
-    """The names a problem may use: their signs, how they are printed, the caller's own SymPy objects.
-
-    `closed` means that only these names exist; otherwise every well-formed name is a real symbol.
-    """
-
-    signs: Mapping[str, str] = field(default_factory=dict)
-    latex: Mapping[str, str] = field(default_factory=dict)
-    objects: Mapping[str, Any] = field(default_factory=dict)
-    closed: bool = False
-
-    @property
-    def names(self) -> Mapping[str, str] | None:
-        """What the expression grammar accepts: the declared names, or None for any."""
-        return self.signs if self.closed else None
-
-    def sign(self, name: str) -> str:
-        """Return a symbol's sign; undeclared ones are real."""
-        return self.signs.get(name, "real")
-
-    @staticmethod
-    def of(declared: Mapping[str, Any] | None, where: str = "symbols") -> Symbols:
-        """Read `{"omega": "positive", "b": {"sign": "positive", "latex": "b"}}`; None leaves the names open."""
-        if declared is None:
-            return Symbols()
-        signs, latex, objects = {}, {}, {}
-        for key, entry in declared.items():
-            name = key if isinstance(key, str) else str(key)
-            if not isinstance(key, str):
-                objects[name] = key
-            place = f"{where}.{name if len(name) <= 40 else name[:40] + '…'}"
-            name = declared_name(name, place)
-            details = entry if isinstance(entry, Mapping) else {"sign": entry}
-            unknown = [str(k) for k in details if k not in {"sign", "latex"}]
-            if unknown:
-                message = f"unknown key {unknown[0]!r}"
-                raise InputError(message, where=place, repair="use sign and latex")
-            signs[name] = _sign(details.get("sign", "real"), place)
-            if "latex" in details:
-                latex[name] = _latex(details["latex"], f"{place}.latex")
-        return Symbols(signs, latex, objects, closed=True)
-
-    def seen(self, values: object) -> Symbols:
-        """Return these symbols with those of SymPy objects in `values` added, their assumptions read as signs."""
-        found = _sympy_symbols(values)
-        if not found:
-            return self
-        from symobs.exact.sympy_border import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in
-
-        signs = {**{name: sign_from_assumptions(symbol) for name, symbol in found.items()}, **self.signs}
-        return Symbols(signs, self.latex, {**found, **self.objects}, self.closed)
-
-
-def _sign(entry: object, place: str) -> str:
-    if entry not in SIGNS:
-        message = f"{str(entry)[:40]!r} is not a sign"
-        raise InputError(message, where=place, repair=f"write one of {', '.join(SIGNS)}")
-    return str(entry)
-
-
-_LATEX_LIMIT = 40
-
-
-def _latex(entry: object, place: str) -> str:
-    """Return a declared LaTeX form, which may be letters, digits, sub- and superscripts and named letters only."""
-    allowed = isinstance(entry, str) and 0 < len(entry) <= _LATEX_LIMIT and _is_plain_latex(entry)
-    if not allowed:
-        message = f"{str(entry)[:40]!r} is not a printed form of a symbol"
-        repair = "write letters and digits with ^, _, braces, or a named letter such as \\omega_0"
-        raise InputError(message, where=place, repair=repair)
-    return str(entry)
-
-
-def _is_plain_latex(text: str) -> bool:
-    import re  # noqa: PLC0415 - needed for declared forms only
-
-    from symobs.notation import GREEK  # noqa: PLC0415
-
-    named = {*GREEK, "varepsilon", "vartheta", "varphi", "ell", "mathrm", "mathit", "bar", "tilde", "dot", "hat"}
-    commands = re.findall(r"\\([A-Za-z]+)", text)
-    rest = re.sub(r"\\[A-Za-z]+", "", text)
-    balanced = rest.count("{") == rest.count("}")
-    return balanced and set(commands) <= named and re.fullmatch(r"[A-Za-z0-9_^{}', ]*", rest) is not None
-
-
-def _sympy_symbols(values: object) -> dict[str, Any]:
-    """Return the free SymPy symbols in a value, or in lists of values."""
-    if isinstance(values, (list, tuple)):
-        found: dict[str, Any] = {}
-        for value in values:
-            found |= _sympy_symbols(value)
-        return found
-    symbols = getattr(values, "free_symbols", None) if _is_sympy(values) else None
-    return {str(symbol): symbol for symbol in sorted(symbols, key=str)} if symbols else {}
-
-
-def _is_sympy(value: object) -> bool:
-    return "sympy" in sys.modules and type(value).__module__.startswith("sympy")
-
-
-def read_matrix(value: object, symbols: Symbols, where: str) -> Matrix:
-    """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix."""
-    if isinstance(value, Matrix):
-        return value
-    if _is_sympy(value) and hasattr(value, "shape"):
-        from symobs.exact.sympy_border import matrix_from_sympy  # noqa: PLC0415
-
-        return matrix_from_sympy(value, where)
-    if type(value).__module__.startswith("numpy"):
-        value = _from_numpy(value, where)
-    if isinstance(value, Sequence) and _sympy_symbols(value) | ({"": 0} if _any_sympy(value) else {}):
-        return _mixed_rows(value, symbols, where)
-    return parse_matrix(value, symbols.names, where=where)
-
-
-def _any_sympy(value: object) -> bool:
-    if isinstance(value, (list, tuple)):
-        return any(_any_sympy(entry) for entry in value)
-    return _is_sympy(value)
-
-
-def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
-    rows = [list(row) if isinstance(row, (list, tuple)) else [row] for row in value]
-    lengths = {len(row) for row in rows}
-    if len(lengths) > 1:
-        message = f"rows of different lengths {sorted(lengths)}"
-        raise ShapeMismatch(message, where=where, repair="give every row the same number of entries")
-    return Matrix.of(
-        [
-            [read_scalar(entry, symbols, f"{where}[{i}][{j}]") for j, entry in enumerate(row)]
-            for i, row in enumerate(rows)
-        ]
-    )
-
-
-def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
-    """Return the exact scalar of a number, a text or a SymPy expression."""
-    if isinstance(value, Scalar):
-        return value
-    if _is_sympy(value):
-        from symobs.exact.sympy_border import scalar_from_sympy  # noqa: PLC0415
-
-        return scalar_from_sympy(value, where)
-    if isinstance(value, str):
-        return parse_scalar(value, symbols.names, where=where)
-    return parse_matrix([[value]], symbols.names, where=where)[0, 0]
-
-
-def _from_numpy(value: Any, where: str) -> object:
-    if getattr(value, "dtype", None) is not None and value.dtype.kind not in "iuO":
-        message = f"a NumPy array of {value.dtype} holds floating-point numbers"
-        raise InexactInput(message, where=where, repair='write exact values such as "1/10"')
-    return value.tolist()
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 
 class StateSpace:
@@ -391,28 +215,15 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
     )
 
 
-def read_time(dt: object, symbols: Symbols) -> TimeDomain:
-    """Return the time domain that `dt` names: 0 continuous, True or a positive value discrete."""
-    if dt is True:
-        return Discrete()
-    if dt is False or dt is None or dt == 0:
-        return Continuous()
-    value = read_scalar(str(dt) if isinstance(dt, float) else dt, symbols, "plant.dt")
-    if value.is_zero:
-        return Continuous()
-    if not value.is_constant or value.fraction() <= 0:
-        message = f"{value} is not a sampling period"
-        raise InputError(message, where="plant.dt", repair="write 0 for continuous time, true or a positive number")
-    return Discrete(value)
-
-
 def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
     A, B, C, D = parts["A"], parts["B"], parts["C"], parts["D"]
     errors: list[SymobsError] = []
 
     def expect(name: str, wanted: str, came: Matrix) -> None:
         message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
-        errors.append(ShapeMismatch(message, where=f"plant.{name}", repair=f"give {name} with {wanted.split(',', maxsplit=1)[0]}"))
+        errors.append(
+            ShapeMismatch(message, where=f"plant.{name}", repair=f"give {name} with {wanted.split(',', maxsplit=1)[0]}")
+        )
 
     if A is None:
         return [InputError("A is missing", where="plant.A", repair='give the state matrix, for example "[0 1; 0 -1]"')]
@@ -433,13 +244,4 @@ def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
 
 def _raise_all(errors: Sequence[SymobsError]) -> None:
     """Raise one error as it is, several together."""
-    from symobs.errors import ProblemErrors  # noqa: PLC0415
-
     raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))
-
-
-def read_complex(value: object, symbols: Symbols, where: str) -> Complex:
-    """Return the exact complex number of a SymPy expression."""
-    from symobs.exact.sympy_border import complex_from_sympy  # noqa: PLC0415
-
-    return complex_from_sympy(value, where)

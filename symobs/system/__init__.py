@@ -1,0 +1,19 @@
+"""Plants and what they are read from."""
+
+from symobs.system.plant import Matrices, StateSpace, realise
+from symobs.system.reading import read_complex, read_matrix, read_scalar
+from symobs.system.symbols import Symbols
+from symobs.system.time import Continuous, Discrete, TimeDomain
+
+__all__ = [
+    "Continuous",
+    "Discrete",
+    "Matrices",
+    "StateSpace",
+    "Symbols",
+    "TimeDomain",
+    "read_complex",
+    "read_matrix",
+    "read_scalar",
+    "realise",
+]

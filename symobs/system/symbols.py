@@ -1,0 +1,115 @@
+"""The names a problem may use: their signs, how they are printed, the caller's own SymPy objects."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from symobs.conditions import SIGNS
+from symobs.errors import InputError
+from symobs.expression import declared_name
+from symobs.notation import GREEK
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """The names a problem may use: their signs, how they are printed, the caller's own SymPy objects.
+
+    `closed` means that only these names exist; otherwise every well-formed name is a real symbol.
+    """
+
+    signs: Mapping[str, str] = field(default_factory=dict)
+    latex: Mapping[str, str] = field(default_factory=dict)
+    objects: Mapping[str, Any] = field(default_factory=dict)
+    closed: bool = False
+
+    @property
+    def names(self) -> Mapping[str, str] | None:
+        """What the expression grammar accepts: the declared names, or None for any."""
+        return self.signs if self.closed else None
+
+    def sign(self, name: str) -> str:
+        """Return a symbol's sign; undeclared ones are real."""
+        return self.signs.get(name, "real")
+
+    @staticmethod
+    def of(declared: Mapping[Any, Any] | None, where: str = "symbols") -> Symbols:
+        """Read `{"omega": "positive", "b": {"sign": "positive", "latex": "b"}}`; None leaves the names open."""
+        if declared is None:
+            return Symbols()
+        signs: dict[str, str] = {}
+        latex: dict[str, str] = {}
+        objects: dict[str, Any] = {}
+        for key, entry in declared.items():
+            name = key if isinstance(key, str) else str(key)
+            if not isinstance(key, str):
+                objects[name] = key
+            place = f"{where}.{name if len(name) <= 40 else name[:40] + '…'}"
+            name = declared_name(name, place)
+            details = entry if isinstance(entry, Mapping) else {"sign": entry}
+            unknown = [str(k) for k in details if k not in {"sign", "latex"}]
+            if unknown:
+                message = f"unknown key {unknown[0]!r}"
+                raise InputError(message, where=place, repair="use sign and latex")
+            signs[name] = _sign(details.get("sign", "real"), place)
+            if "latex" in details:
+                latex[name] = _latex(details["latex"], f"{place}.latex")
+        return Symbols(signs, latex, objects, closed=True)
+
+    def seen(self, values: object) -> Symbols:
+        """Return these symbols with those of SymPy objects in `values` added, their assumptions read as signs."""
+        found = sympy_symbols(values)
+        if not found:
+            return self
+        from symobs.exact.sympy_border import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in
+
+        signs = {**{name: sign_from_assumptions(symbol) for name, symbol in found.items()}, **self.signs}
+        return Symbols(signs, self.latex, {**found, **self.objects}, self.closed)
+
+
+def _sign(entry: object, place: str) -> str:
+    if entry not in SIGNS:
+        message = f"{str(entry)[:40]!r} is not a sign"
+        raise InputError(message, where=place, repair=f"write one of {', '.join(SIGNS)}")
+    return str(entry)
+
+
+_LATEX_LIMIT = 40
+
+
+def _latex(entry: object, place: str) -> str:
+    """Return a declared LaTeX form, which may be letters, digits, sub- and superscripts and named letters only."""
+    allowed = isinstance(entry, str) and 0 < len(entry) <= _LATEX_LIMIT and _is_plain_latex(entry)
+    if not allowed:
+        message = f"{str(entry)[:40]!r} is not a printed form of a symbol"
+        repair = "write letters and digits with ^, _, braces, or a named letter such as \\omega_0"
+        raise InputError(message, where=place, repair=repair)
+    return str(entry)
+
+
+def _is_plain_latex(text: str) -> bool:
+
+    named = {*GREEK, "varepsilon", "vartheta", "varphi", "ell", "mathrm", "mathit", "bar", "tilde", "dot", "hat"}
+    commands = re.findall(r"\\([A-Za-z]+)", text)
+    rest = re.sub(r"\\[A-Za-z]+", "", text)
+    balanced = rest.count("{") == rest.count("}")
+    return balanced and set(commands) <= named and re.fullmatch(r"[A-Za-z0-9_^{}', ]*", rest) is not None
+
+
+def sympy_symbols(values: object) -> dict[str, Any]:
+    """Return the free SymPy symbols in a value, or in lists of values."""
+    if isinstance(values, (list, tuple)):
+        found: dict[str, Any] = {}
+        for value in values:
+            found |= sympy_symbols(value)
+        return found
+    symbols = getattr(values, "free_symbols", None) if is_sympy(values) else None
+    return {str(symbol): symbol for symbol in sorted(symbols, key=str)} if symbols else {}
+
+
+def is_sympy(value: object) -> bool:
+    """Tell whether a value is a SymPy object, without importing SymPy."""
+    return "sympy" in sys.modules and type(value).__module__.startswith("sympy")
