@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log2
 from typing import TYPE_CHECKING, Any
 
@@ -83,12 +83,17 @@ class Bounds:
 
     def __init__(self, environment: Environment) -> None:
         """Named coefficients enlarge what they stand in."""
-        self.larger = 1.0 + max(
-            (_size_of(v).above + _size_of(v).below for v in environment.coefficients.values()), default=0
-        )
-        self.longer = max(
-            (_size_of(v).above_bits + _size_of(v).below_bits for v in environment.coefficients.values()), default=0
-        )
+        degrees: dict[str, float] = {}
+        bits: dict[str, float] = {}
+        for name, meaning in environment.coefficients.items():
+            size, inside = _size_of(meaning), meaning.names
+            growth = max((degrees[other] for other in inside if other in degrees), default=1.0)
+            degrees[name] = max(1.0, (size.above + size.below) * growth)
+            length = max((bits[other] for other in inside if other in bits), default=0.0)
+            bits[name] = size.above_bits + size.below_bits + (size.above + size.below) * length
+        self.larger = max(degrees.values(), default=1.0)
+        self.longer = max(bits.values(), default=0.0)
+        self.named = bool(environment.coefficients)
 
     def leaf(self, value: Scalar | Matrix) -> Bound:
         size = _size_of(value)
@@ -101,7 +106,7 @@ class Bounds:
                 size.below_bits + sum(grown),
                 size.shape,
             )
-            if self.larger > 1
+            if self.named
             else size
         )
 
@@ -211,9 +216,19 @@ def check_all(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
 
 
 def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
-    """Return how a relation was found true and the bound of the error; ("", 0) where it is false."""
-    if _terms(relation, environment) <= EXACT_UP_TO or not set(relation.operators) <= _AT_POINTS:
-        return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
+    """Return how a relation was found true and the bound of the error; ("", 0) where it is false.
+
+    What holds with the named coefficients free holds whatever they stand for, so that is tried first.
+    """
+    free = replace(environment, coefficients={})
+    pointwise = not set(relation.operators) <= _AT_POINTS
+    small = _terms(relation, free) <= EXACT_UP_TO
+    if (small or pointwise) and _holds_exactly(relation, free):
+        return "exact", 0.0
+    if not environment.coefficients or pointwise:
+        if small or pointwise:
+            return "", 0.0
+        return _holds_at_points(relation, environment)
     return _holds_at_points(relation, environment)
 
 

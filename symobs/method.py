@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 import symobs
 from symobs.certificate import Certificate, Claim, check_all
 from symobs.conditions import Condition, vanishing_factors
-from symobs.errors import InputError, UsageError
+from symobs.errors import DerivationRejected, InputError, UsageError
 from symobs.page import Page
 
 if TYPE_CHECKING:
     from symobs.derivation import Derivation
-    from symobs.exact import Scalar
+    from symobs.exact import Matrix, Scalar
     from symobs.system import StateSpace
 
 Kind = TypeVar("Kind", bound=type)
@@ -127,8 +127,18 @@ class Result:
         page = Page(self.plant)
         self.write(page)
         written = page.derivation()
-        written.check()
+        established = written.check()
+        for name, value in self.data.items():
+            if name in established.values and established.values[name] != value:
+                message = f"the page speaks of another {name}"
+                raise DerivationRejected(message, repair="please report this: it is a bug of symobs", line=name)
         return written
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """What the letters of the data must mean on the page: the plant's matrices."""
+        m = self.plant.matrices
+        return {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
 
     def __getattr__(self, name: str) -> Any:
         """Return an answer as SymPy objects."""

@@ -132,6 +132,8 @@ COMPENSATION: dict[str, str] = {
     "estimate_coordinates": "In state and estimate the same loop reads",
     "plant_transfer": "As a transfer function the plant is",
     "return_path": "With $F$ in the return path,",
+    "with_coefficients": "where",
+    "named_entries": "From here on we write its entries as",
     "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
     "loop_polynomial": "Its denominator is the product of the two polynomials asked for, as it must be.",
     "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "

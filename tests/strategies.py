@@ -6,20 +6,18 @@ coefficients with the highest power first.  Only `value_at` and `matrix_at` read
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
 from math import lcm
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import sympy
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar
-
-if TYPE_CHECKING:
-    import random
 
 Rows: TypeAlias = list[list[Fraction]]
 Polynomial: TypeAlias = list[Fraction]
@@ -259,6 +257,11 @@ def matrix_at(matrix: Matrix, point: Point) -> Rows:
 def coefficients_at(scalar: Scalar, variable: str, point: Point) -> Polynomial:
     """Evaluate the coefficients of a polynomial in one variable, highest power first."""
     return [value_at(coefficient, point) for coefficient in scalar.coefficients(variable)]
+
+
+def seeded(seed: object) -> random.Random:
+    """A generator that draws the same in every run."""
+    return random.Random(str(seed))  # noqa: S311 - test points, no secrets
 
 
 def random_fraction(generator: random.Random, sign: str = "real") -> Fraction:

@@ -42,14 +42,36 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             relations.append(relation(page["y"], output))
             page.environment = page.environment.having(signals={"y": output.formula})
         page.given(*relations)
+        _hold_to_letters(page)
         state_signs(page)
-        asked = [(name, wish) for name, wish in desired if wish is not None]
-        for name, wish in asked:
-            if wish.poles:
-                roots = tuple(root_of_pole(pole, plant.variable) for pole in wish.poles)
-                page.conclude(f"{name}_poles", poles=Roots(Literal(wish.polynomial), roots))
-            else:
-                page.conclude(f"{name}_polynomial", polynomial=wish.polynomial)
+        for name, wish in desired:
+            if wish is not None:
+                _asked(page, name, wish)
+
+
+def _hold_to_letters(page: Page) -> None:
+    """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
+    m, x, u = page.plant.matrices, page["x"], page["u"]
+    rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
+    facts = [relation(x.derivative, rate)]
+    if m.has_output:
+        output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x
+        facts.append(relation(page["y"], output))
+    if page.plant.origin is not None:
+        resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
+        response = page["C"] @ resolvent @ page["B"]
+        facts.append(relation(page["P"], response + page["D"] if m.has_feedthrough else response))
+    page.conclude_silently(*facts)
+
+
+def _asked(page: Page, name: str, wish: DesiredPolynomial) -> None:
+    """State the poles or the polynomial asked for."""
+    phi = page.set(f"phi_{name[0]}", wish.polynomial)
+    if wish.poles:
+        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in wish.poles)
+        page.conclude(f"{name}_poles", poles=Roots(phi.formula, roots))
+    else:
+        page.conclude(f"{name}_polynomial", polynomial=relation(phi, wish.polynomial))
 
 
 def state_signs(page: Page) -> None:

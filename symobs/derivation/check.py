@@ -102,7 +102,6 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Diagram(_, labels):
             for _, label in labels:
                 _established(label, environment)
-                evaluate(label, environment, Exact(environment))
         case Case(when, substitution, inside):
             _walk(inside, _on_stratum(when, dict(substitution), environment), discrete)
         case Section(title, inside):
@@ -120,17 +119,17 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
-            evaluate(slot, environment, Exact(environment))
 
 
 def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    """Verify a relation or a predicate."""
+    """Verify a relation or a property; a property must hold whatever the named coefficients stand for."""
     if isinstance(fact, Relation):
         for member in fact.members:
             _established(member, environment)
         if verify(fact, environment)[0] == "":
             _reject(plain_relation(fact, environment.variable))
         return
+    environment = replace(environment, coefficients={})
     if isinstance(fact, Roots):
         polynomial = evaluate(fact.polynomial, environment, Exact(environment))
         if not roots_are(polynomial, environment.variable, fact.values):
@@ -168,7 +167,9 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
         assumed = evaluate(target, environment, Exact(environment))
         factors = [factor for factor, _ in assumed.numerator.factors()[1]]
         return replace(environment, assumed=(*environment.assumed, *factors))
-    if len(rest) > 1 and verify(Relation(tuple(rest), relation.operators[1:]), environment)[0] == "":
+    anew = isinstance(target, Letter) and target.name in environment.values  # written anew, not given another meaning
+    agreeing = relation if anew else Relation(tuple(rest), relation.operators[1:])
+    if len(agreeing.members) > 1 and verify(agreeing, environment)[0] == "":
         _reject(plain_relation(relation, environment.variable))
     return _meaning(target, rest, environment)
 
@@ -179,7 +180,7 @@ def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> 
             return environment.having(dynamics={name: rest[0]})
         case Literal(value) if isinstance(value, Scalar) and len(value.names) == 1:
             (name,) = value.names
-            meaning = evaluate(rest[-1], environment, Exact(environment))
+            meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
             return environment.having(coefficients={name: meaning})
         case Letter(name):
             last = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])

@@ -5,17 +5,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given
-from symobs.design.gain_pages import FEEDBACK, OBSERVER, closed_loop_matrix, error_determinant, write_gain
+from symobs.design.gain import fresh_names
+from symobs.design.gain_pages import (
+    FEEDBACK,
+    OBSERVER,
+    closed_loop_matrix,
+    error_determinant,
+    name_entries,
+    taken_names,
+    write_gain,
+)
 from symobs.design.observer import page_style, write_observer
-from symobs.exact import Factored, Matrix, Root, Scalar, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots
-from symobs.formula.term import block
+from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.design.compensator import CompensatorDesign
 
+#: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
+LARGE = 60
 #: Conditions with more terms than this are left to the JSON.
 _READABLE_TERMS = 40
 
@@ -24,20 +37,31 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     style = page_style("auto", design.plant)
+    large = design.answer["F"] is not None and design.answer["F"].size > LARGE
     with page.section("state_feedback"):
         write_gain(page, design.feedback, FEEDBACK, style)
+        if large:
+            name_entries(page, "K")
     with page.section("observer"):
         write_gain(page, design.estimator, OBSERVER, style)
+        if large:
+            name_entries(page, "L")
         if design.answer["L"] is not None:
             write_observer(page)
     if design.answer["F"] is None:
         return
     with page.section("compensator"):
         _state_space(page, design)
-        _transfer_function(page, design)
+        if large:
+            _named_transfer_function(page, design)
+        else:
+            _transfer_function(page, design)
     with page.section("closed_loop"):
-        _error_coordinates(page, design)
-        _return_path(page, design)
+        _error_coordinates(page, design, large=large)
+        if large:
+            _named_return_path(page, design)
+        else:
+            _return_path(page, design)
     _cautions(page, design)
 
 
@@ -92,41 +116,36 @@ def _stable_where(page: Page, F: Scalar) -> None:
     page.conclude("compensator_stable_if", proper, where=Exactly(predicate("stable", F.denominator), where))
 
 
-def _error_coordinates(page: Page, design: CompensatorDesign) -> None:
+def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
     """(4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
     A, B, C, K, L = (page[name] for name in "ABCKL")
-    x, e = page["x"], page["e"]
+    x, e, order = page["x"], page["e"], design.plant.order
     page.equal(
         relation(page["u"], -K @ x + K @ e),
         relation(x.derivative, (A - B @ K) @ x + B @ K @ e),
         say="control_in_error",
     )
-    zero = page.value(Matrix.zeros(design.plant.order, design.plant.order))
+    zero = page.value(Matrix.zeros(order, order))
     state = block([[x], [e]])
     matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
-    page.define("A_cl", matrix, say="closed_loop_matrix")
+    page.define("A_cl", matrix, say="closed_loop_matrix", closing=not large)
     page.equal(relation(state.derivative, page["A_cl"] @ state))
-    left = (page.s @ page.identity(2 * design.plant.order) - page["A_cl"]).apply("det")
-    page.equal(
-        relation(
-            left,
-            error_determinant(page, FEEDBACK) @ error_determinant(page, OBSERVER),
-            page.term(formula_of_factored(design.closed_loop_polynomial)),
-        ),
-        say="polynomial_splits",
-    )
+    determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
+    parts = error_determinant(page, FEEDBACK) @ error_determinant(page, OBSERVER)
+    product = page.term(formula_of_factored(design.closed_loop_polynomial))
+    page.equal(relation(determinant, parts, product), say="polynomial_splits")
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
     states = block([[x], [page["x_hat"]]])
-    page.equal(relation(states.derivative, second @ states, second.shown @ states), say="estimate_coordinates")
+    members = [states.derivative, second @ states]
+    if not large:
+        members.append(second.shown @ states)
+    page.equal(relation(*members), say="estimate_coordinates")
 
 
 def _return_path(page: Page, design: CompensatorDesign) -> None:
     """P/(1 + PF), multiplied out and factored."""
-    numerator, characteristic = design.plant_transfer
-    page.define("P", factored_form(page, numerator / characteristic), say="plant_transfer", closing=False)
-    page.diagram(
-        "loop", plant=factored_form(page, numerator / characteristic), compensator=page.value(design.answer["F"])
-    )
+    plant_form = _plant(page, design)
+    page.diagram("loop", plant=plant_form, compensator=page.value(design.answer["F"]))
     form = design.closed_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
@@ -134,7 +153,73 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
     factors = page.term(formula_of_factored(form))
     page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
     polynomial = design.closed_loop_polynomial.value
-    page.conclude("loop_poles", poles=Roots(Literal(polynomial), _poles(design, polynomial)))
+    if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.closed_loop_polynomial.factors):
+        page.conclude("loop_poles", poles=Roots(Literal(polynomial), _poles(design, polynomial)))
+    else:
+        page.conclude("loop_polynomial")
+
+
+def _plant(page: Page, design: CompensatorDesign) -> Term:
+    """Show the plant's transfer function, unless the problem gave it."""
+    numerator, characteristic = design.plant_transfer
+    form = factored_form(page, numerator / characteristic)
+    if not page.knows("P"):
+        page.define("P", form, say="plant_transfer", closing=False)
+    return form
+
+
+def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
+    """F(s) with letters for its coefficients, which are written out below it."""
+    K, L, variable = page["K"], page["L"], design.plant.variable
+    resolvent = (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse
+    numerator, denominator = transfer(page["A_c"].value, L.value, K.value, Scalar.of(0), variable)
+    names = _Namer(page)
+    above = names.polynomial("n", numerator.coefficients(variable), variable)
+    below = names.polynomial("d", denominator.coefficients(variable)[1:], variable, monic=True)
+    page.define("F", K @ resolvent @ L, above / below, say="transfer_function_of_compensator", answer=True)
+    names.show()
+    page.conclude_silently(relation(page["F"], design.answer["F"]))
+    page.conclude("compensator_proper", predicate("strictly_proper", page["F"].value))
+
+
+class _Namer:
+    """Letters for the coefficients of polynomials, and the list of what they stand for."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.meanings: list[tuple[Scalar, Scalar]] = []
+
+    def polynomial(
+        self, stem: str, coefficients: Sequence[Scalar], variable: str, *, monic: bool = False
+    ) -> Scalar:
+        """Return the polynomial with a letter for each coefficient that is not a number."""
+        order = len(coefficients) - 1
+        named = [Scalar.of(1)] if monic else []
+        for index, meaning in enumerate(coefficients):
+            if meaning.is_constant:
+                named.append(meaning)
+                continue
+            (name,) = fresh_names(f"{stem}_", 1, taken_names(self.page), start=order - index)
+            symbol = self.page.name_coefficient(name, meaning)
+            self.meanings.append((symbol, meaning))
+            named.append(symbol)
+        return from_coefficients(named, variable)
+
+    def show(self) -> None:
+        """Write out what the letters stand for."""
+        self.page.equal(*(relation(symbol, meaning) for symbol, meaning in self.meanings), say="with_coefficients")
+
+
+def _named_return_path(page: Page, design: CompensatorDesign) -> None:
+    """P/(1 + PF) over the product of the two polynomials."""
+    _plant(page, design)
+    page.diagram("loop", plant=page["P"], compensator=page["F"])
+    numerator, _ = design.plant_transfer
+    own = (page.s @ page.identity(design.plant.order) - page["A_c"]).apply("det")
+    definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
+    product = page.value(numerator) @ own / (page["phi_c"] @ page["phi_o"])
+    page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
+    page.conclude("loop_polynomial")
 
 
 def _poles(design: CompensatorDesign, polynomial: Scalar) -> tuple[Root, ...]:

@@ -21,7 +21,7 @@ from symobs.page import relation
 from symobs.stability import Stability, stability
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
@@ -217,11 +217,11 @@ def _signs_turned(pencil: Term) -> Term:
     return Term(Sum((*first, *turned)), pencil.environment)
 
 
-def fresh_names(stem: str, count: int, taken: object) -> tuple[str, ...]:
-    """Return `stem1`, `stem2`, … that are not among the names taken."""
-    used = set(taken)  # type: ignore[call-overload]
+def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> tuple[str, ...]:
+    """Return `stem1`, `stem2`, … (from `start` on) that are not among the names taken."""
+    used = set(taken)
     names: list[str] = []
-    index = 1
+    index = start
     while len(names) < count:
         name = f"{stem}{index}"
         if name not in used:

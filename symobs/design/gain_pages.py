@@ -31,13 +31,18 @@ class Side:
     gain: str
     matrix: str
     test: str
-    phi: str
+    index: str
     coefficient: str
     rank: type[RankResult]
 
+    @property
+    def phi(self) -> str:
+        """The letter of the polynomial asked for."""
+        return f"phi_{self.index}"
 
-OBSERVER = Side("observer", "L", "O", "observability", "phi_o", "beta_", Observability)
-FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "phi_c", "alpha_", Controllability)
+
+OBSERVER = Side("observer", "L", "O", "observability", "o", "beta_", Observability)
+FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "c", "alpha_", Controllability)
 
 
 def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
@@ -115,7 +120,7 @@ def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPoly
     if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
         page.define(side.phi, *members, say=f"asks_{side.kind}")
         return desired
-    taken = [*page.plant.symbols.signs, *page.plant.field.names, *desired.polynomial.field.names]
+    taken = {*taken_names(page), *desired.polynomial.field.names}
     names = fresh_names(side.coefficient, len(coefficients), taken)
     symbols = [Scalar.symbol(name) for name in names]
     named = from_coefficients([Scalar.of(1), *symbols], variable)
@@ -138,6 +143,23 @@ def _say_canonical(page: Page) -> None:
     )
 
 
+def taken_names(page: Page) -> set[str]:
+    """Return the names of parameters and coefficients that stand on the page."""
+    named = page.environment.coefficients
+    inside = {name for meaning in named.values() for name in meaning.field.names}
+    return {*page.plant.symbols.signs, *page.plant.field.names, *named, *inside}
+
+
+def name_entries(page: Page, gain: str) -> None:
+    """Give the entries of a gain letters of their own, in which the page goes on."""
+    value = page[gain].value
+    names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
+    letters = [page.name_coefficient(name, entry) for name, entry in zip(names, value.entries, strict=True)]
+    named = Matrix.row(letters) if value.shape[0] == 1 else Matrix.column(letters)
+    page.equal(relation(page[gain], named), say="named_entries")
+    page.set(gain, named)
+
+
 def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
@@ -153,7 +175,7 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     found = chi.coefficients(variable)[1:]
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
-    V = page.define("V", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
+    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
     page.equal(relation(V.inverse, V.inverse.shown), relation(V.apply("det"), V.apply("det").shown))
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
@@ -172,9 +194,9 @@ def _ackermann(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
     if side.gain == "L":
-        last = page.define("q", page["O"].inverse @ unit, say="last_column")
+        last = page.define("q_o", page["O"].inverse @ unit, say="last_column")
     else:
-        last = page.define("q", unit.T @ page["Ctr"].inverse, say="last_row")
+        last = page.define("q_c", unit.T @ page["Ctr"].inverse, say="last_row")
     polynomial = page["A"].apply(f"{side.phi}_at")
     factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
     at = product(factors)

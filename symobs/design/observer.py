@@ -79,10 +79,12 @@ def page_style(method_name: str, plant: StateSpace) -> str:
     """Return whose page is written: canonical form for small plants unless a method was asked for."""
     if method_name != "auto":
         return method_name
-    return "canonical_form" if plant.order <= _CANONICAL_PAGES else "ackermann"
+    readable = _CANONICAL_PAGES if not plant.field.names else _PARAMETRIC_CANONICAL_PAGES
+    return "canonical_form" if plant.order <= readable else "ackermann"
 
 
-_CANONICAL_PAGES = 4
+#: Up to these orders the matrices of the canonical form are easier to read than Ackermann's formula.
+_CANONICAL_PAGES, _PARAMETRIC_CANONICAL_PAGES = 4, 2
 
 
 def write_observer(page: Page) -> None:

@@ -37,6 +37,9 @@ class Krylov:
             rows.append(rows[-1] @ A)
         return Krylov(A, tuple(rows))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return (Krylov, (self.A, self.rows))  # without what is cached: FLINT's polynomials do not pickle
+
     @property
     def field(self) -> Field:
         """The field of the entries."""

@@ -55,6 +55,8 @@ def root_to_sympy(root: Root, objects: Mapping[str, Any]) -> sympy.Expr:
     """Return a root in radicals where it has them, else as `CRootOf` or as the factor's root."""
     if not root.is_closed:
         factor = scalar_to_sympy(root.factor, objects)
+        if len(root.factor.names) > 1:  # SymPy's CRootOf takes numeric coefficients only
+            return sympy.Function("CRootOf")(factor, root.index)
         return sympy.CRootOf(sympy.Poly(factor, sympy.Symbol(root.variable)), root.index)
     offset = root.sign * sympy.sqrt(scalar_to_sympy(root.radicand, objects))
     return scalar_to_sympy(root.centre, objects) + offset

@@ -42,7 +42,7 @@ class Environment:
     signals     signal → its formula in other signals, or None for a free one
     sizes       free signal → number of components
     dynamics    free signal → the formula of its derivative (or shift)
-    coefficients   a generator that stands for a longer scalar → that scalar
+    coefficients   a generator that stands for a longer scalar → that scalar, in generators introduced before it
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
     """
@@ -120,10 +120,13 @@ class Exact:
 
     def __init__(self, environment: Environment) -> None:
         """Replace named coefficients by what they stand for whenever a value enters."""
-        self.coefficients = environment.coefficients
+        self.coefficients = dict(environment.coefficients)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
-        return value.substitute(self.coefficients) if self.coefficients else value
+        for name in reversed(self.coefficients):
+            if name in value.field.position:
+                value = value.substitute({name: self.coefficients[name]})
+        return value
 
     def shape(self, value: Scalar | Matrix) -> tuple[int, int] | None:
         return value.shape if isinstance(value, Matrix) else None

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -37,8 +37,9 @@ class Term:
 
     @cached_property
     def value(self) -> Any:
-        """The exact value: a `Scalar`, a `Matrix` or a `Signal`."""
-        return evaluate(self.formula, self.environment, Exact(self.environment))
+        """The exact value in the letters of the page: a `Scalar`, a `Matrix` or a `Signal`."""
+        environment = replace(self.environment, coefficients={})
+        return evaluate(self.formula, environment, Exact(environment))
 
     @property
     def scalar(self) -> Scalar:

@@ -26,7 +26,7 @@ _FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
 _MATRIX_COLUMNS = 10
 #: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
 _NARROW = 3.0
-_WIDE = 14.0
+_WIDE = 12.0
 _LONG_NUMBER = 16
 _DIGITS = 5
 _UNBREAKABLE = _LONG_NUMBER * widths.DIGIT
@@ -188,8 +188,8 @@ class LatexPrinter(Printer[LatexBox]):
         if self.running and width > _WIDE:
             source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
             return LatexBox(width, Level.ATOM, f"[{source}]")
-        gap = ("", "[3pt]", "[6pt]")[min(2, max(entry.height for row in rows for entry in row))]
-        body = rf"\\{gap}".join("&".join(entry.source for entry in row) for row in rows)
+        break_ = _row_break([entry for row in rows for entry in row])
+        body = break_.join("&".join(entry.source for entry in row) for row in rows)
         if self.running and len(rows) > 1:
             source = rf"\left[\begin{{smallmatrix}}{body}\end{{smallmatrix}}\right]"
         elif columns <= _MATRIX_COLUMNS:
@@ -257,7 +257,10 @@ class LatexPrinter(Printer[LatexBox]):
         r"""Lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
-        body = r"\\[4pt]".join(rf"\displaystyle {line.source}" for line in indented)
+        body = "".join(
+            rf"\displaystyle {line.source}{_row_break([replace(line, height=2 * line.height)])}" for line in indented[:-1]
+        )
+        body += rf"\displaystyle {indented[-1].source}"
         width = max(line.width for line in indented)
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{@{{}}l@{{}}}}{body}\end{{array}}", 2)
 
@@ -274,6 +277,11 @@ def swallows(left: str, right: str) -> bool:
     """Whether a command at the end of `left` would take the beginning of `right` as part of its name."""
     command = left[left.rfind("\\") + 1 :] if "\\" in left else ""
     return bool(command) and command.isascii() and command.isalpha() and right[:1].isalpha()
+
+
+def _row_break(row: Sequence[LatexBox]) -> str:
+    r"""`\\` with the depth a row needs below its strut: an array adds none by itself."""
+    return (r"\\", r"\\[4pt]", r"\\[12pt]")[min(2, max(box.height for box in row))]
 
 
 def _opened(entry: LatexBox) -> LatexBox:
