@@ -31,6 +31,7 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
+    Together,
 )
 from symobs.formula.term import Term
 
@@ -72,7 +73,7 @@ def predicate(name: str, subject: Member) -> Predicate:
 def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     """Return a phrase with its slots filled."""
     filled = tuple(
-        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly)) else formula_of(slot))
+        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly, Together)) else formula_of(slot))
         for name, slot in slots.items()
     )
     return Sentence(key, filled)
@@ -133,13 +134,12 @@ class Page:
         """State data."""
         self.steps.append(Given(relations, silent=silent))
 
-    def assume(self, key: str, value: Scalar, **slots: Slot) -> None:
-        """State a condition that holds from here on."""
-        self.environment = replace(
-            self.environment,
-            assumed=(*self.environment.assumed, *(factor for factor, _ in value.numerator.factors()[1])),
-        )
-        self.steps.append(Given((relation(value, "!=", 0),), sentence(key, slots)))
+    def assume(self, key: str, *values: Scalar) -> None:
+        """State that polynomials are not zero from here on."""
+        factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
+        self.environment = replace(self.environment, assumed=(*self.environment.assumed, *factors))
+        conditions = tuple(relation(value, "!=", 0) for value in values)
+        self.steps.append(Given(conditions, sentence(key, {"condition": Together(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:
         """Establish a letter by its value, without a display."""

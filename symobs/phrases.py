@@ -23,7 +23,7 @@ TITLES: dict[str, str] = {
 
 DATA: dict[str, str] = {
     "realised": "In controllable canonical form this is",
-    "declared": "Throughout, {sign}.",
+    "declared": "Throughout, {signs}.",
     "desired_poles": "The poles asked for are {poles}.",
     "desired_polynomial": "The polynomial asked for is {polynomial}.",
     "control_poles": "The control poles are to be {poles}.",
@@ -56,7 +56,6 @@ RANK: dict[str, str] = {
     "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
     "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
     "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero. From here on we assume {condition}.",
-    "also_provided": "We assume {condition} as well.",
     "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
     "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
     "kernel_observability": "A state in this direction is never seen at the output:",

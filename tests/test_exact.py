@@ -68,6 +68,10 @@ def same(scalar: Scalar, expression: Any) -> bool:
     return bool(sympy.cancel(above / below - expression) == 0)
 
 
+#: Examples a test: SymPy is the slow party here.
+few = settings(max_examples=25)
+
+
 class TestField:
     def test_generators_stand_in_one_order_whatever_order_they_came_in(self) -> None:
         assert Field.of("bsa").names == Field.of("abs").names == ("s", "a", "b")
@@ -88,7 +92,7 @@ class TestField:
 
 class TestScalars:
     @given(rational_functions(), rational_functions())
-    @settings(max_examples=60)
+    @few
     def test_arithmetic_is_that_of_sympy(self, x: Twin, y: Twin) -> None:
         for operation in (operator.add, operator.sub, operator.mul):
             pair = combined(operation, x, y)
@@ -101,6 +105,7 @@ class TestScalars:
             assert same(pair.scalar, pair.expression)
 
     @given(rational_functions(), rational_functions(), rational_functions(("b", "c")))
+    @few
     def test_the_laws_of_a_field_hold(self, first: Twin, second: Twin, third: Twin) -> None:
         x, y, z = first.scalar, second.scalar, third.scalar
         assert (x + y) + z == x + (y + z)
@@ -121,6 +126,7 @@ class TestScalars:
         assert x**3 == x * x * x
 
     @given(rational_functions(), small_fractions, st.integers(-5, 5))
+    @few
     def test_numbers_mix_in_from_both_sides(self, x: Twin, number: Fraction, whole: int) -> None:
         assert x.scalar + number == number + x.scalar == x.scalar + Scalar.of(number)
         assert x.scalar * whole == whole * x.scalar == x.scalar * Scalar.of(whole)
@@ -130,11 +136,13 @@ class TestScalars:
             assert whole / x.scalar == Scalar.of(whole) / x.scalar
 
     @given(rational_functions(), rational_functions())
+    @few
     @example(Twin(a / (a - b), None), Twin(-a / (b - a), None))
     def test_values_are_equal_exactly_when_their_difference_is_zero(self, x: Twin, y: Twin) -> None:
         assert (x.scalar == y.scalar) == (x.scalar - y.scalar).is_zero
 
     @given(rational_functions(("a", "b")))
+    @few
     def test_equality_hash_and_text_do_not_depend_on_the_field_around(self, x: Twin) -> None:
         wide = x.scalar.within(x.scalar.field | Field.of(("A", "aa", "s", "z", "zeta")))
         detour = x.scalar + s - s
@@ -148,6 +156,7 @@ class TestScalars:
             assert other.fingerprint() == x.scalar.fingerprint()
 
     @given(small_fractions)
+    @few
     def test_constants_equal_and_hash_as_numbers_do(self, number: Fraction) -> None:
         value = a - a + number
         assert value == number
@@ -163,6 +172,7 @@ class TestScalars:
                 Scalar.of(inexact)
 
     @given(rational_functions())
+    @few
     def test_pickling_keeps_the_value(self, x: Twin) -> None:
         back = pickle.loads(pickle.dumps(x.scalar))  # noqa: S301 - our own bytes
         assert back == x.scalar
@@ -170,13 +180,13 @@ class TestScalars:
         assert back + s == x.scalar + s
 
     @given(rational_functions())
-    @settings(max_examples=60)
+    @few
     def test_the_text_is_read_by_sympy_as_the_same_value(self, x: Twin) -> None:
         assert same(x.scalar, read_back(str(x.scalar)))
         assert scalar_from_sympy(scalar_to_sympy(x.scalar), "here") == x.scalar
 
     @given(rational_functions(), rational_functions(("b", "c")), small_fractions)
-    @settings(max_examples=60)
+    @few
     def test_substitution_is_that_of_sympy(self, x: Twin, image: Twin, number: Fraction) -> None:
         symbols = sympy.symbols("a s b")
         values = {"a": image.scalar, "s": Scalar.of(number), "unused": b}
@@ -192,6 +202,7 @@ class TestScalars:
         assert (a / b + s).substitute({"a": b, "b": a}) == b / a + s
 
     @given(polynomials(("a", "b", "s"), degree=3))
+    @few
     def test_coefficients_and_degree_put_the_polynomial_together_again(self, x: Twin) -> None:
         value = x.scalar / (a + 7)
         coefficients = value.coefficients("s")
@@ -211,7 +222,7 @@ def same_time(expression: Any, images: dict[Any, Any]) -> Any:
 
 class TestFactors:
     @given(polynomials(degree=2), polynomials(degree=1), st.integers(1, 3))
-    @settings(max_examples=60)
+    @few
     def test_factors_multiply_back_and_sympy_finds_as_many(self, x: Twin, y: Twin, power: int) -> None:
         value = x.scalar**power * y.scalar / (a + 2 * b)
         unit, factors = value.factors()
@@ -222,6 +233,7 @@ class TestFactors:
         assert all(factor.numerator.terms()[0][0] > 0 for factor, _ in factors)
 
     @given(large_integers, large_integers, large_integers, st.integers(1, 3))
+    @few
     def test_coefficients_beyond_two_to_the_31_factor_too(self, p: int, q: int, r: int, power: int) -> None:
         assume(p != -q)
         value = (p * a + q * b) ** power * (s**2 + r) * (a - b) / (q * s + 1)
@@ -247,7 +259,7 @@ class TestFactors:
         assert Scalar.rational(-6, 4).factors() == (Scalar.rational(-3, 2), ())
 
     @given(polynomials(("a", "s"), degree=2), polynomials(("b", "s"), degree=1))
-    @settings(max_examples=60)
+    @few
     def test_the_factored_form_is_monic_and_keeps_value_and_text(self, x: Twin, y: Twin) -> None:
         assume(bool(x.scalar) and bool(y.scalar))
         value = x.scalar**2 * (s + a) / y.scalar
@@ -284,7 +296,7 @@ class TestFactors:
 
 class TestRoots:
     @given(st.lists(polynomials(("s",), degree=2, most=3), min_size=1, max_size=3))
-    @settings(max_examples=40)
+    @few
     def test_roots_of_numeric_polynomials_are_those_sympy_finds(self, parts: list[Twin]) -> None:
         value = product_of(part.scalar for part in parts)
         assume(value.degree("s") > 0)
@@ -312,7 +324,7 @@ class TestRoots:
         assert [read_back(str(root)) for root in roots_of(polynomial, "s")] == found
 
     @given(polynomials(("a", "b"), degree=1), polynomials(("a", "b"), degree=1), polynomials(("b",), degree=2))
-    @settings(max_examples=40)
+    @few
     def test_parametric_roots_are_zeros_and_multiply_back(self, p: Twin, q: Twin, r: Twin) -> None:
         value = (s**2 + p.scalar * s + q.scalar) * (s - r.scalar)
         roots = roots_of(value, "s")
@@ -333,6 +345,7 @@ class TestRoots:
             assert isinstance(root_to_sympy(root, {}), sympy.Expr)
 
     @given(small_fractions, small_fractions)
+    @few
     def test_a_pole_is_a_root_of_its_real_factor(self, real: Fraction, imaginary: Fraction) -> None:
         pole = Complex(Scalar.of(real), Scalar.of(imaginary))
         root = root_of_pole(pole, "s")
@@ -357,7 +370,7 @@ complex_twins = st.tuples(rational_functions(("a",), degree=1), rational_functio
 
 class TestComplex:
     @given(complex_twins, complex_twins)
-    @settings(max_examples=40)
+    @few
     def test_arithmetic_is_that_of_sympy(self, x: tuple[Twin, Twin], y: tuple[Twin, Twin]) -> None:
         first, second = (Complex(re.scalar, im.scalar) for re, im in (x, y))
         one, two = (re.expression + sympy.I * im.expression for re, im in (x, y))

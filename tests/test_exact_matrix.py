@@ -82,10 +82,13 @@ def same(ours: Matrix | Scalar, theirs: Any) -> bool:
 
 sizes = st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3))
 
+#: Examples a test: SymPy is the slow party here.
+few = settings(max_examples=25)
+
 
 class TestArithmetic:
     @given(st.data(), sizes)
-    @settings(max_examples=60)
+    @few
     def test_sums_products_and_transposes_are_those_of_sympy(self, data: st.DataObject, size: tuple[int, ...]) -> None:
         m, n, k = size
         (x, X), (y, Y), (z, Z) = data.draw(shaped((m, n), (m, n), (n, k)))
@@ -101,6 +104,7 @@ class TestArithmetic:
         assert (x @ z).T == z.T @ x.T
 
     @given(st.data(), st.integers(0, 3), st.integers(0, 3))
+    @few
     def test_equality_hash_and_pickling_do_not_depend_on_the_field(self, data: st.DataObject, m: int, n: int) -> None:
         ((x, X),) = data.draw(shaped((m, n)))
         wide = x.within(x.field | Field.of(("A", "s", "zeta")))
@@ -132,7 +136,7 @@ class TestArithmetic:
             Matrix.block([[Matrix.zeros(1, 1), Matrix.zeros(2, 1)]])
 
     @given(st.data())
-    @settings(max_examples=25)
+    @few
     def test_blocks_and_selection_are_inverse(self, data: st.DataObject) -> None:
         (x, X), (y, Y), (z, Z) = data.draw(shaped((2, 2), (2, 1), (1, 2)))
         (corner, Corner), (empty, _) = data.draw(shaped((1, 1), (2, 0)))
@@ -143,7 +147,7 @@ class TestArithmetic:
         assert whole.select([], [0, 1]).shape == (0, 2)
 
     @given(st.data(), small_fractions)
-    @settings(max_examples=25)
+    @few
     def test_substitution_is_that_of_sympy(self, data: st.DataObject, number: Fraction) -> None:
         ((x, X),) = data.draw(shaped((2, 2)))
         image = sympy.Rational(number.numerator, number.denominator)
@@ -157,7 +161,7 @@ class TestArithmetic:
 
 class TestDeterminants:
     @given(square(3))
-    @settings(max_examples=60)
+    @few
     def test_determinant_adjugate_and_characteristic_polynomial(self, drawn: list[Pair]) -> None:
         x, X = drawn[0]
         assert same(x.determinant(), X.det(method="berkowitz"))
@@ -166,7 +170,7 @@ class TestDeterminants:
         assert same(x.characteristic_polynomial("s"), X.charpoly(SYMBOL).as_expr())
 
     @given(square(3, columns=2))
-    @settings(max_examples=60)
+    @few
     def test_solving_and_inverting(self, drawn: list[Pair]) -> None:
         (x, X), (y, _) = drawn
         if zero(X.det(method="berkowitz")):
@@ -179,7 +183,7 @@ class TestDeterminants:
         assert x**-2 @ x**3 == x
 
     @given(st.lists(st.integers(-(2**70), 2**70), min_size=9, max_size=9), st.integers(1, 2**40))
-    @settings(max_examples=25)
+    @few
     def test_large_numbers(self, numbers: list[int], below: int) -> None:
         rows = [numbers[:3], numbers[3:6], numbers[6:]]
         x, X = Matrix.of([[Fraction(e, below) for e in row] for row in rows]), sympy.Matrix(rows) / below
@@ -230,7 +234,7 @@ class TestDeterminants:
 
 class TestElimination:
     @given(st.data(), st.integers(0, 4), st.integers(0, 4))
-    @settings(max_examples=60)
+    @few
     def test_rank_and_kernel_are_those_of_sympy(self, data: st.DataObject, m: int, n: int) -> None:
         ((x, X),) = data.draw(shaped((m, n)))
         if m and n and data.draw(st.booleans()):  # a dependent row, so that ranks do drop
@@ -267,7 +271,7 @@ class TestElimination:
 
 class TestPolynomialsOfMatrices:
     @given(square(3, columns=1), st.lists(polynomials(("a", "s"), degree=2, most=3), max_size=3))
-    @settings(max_examples=40)
+    @few
     def test_horner_gives_what_powers_give(self, drawn: list[Pair], factors: list[Twin]) -> None:
         (x, X), (v, V) = drawn
         expected = V
@@ -277,7 +281,7 @@ class TestPolynomialsOfMatrices:
         assert same(apply_polynomial([f.scalar for f in factors], "s", x, v), expected)
 
     @given(square(4))
-    @settings(max_examples=30)
+    @few
     def test_every_matrix_is_a_zero_of_its_characteristic_polynomial(self, drawn: list[Pair]) -> None:
         x, _ = drawn[0]
         chi = x.characteristic_polynomial("s")
@@ -285,7 +289,7 @@ class TestPolynomialsOfMatrices:
             assert apply_polynomial([chi], "s", x, Matrix.unit(x.shape[0], j)).is_zero
 
     @given(st.lists(parametric_entries, min_size=1, max_size=4))
-    @settings(max_examples=30)
+    @few
     def test_the_companion_and_its_hankel_matrix(self, coefficients: list[Twin]) -> None:
         values = [twin.scalar for twin in coefficients]
         A = companion(values)
@@ -300,7 +304,7 @@ class TestPolynomialsOfMatrices:
 
 class TestKrylov:
     @given(st.data(), st.integers(1, 4))
-    @settings(max_examples=50)
+    @few
     def test_rows_determinant_and_last_column_of_the_inverse(self, data: st.DataObject, n: int) -> None:
         (x, _), (c, _) = data.draw(shaped((n, n), (1, n)))
         krylov = Krylov.of(x, c)
@@ -324,7 +328,7 @@ class TestKrylov:
 
 class TestTransfer:
     @given(st.data(), st.integers(1, 3))
-    @settings(max_examples=50)
+    @few
     def test_the_transfer_function_is_its_definition(self, data: st.DataObject, n: int) -> None:
         (x, X), (u, U), (c, C), (d, D) = data.draw(shaped((n, n), (n, 1), (1, n), (1, 1)))
         numerator, characteristic = transfer(x, u, c, d[0, 0], "s")
@@ -342,14 +346,14 @@ class TestTransfer:
 
 class TestModularPoints:
     @given(rational_functions(), st.integers(0, 2**32))
-    @settings(max_examples=50)
+    @few
     def test_the_residue_is_that_of_the_value_at_the_point(self, x: Twin, seed: int) -> None:
         point = Point(("a", "b", "s"), seeded(seed))
         exact = value_at(x.scalar, {name: Fraction(value) for name, value in point.values.items()})
         assert point.scalar(x.scalar) == residue(exact, point.prime)
 
     @given(st.data(), st.integers(0, 3), st.integers(0, 3), st.integers(0, 2**32))
-    @settings(max_examples=50)
+    @few
     def test_the_residues_of_a_matrix_are_those_of_its_entries(
         self, data: st.DataObject, m: int, n: int, seed: int
     ) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.conditions import never_zero, vanishing_factors
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
-from symobs.formula import Exactly, Literal, Power, Product, Quotient, Roots
+from symobs.formula import Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
 from symobs.page import Page, predicate, relation
 from symobs.stability import as_inequality, stability
 
@@ -82,9 +82,9 @@ def state_signs(page: Page) -> None:
         if name in used and sign != "real":
             by_sign.setdefault(sign, []).append(name)
     facts = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}
-    for sign, names in by_sign.items():
-        for name in names:
-            page.conclude("declared", sign=relation(Scalar.symbol(name), facts[sign], 0))
+    declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
+    if declared:
+        page.conclude("declared", signs=Together(tuple(declared)))
 
 
 def factored_form(page: Page, value: Scalar) -> Term:
@@ -100,12 +100,14 @@ def formula_of_factored(form: Factored) -> Formula:
     if below and not unit.denominator.is_one:
         below.insert(0, Literal(unit.denominator))
         unit = unit.numerator
+    negative = bool(above or below) and unit.is_constant and unit.fraction() < 0
+    if negative:
+        unit = -unit
     if not unit.is_one or not above:
         above.insert(0, Literal(unit))
     top = above[0] if len(above) == 1 else Product(tuple(above))
-    if not below:
-        return top
-    return Quotient(top, below[0] if len(below) == 1 else Product(tuple(below)))
+    whole = top if not below else Quotient(top, below[0] if len(below) == 1 else Product(tuple(below)))
+    return Negative(whole) if negative else whole
 
 
 def _power(factor: Scalar, exponent: int) -> Formula:
@@ -142,9 +144,7 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
         page.conclude(f"yes_{kind}")
         return
     page.equal(relation(det, shown))
-    for index, factor in enumerate(open_factors):
-        key = "also_provided" if index else f"provided_{kind}"
-        page.assume(key, factor, condition=relation(factor, "!=", 0))
+    page.assume(f"provided_{kind}", *open_factors)
 
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:

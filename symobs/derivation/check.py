@@ -40,6 +40,7 @@ from symobs.formula import (
     Relation,
     Roots,
     Signal,
+    Together,
     evaluate,
     letters,
 )
@@ -115,7 +116,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly)):
+        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -128,6 +129,10 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             _established(member, environment)
         if verify(fact, environment)[0] == "":
             _reject(plain_relation(fact, environment.variable))
+        return
+    if isinstance(fact, Together):
+        for part in fact.relations:
+            _fact(part, environment, discrete)
         return
     environment = replace(environment, coefficients={})
     if isinstance(fact, Roots):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.observability import Controllability, Observability, RankResult
-from symobs.analysis.pages import factored_form, formula_of_factored, say_stability, square_test
+from symobs.analysis.pages import determinant_form, factored_form, formula_of_factored, say_stability, square_test
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Step
 from symobs.design.gain import GainDesign, fresh_names
@@ -176,7 +176,7 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
     V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
-    page.equal(relation(V.inverse, V.inverse.shown), relation(V.apply("det"), V.apply("det").shown))
+    page.equal(relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant())))
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
         page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")

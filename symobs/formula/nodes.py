@@ -140,7 +140,14 @@ class Exactly:
     where: tuple[Relation, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | Exactly
+@dataclass(frozen=True, slots=True)
+class Together:
+    """Several relations that hold at once; shown as their list."""
+
+    relations: tuple[Relation, ...]
+
+
+Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

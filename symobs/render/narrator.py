@@ -10,7 +10,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
-from symobs.phrases import PHRASES
+from symobs.notation import THEOREMS
+from symobs.phrases import PHRASES, RESTS_ON
 from symobs.render.blocks import (
     Block,
     CaseBlock,
@@ -44,6 +45,7 @@ LABELS: dict[str, str] = {
     "error": "error",
     "case": "Case",
     "caution": "A caution.",
+    "sources": "Sources.",
 }
 
 
@@ -53,9 +55,31 @@ def narrate(document: Document) -> tuple[Block, ...]:
         derivation.check()
     page = _Page()
     page.blocks.append(_title(document))
-    for derivation in document.derivations:
-        page.tell(derivation.steps)
+    page.tell([step for derivation in document.derivations for step in derivation.steps])
+    page.blocks += _sources(document)
     return _punctuated(page.blocks)
+
+
+def _sources(document: Document) -> list[Block]:
+    """Return the closing paragraph: the theorems that the sentences appeal to, each with its source."""
+    keys = dict.fromkeys(
+        RESTS_ON[sentence.key]
+        for derivation in document.derivations
+        for sentence in _sentences(derivation.steps)
+        if sentence.key in RESTS_ON
+    )
+    if not keys:
+        return []
+    listed = "; ".join(f"{THEOREMS[key].name}: {THEOREMS[key].source}" for key in keys)
+    return [Paragraph((f"{LABELS['sources']} {listed}.",))]
+
+
+def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
+    for step in steps:
+        found = getattr(step, "sentence", None)
+        if found is not None:
+            yield found
+        yield from _sentences(getattr(step, "steps", ()))
 
 
 def printer_for(document: Document, kind: type[P]) -> P:
