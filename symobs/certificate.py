@@ -79,36 +79,36 @@ class Bound:
 
 
 class Bounds:
-    """The arithmetic of sizes: an upper bound for the degree and height of what a formula evaluates to."""
+    """The arithmetic of sizes at a point: bounds for the degree and the height of what a formula evaluates to.
 
-    def __init__(self, environment: Environment) -> None:
-        """Named coefficients enlarge what they stand in."""
+    Heights are those of the integers the leaves became at the point.  Named coefficients are rational there, so with them
+    the heights are bounded through the coefficients of the leaves instead.
+    """
+
+    def __init__(self, environment: Environment, arithmetic: Modular) -> None:
+        """Bound what named coefficients stand for, in the order they were introduced."""
+        self.arithmetic = arithmetic
+        self.named = bool(environment.coefficients)
         degrees: dict[str, float] = {}
         bits: dict[str, float] = {}
         for name, meaning in environment.coefficients.items():
-            size, inside = _size_of(meaning), meaning.names
-            growth = max((degrees[other] for other in inside if other in degrees), default=1.0)
-            degrees[name] = max(1.0, (size.above + size.below) * growth)
-            length = max((bits[other] for other in inside if other in bits), default=0.0)
-            bits[name] = size.above_bits + size.below_bits + (size.above + size.below) * length
+            above, below = meaning.degrees()
+            growth = max((degrees[other] for other in meaning.names if other in degrees), default=1.0)
+            length = max((bits[other] for other in meaning.names if other in bits), default=float(POINT_BITS))
+            degrees[name] = max(1.0, (above + below) * growth)
+            bits[name] = sum(meaning.lengths()) + (above + below) * max(length, POINT_BITS)
         self.larger = max(degrees.values(), default=1.0)
-        self.longer = max(bits.values(), default=0.0)
-        self.named = bool(environment.coefficients)
+        self.longer = max([*bits.values(), POINT_BITS])
 
     def leaf(self, value: Scalar | Matrix) -> Bound:
-        size = _size_of(value)
-        grown = size.above * self.longer, size.below * self.longer
-        return (
-            Bound(
-                size.above * self.larger + size.below * self.larger,
-                size.below * self.larger + size.above * self.larger,
-                size.above_bits + sum(grown),
-                size.below_bits + sum(grown),
-                size.shape,
-            )
-            if self.named
-            else size
-        )
+        above, below = value.degrees()
+        shape = value.shape if isinstance(value, Matrix) else None
+        if not self.named and id(value) in self.arithmetic.known:
+            return Bound(above, below, *self.arithmetic.point.bits[id(value)], shape)
+        above_bits, below_bits = value.lengths()
+        grown = (above + below) * self.longer
+        degree = (above + below) * self.larger
+        return Bound(degree, degree, above_bits + grown, below_bits + grown, shape)
 
     def shape(self, value: Bound) -> tuple[int, int] | None:
         return value.shape
@@ -195,12 +195,6 @@ class Bounds:
         raise AssertionError(message)
 
 
-def _size_of(value: Scalar | Matrix) -> Bound:
-    if isinstance(value, Scalar):
-        return Bound(*value.sizes())
-    return Bound(*value.sizes(), value.shape)
-
-
 def check(claim: Claim) -> Certificate:
     """Return the certificate of a claim, or raise `CertificateRejected`."""
     how, error = verify(claim.relation, claim.environment)
@@ -276,38 +270,36 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
 
 
 def _holds_at_points(relation: Relation, environment: Environment) -> tuple[str, float]:
-    error_once = _error_bound(relation, environment)
     generator = random.Random(_seed(relation, environment))  # noqa: S311 - repeatable by design
-    error, points, draws = 1.0, 0, 0
+    error, points = 1.0, 0
     names = _generators(relation, environment)
-    while error > ERROR_GOAL:
-        draws += 1
-        if draws > _DRAWS:
-            return "", 0.0
+    for _ in range(_DRAWS):
+        arithmetic = Modular(environment, Point(names, generator))
         try:
-            if not _holds_at(relation, environment, Point(names, generator)):
+            if not _holds_at(relation, environment, arithmetic):
                 return "", 0.0
         except (VanishingDenominator, ZeroDivisionError):
             continue
         points += 1
-        error *= error_once
-    return f"at {points} random point{'s' if points > 1 else ''} modulo 62-bit primes", error
+        error *= _error_bound(relation, environment, arithmetic)
+        if error <= ERROR_GOAL:
+            return f"at {points} random point{'s' if points > 1 else ''} modulo 62-bit primes", error
+    return "", 0.0
 
 
-def _holds_at(relation: Relation, environment: Environment, point: Point) -> bool:
-    arithmetic = Modular(environment, point)
+def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular) -> bool:
     values = [evaluate(member, environment, arithmetic) for member in relation.members]
-    for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True):
-        if agree(left, right, arithmetic) != (operator == "="):
-            return False
-    return True
+    return all(
+        agree(left, right, arithmetic) == (operator == "=")
+        for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True)
+    )
 
 
-def _error_bound(relation: Relation, environment: Environment) -> float:
-    """Return the probability with which one random point and prime would let a false relation pass."""
-    arithmetic = Bounds(environment)
+def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular) -> float:
+    """Return the probability with which this kind of point and prime would let a false relation pass."""
+    bounds = Bounds(environment, arithmetic)
     total = 0.0
-    sizes = [evaluate(member, environment, arithmetic) for member in relation.members]
+    sizes = [evaluate(member, environment, bounds) for member in relation.members]
     for left, right in itertools.pairwise(sizes):
         for first, second in _paired(left, right):
             degree = max(first.above + second.below, second.above + first.below)

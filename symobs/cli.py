@@ -5,9 +5,10 @@ Standard output carries the result only; messages go to standard error.
 
 from __future__ import annotations
 
+import inspect
 import os
+import re
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -16,7 +17,15 @@ import click
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
-PLANT_OPTIONS = ("A", "B", "C", "D", "transfer_function", "dt")
+PLANT_OPTIONS = {
+    "A": 'state matrix, "[0 1; 0 -1]"',
+    "B": "input matrix",
+    "C": "output matrix",
+    "D": "feedthrough; 0 if left out",
+    "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
+    "dt": "0: continuous (default); true, or the period: discrete",
+}
+_MOST_LINES = 100
 
 
 class Tasks(click.Group):
@@ -41,9 +50,13 @@ class Tasks(click.Group):
 
 def _version(ctx: click.Context, _: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's signature
     if value and not ctx.resilient_parsing:
-        from importlib.metadata import version  # noqa: PLC0415
+        from importlib.metadata import PackageNotFoundError, version  # noqa: PLC0415
 
-        click.echo(f"symobs {version('symobs')}")
+        try:
+            number = version("symobs")
+        except PackageNotFoundError:
+            number = "from a checkout that is not installed"
+        click.echo(f"symobs {number}")
         ctx.exit()
 
 
@@ -53,42 +66,41 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT = click.option("--format", "format_name", default=None, help="latex (default), text, json, pdf, …")
-OUTPUT = click.option("-o", "--output", "output", default=None, help="Write to this file instead of standard output.")
+FORMAT_HELP = "latex (default), text, json, pdf, …"
+TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
 
 
 @cli.command()
 @click.argument("file")
-@click.option("--task", "task_name", default=None, help="Run this task only.")
-@FORMAT
-@OUTPUT
-def solve(file: str, task_name: str | None, format_name: str | None, output: str | None) -> None:
+@click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
+@click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
+@click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
+def solve(file: str, task_name: str | None, format_name: str | None, target: str | None) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs import problem  # noqa: PLC0415
+    from symobs.method import tasks  # noqa: PLC0415
 
-    data = problem.parse(_read(file), file)
-    if task_name is not None:
-        data.pop("tasks", None)
-        data["task"] = task_name
-    _run(data, _format_of(format_name, output), output)
+    chosen = _format_of(format_name, target)
+    if task_name is not None and task_name not in tasks():
+        raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
+    _run(problem.validate(problem.parse(_read(file), file), task_name), chosen, target, some=task_name is not None)
 
 
-def _run(data: dict[str, Any], format_name: str, output: str | None) -> None:
-    """Solve a problem's tables, write the document, and leave with the contract's exit code."""
-    from symobs import problem  # noqa: PLC0415
-    from symobs.expect import mismatches  # noqa: PLC0415
-    from symobs.method import formats, render  # noqa: PLC0415
+def _run(found: Any, format_name: str, target: str | None, *, some: bool = False) -> None:
+    """Solve a problem, write the document, and leave with the contract's exit code.
 
-    if format_name not in formats():
-        message = f"{format_name[:40]!r} is not an output format"
-        raise UsageError(message, repair=f"use one of {', '.join(sorted(formats()))}")
-    found = problem.validate(data)
+    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.
+    """
+    from symobs.expect import applicable, mismatches  # noqa: PLC0415
+    from symobs.method import render  # noqa: PLC0415
+
     results = found.solve(_progress(found))
-    unmet = mismatches(results, found.expect)
-    _write(render(found.document(results), format_name), output)
+    expect = applicable(results, found.expect) if some else found.expect
+    unmet = mismatches(results, expect)
+    _write(render(found.document(results), format_name), target)
     for line in unmet:
         click.echo(line, err=True)
-    if found.expect:
+    if expect:
         sys.exit(EXIT_NO if unmet else 0)
     verdicts = {result.verdict for result in results}
     for result in results:
@@ -104,69 +116,95 @@ def _progress(found: Any) -> Any:
     return lambda name: click.echo(f"{name} …", err=True)
 
 
-def _format_of(format_name: str | None, output: str | None) -> str:
-    """Return the format asked for, or the one the output's suffix names, or LaTeX."""
-    if format_name is not None:
-        return format_name
-    if output is not None and Path(output).suffix:
-        from symobs.method import formats  # noqa: PLC0415
+def _format_of(format_name: str | None, target: str | None) -> str:
+    """Return the format asked for, or the one the target's suffix names, or LaTeX."""
+    from symobs.method import formats  # noqa: PLC0415
 
-        for name, found in formats().items():
-            if found.suffix == Path(output).suffix and name != "fragment":
-                return name
-    return "latex"
+    known = formats()
+    repair = f"give --format one of {', '.join(sorted(known))}"
+    suffix = Path(target).suffix if target is not None else ""
+    if format_name is None and suffix:
+        named = [name for name, found in known.items() if found.suffix == suffix]
+        if not named:
+            raise UsageError(f"the suffix {_quoted(suffix)} names no output format", where="-o", repair=repair)
+        return "latex" if "latex" in named else named[0]
+    if format_name is not None and format_name not in known:
+        raise UsageError(f"{_quoted(format_name)} is not an output format", repair=repair)
+    return format_name or "latex"
+
+
+def _quoted(text: str) -> str:
+    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+
+    return f'"{shown(text, 40)}"'
 
 
 def _read(file: str) -> str:
     """Return the text of a file or of standard input, bounded in size."""
+    from symobs.expression.source import shown  # noqa: PLC0415
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
+    where = shown(file)
     try:
         if file == "-":
             raw = sys.stdin.buffer.read(MAX_BYTES + 1)
         else:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(
-            reason, where=file[:200], repair="give the path of a problem file, or - for standard input"
-        ) from None
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        reason = getattr(error, "strerror", None) or str(error)
+        repair = "give the path of a problem file, or - for standard input"
+        raise InputError(reason, where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"
-        raise InputError(message, where=file[:200], repair="keep one problem to a file")
+        raise InputError(message, where=where, repair="keep one problem to a file")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         message = f"byte {error.start} is not UTF-8"
-        raise InputError(message, where=file[:200], repair="save the file as UTF-8 text") from None
+        raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
 
 
-def _write(content: str | bytes, output: str | None) -> None:
+# -- what is written ------------------------------------------------------------------------------------------------
+
+
+def _write(content: str | bytes, target: str | None = None) -> None:
     """Write the whole result or nothing."""
     data = content.encode() if isinstance(content, str) else content
-    if output is None or output == "-":
-        if isinstance(content, bytes) and sys.stdout.isatty():
-            message = "this format is not text"
-            raise UsageError(message, repair="name a file with -o")
-        try:
-            sys.stdout.buffer.write(data)
-            sys.stdout.buffer.flush()
-        except BrokenPipeError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return
-    target = Path(output)
     try:
-        with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".symobs-", delete=False) as stream:
-            temporary = Path(stream.name)
+        if target is not None and target != "-":
+            _write_file(data, Path(os.path.realpath(target)))
+            return
+        if isinstance(content, bytes) and sys.stdout.isatty():
+            raise UsageError("this format is not text", repair="name a file with -o")
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:  # whoever read this has read enough; what is left in the buffer goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        where = "standard output" if target is None else target[:200]
+        raise InputError(reason, where=where, repair="name a file in a folder that can be written") from None
+
+
+def _write_file(data: bytes, target: Path) -> None:
+    """Put a file in its place when it is complete; what is no regular file (/dev/stdout) is written to directly."""
+    import tempfile  # noqa: PLC0415 - only with -o
+
+    if target.exists() and not target.is_file():
+        target.write_bytes(data)
+        return
+    mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
+    with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".symobs-", delete=False) as stream:
+        temporary = Path(stream.name)
+        try:
             stream.write(data)
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(target)
-    except OSError as error:
-        if "temporary" in locals():
+            stream.close()
+            temporary.chmod(mode)
+            temporary.replace(target)
+        except BaseException:
             temporary.unlink(missing_ok=True)
-        reason = error.strerror or str(error)
-        raise InputError(reason, where=output[:200], repair="name a file in a folder that can be written") from None
+            raise
 
 
 def _umask() -> int:
@@ -175,58 +213,63 @@ def _umask() -> int:
     return mask
 
 
+# -- one command a task ---------------------------------------------------------------------------------------------
+
+
 def _task_command(task: Any) -> click.Command:
     """Return the command of a task: the plant's options, then the task's keywords."""
-    parameters: list[click.Parameter] = [
-        click.Option(
-            [f"--{name}", f"--{name.replace('_', '-')}"] if "_" in name else [f"--{name}"], help=f"plant: {name}"
-        )
-        for name in PLANT_OPTIONS
+    from symobs.specification import KINDS  # noqa: PLC0415
+
+    def option(group: str, name: str, described: str) -> click.Option:
+        return click.Option([*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described)
+
+    parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
+    parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
+    signs = "For example omega=positive; repeat it. With it, no other names exist."
+    parameters += [
+        click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
+        click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
+        click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
     ]
-    parameters.append(
-        click.Option(["--symbol", "symbols"], multiple=True, help="NAME=SIGN, for example omega=positive; repeat it.")
-    )
-    for name, kind in task.keywords.items():
-        from symobs.specification import KINDS  # noqa: PLC0415
-
-        flags = [f"--{name}"] + ([f"--{name.replace('_', '-')}"] if "_" in name else [])
-        parameters.append(click.Option([*flags, name], help=KINDS[kind]["description"]))
-    parameters.append(
-        click.Option(["--format", "format_name"], default=None, help="latex (default), text, json, pdf, …")
-    )
-    parameters.append(click.Option(["-o", "--output", "output"], default=None, help="Write to this file."))
-
-    def run(**options: Any) -> None:
-        _run_task(task, options)
-
+    first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
     return click.Command(
-        task.name, params=parameters, callback=run, help=task.function.__doc__, short_help=task.summary
+        task.name,
+        params=parameters,
+        callback=lambda **options: _run_task(task, options),
+        help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
+        short_help=task.summary,
     )
 
 
 def _run_task(task: Any, options: dict[str, Any]) -> None:
     """Put the options into a problem's tables and run it; undeclared names are real symbols."""
-    from symobs.problem import OPEN  # noqa: PLC0415
+    from symobs import problem  # noqa: PLC0415
 
-    output, format_name = options.pop("output"), options.pop("format_name")
-    declared = options.pop("symbols")
-    plant = {name: options.pop(name) for name in PLANT_OPTIONS}
-    plant = {name: value for name, value in plant.items() if value is not None}
-    if "dt" in plant and plant["dt"] in {"true", "True"}:
+    def given(group: str) -> dict[str, Any]:
+        chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
+        return {name.removeprefix(group): value for name, value in chosen.items()}
+
+    chosen = _format_of(options["format_name"], options["target"])
+    plant = given("plant_")
+    if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
-    data: dict[str, Any] = {
-        "title": "",
-        "task": task.name,
-        "plant": plant,
-        "specification": {name: value for name, value in options.items() if value is not None},
-    }
-    data["symbols"] = dict(_declaration(entry) for entry in declared) if declared else OPEN
-    _run(data, _format_of(format_name, output), output)
+    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else problem.OPEN
+    data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
+    try:
+        _run(problem.validate(data), chosen, options["target"])
+    except SymobsError as raised:
+        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
+            error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
+            error.where = re.sub(r"^symbols\.", "--symbol ", error.where)
+        raise
 
 
 def _declaration(entry: str) -> tuple[str, str]:
     name, separator, sign = entry.partition("=")
     return name.strip(), sign.strip() if separator else "real"
+
+
+# -- lists ----------------------------------------------------------------------------------------------------------
 
 
 @cli.command()
@@ -235,11 +278,12 @@ def methods() -> None:
     from symobs.method import methods as known  # noqa: PLC0415
     from symobs.method import tasks  # noqa: PLC0415
 
+    lines: list[str] = []
     for name, task in sorted(tasks().items()):
-        click.echo(f"{name}: {task.summary}")
+        lines.append(f"{name}: {task.summary}")
         for found in known(name).values():
-            click.echo(f"    {found.name}: {found.summary}")
-            click.echo(f"        {found.source}")
+            lines += [f"    {found.name}: {found.summary}", f"        {found.source}"]
+    _write("\n".join(lines) + "\n")
 
 
 @cli.command()
@@ -249,33 +293,66 @@ def schema() -> None:
 
     from symobs.problem import schema as whole  # noqa: PLC0415
 
-    click.echo(json.dumps(whole(), indent=2))
+    _write(json.dumps(whole(), indent=2, ensure_ascii=False) + "\n")
 
 
 @cli.command()
 def conventions() -> None:
     """List the conventions a page can be written in."""
-    click.echo(
-        "standard: u = -K x_hat, observer matrix A - L C, error e = x - x_hat, compensator F in negative feedback"
-    )
+    _write("standard: u = −K x̂, observer matrix A − L C, error e = x − x̂, compensator F in negative feedback\n")
+
+
+@cli.group(invoke_without_command=True)
+@click.pass_context
+def templates(ctx: click.Context) -> None:
+    """List the built-in LaTeX templates, or copy them."""
+    if ctx.invoked_subcommand is None:
+        _write("".join(f"{path.name}\n" for path in _templates()))
+
+
+@templates.command()
+@click.argument("folder")
+def copy(folder: str) -> None:
+    """Copy the built-in LaTeX templates into FOLDER; no file there is overwritten."""
+    target = Path(folder)
+    taken = [path.name for path in _templates() if (target / path.name).exists()]
+    if taken:
+        message = f"{taken[0]} is already there"
+        raise InputError(message, where=folder[:200], repair="name another folder, or move the file away")
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(reason, where=folder[:200], repair="name a folder that can be written") from None
+    for path in _templates():
+        _write(path.read_bytes(), str(target / path.name))
+
+
+def _templates() -> list[Path]:
+    from symobs.render.templates import template_folder  # noqa: PLC0415
+
+    return sorted(template_folder().glob("*.tex"))
 
 
 def main() -> NoReturn:
     """Run the command line; every error becomes a message and an exit code, never a traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
     try:
-        cli.main(standalone_mode=False)
+        cli.main(standalone_mode=False, prog_name="symobs")
         code = 0
-    except ProblemErrors as errors:
-        click.echo(str(errors), err=True)
-        code = max((error.exit_code for error in errors.errors), default=errors.exit_code)
     except SymobsError as error:
-        click.echo(str(error), err=True)
-        code = error.exit_code
+        lines = str(error).split("\n")
+        more = [f"… and {len(lines) - _MOST_LINES} more"] if len(lines) > _MOST_LINES else []
+        click.echo("\n".join(lines[:_MOST_LINES] + more), err=True)
+        several = error.errors if isinstance(error, ProblemErrors) else (error,)
+        code = max(found.exit_code for found in several)
     except click.exceptions.Exit as leaving:
         code = leaving.exit_code
     except click.ClickException as error:
         error.show()
-        code = 2
+        code = UsageError.exit_code
     except (KeyboardInterrupt, click.exceptions.Abort):
         click.echo("interrupted", err=True)
         code = EXIT_INTERRUPTED

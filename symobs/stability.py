@@ -36,14 +36,12 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
     coefficients = list(polynomial.coefficients(variable))
     if len(coefficients) == 1:
         return Stability("yes")
+    lead = sign_of(coefficients[0], signs)
+    if lead != "positive":  # −p, or a₀ p with its leading coefficient a₀²
+        coefficients = [c * (-1 if lead == "negative" else coefficients[0]) for c in coefficients]
     if discrete:
         coefficients = _bilinear(coefficients)
-    lead = sign_of(coefficients[0], signs)
-    if lead == "negative":
-        coefficients = [-c for c in coefficients]
-    conditions = [] if lead in {"positive", "negative"} else [coefficients[0]]
-    conditions += _lienard_chipart(coefficients)
-    return _decide(conditions, signs)
+    return _decide([*coefficients[:discrete], *_lienard_chipart(coefficients)], signs)
 
 
 def _bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:

@@ -36,6 +36,11 @@ class Pair:
         """Det 𝒪."""
         return self.krylov.determinant
 
+    @property
+    def is_observable(self) -> bool:
+        """Whether det 𝒪 is not 0 identically."""
+        return not self.krylov.is_singular
+
     @cached_property
     def kernel(self) -> Matrix:
         """A basis of ker 𝒪 as columns; no columns where the pair is observable."""
@@ -57,7 +62,7 @@ class Pair:
 
     def gain(self, desired: DesiredPolynomial) -> Matrix | None:
         """Return l with det(sI − A + l c) = φ(s), or None where φ cannot be assigned."""
-        if not self.determinant.is_zero:
+        if self.is_observable:
             vector = self.krylov.solve_last()
             return apply_polynomial(desired.factors, desired.variable, self.A, vector).normal()
         quotient = divide(desired.polynomial, self.fixed_polynomial, self.variable)

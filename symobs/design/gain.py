@@ -5,7 +5,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -35,6 +35,7 @@ class GainDesign(Result):
     """
 
     desired: DesiredPolynomial | None
+    working: Pair | None = field(default=None, compare=False)
 
     letter: ClassVar[str]
 
@@ -63,7 +64,7 @@ class GainDesign(Result):
         pair = working_pair(cls.pair(plant), desired)
         gain = pair.gain(desired)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired)
+        return cls(plant, method_name, answer, desired, pair)
 
     @classmethod
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
@@ -109,7 +110,8 @@ class GainDesign(Result):
 
     @cached_property
     def _pair(self) -> Pair:
-        return self.pair(self.plant)
+        """The pair of the plant, over the working context where the design has one."""
+        return self.working or self.pair(self.plant)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 
@@ -123,14 +125,14 @@ class GainDesign(Result):
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """Det 𝒪 (det 𝒞) of a design with a desired polynomial."""
-        if self.desired is None or self._pair.determinant.is_zero:
+        if self.desired is None or not self._pair.is_observable:
             return ()
         return (self._pair.determinant,)
 
     @cached_property
     def fixed_polynomial(self) -> Scalar:
         """The polynomial of the modes that no gain moves."""
-        return self._pair.fixed_polynomial if self._pair.determinant.is_zero else Scalar.of(1)
+        return Scalar.of(1) if self._pair.is_observable else self._pair.fixed_polynomial
 
     @cached_property
     def fixed_modes(self) -> tuple[Root, ...]:
@@ -143,7 +145,7 @@ class GainDesign(Result):
     def family(self) -> dict[str, Any] | None:
         """The general gain where it is not unique: `parameters` and the gain with them; None where it is unique."""
         gain = self.answer[self.letter]
-        if gain is None or self.desired is None or not self._pair.determinant.is_zero:
+        if gain is None or self.desired is None or self._pair.is_observable:
             return None
         N = self._pair.kernel
         taken = self.plant.field.names + tuple(self.plant.symbols.signs) + gain.field.names
@@ -188,10 +190,9 @@ class GainDesign(Result):
 
 def working_pair(pair: Pair, desired: DesiredPolynomial) -> Pair:
     """Return the pair over one context: plant and specification together."""
-    field = pair.A.field | pair.c.field
-    for factor in desired.factors:
-        field = field | Field.of([name for name in factor.field.names if name != desired.variable])
-    return Pair(pair.A.within(field), pair.c.within(field), pair.variable)
+    names = {name for factor in desired.factors for name in factor.field.names} - {desired.variable}
+    working = Field.of((*pair.A.field.names, *pair.c.field.names, *names))
+    return Pair(pair.A.within(working), pair.c.within(working), pair.variable)
 
 
 def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:

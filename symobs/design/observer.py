@@ -116,7 +116,7 @@ def write_observer(page: Page) -> None:
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
     pair = ObserverDesign.pair(plant)
-    if pair.determinant.is_zero:
+    if not pair.is_observable:
         return ObserverDesign.of(plant, desired, "canonical_form")
     answer = {"L": canonical_gain(pair, desired), "polynomial": desired.polynomial}
     return ObserverDesign(plant, "canonical_form", answer, desired)

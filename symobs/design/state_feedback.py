@@ -76,7 +76,7 @@ class StateFeedbackDesign(GainDesign):
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
     pair = StateFeedbackDesign.pair(plant)
-    if pair.determinant.is_zero:
+    if not pair.is_observable:
         return StateFeedbackDesign.of(plant, desired, "canonical_form")
     answer = {"K": canonical_gain(pair, desired).T, "polynomial": desired.polynomial}
     return StateFeedbackDesign(plant, "canonical_form", answer, desired)

@@ -46,6 +46,11 @@ class Krylov:
         return self.A.field
 
     @property
+    def is_singular(self) -> bool:
+        """Whether det 𝒪 is 0 identically."""
+        return not self._integral_determinant if self.field.names else self.determinant.is_zero
+
+    @property
     def matrix(self) -> Matrix:
         """𝒪."""
         return Matrix.block([[row] for row in self.rows])
@@ -65,9 +70,11 @@ class Krylov:
         bottom = self.field.one
         for row in self.rows:
             bottom = bottom * row.denominator
-        return Scalar.reduced(self.field, self._integral_determinant(), bottom)
+        return Scalar.reduced(self.field, self._integral_determinant, bottom)
 
+    @cached_property
     def _integral_determinant(self) -> fmpz_mpoly:
+        """The determinant of N."""
         return ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
 
     def solve_last(self) -> Matrix:
@@ -75,7 +82,7 @@ class Krylov:
         order = len(self.rows)
         if not self.field.names:
             return self.matrix.solve(Matrix.unit(order, order - 1))
-        below = self._integral_determinant()
+        below = self._integral_determinant
         if not below:
             message = "not observable"
             raise ZeroDivisionError(message)

@@ -13,7 +13,7 @@ from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
 from symobs.exact.field import RATIONALS, Field
-from symobs.exact.scalar import Scalar, length_bits, polynomial_fingerprint
+from symobs.exact.scalar import Scalar, degree_bound, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -143,15 +143,20 @@ class Matrix:
             return self.shape[0] * self.shape[1] + 1
         return sum(len(entry) for row in self.table for entry in row) + len(self.denominator)
 
-    def sizes(self) -> tuple[int, int, float, float]:
-        """Return the total degrees of table and denominator and bounds of log₂ of their lengths, as for a scalar."""
-        below = max(int(self.denominator.total_degree()), 0), length_bits(self.denominator)
+    def degrees(self) -> tuple[int, int]:
+        """Return upper bounds of the total degrees of the table's entries and of the denominator."""
         if isinstance(self.table, fmpz_mat):
-            bits = max((abs(entry).bit_length() for entry in self.table.entries()), default=0)
-            return 0, 0, float(bits), below[1]
-        entries = [entry for row in self.table for entry in row]
-        degree = max((max(int(entry.total_degree()), 0) for entry in entries), default=0)
-        return degree, below[0], max(map(length_bits, entries), default=0.0), below[1]
+            return 0, 0
+        above = max((degree_bound(entry) for row in self.table for entry in row), default=0)
+        return above, degree_bound(self.denominator)
+
+    def lengths(self) -> tuple[float, float]:
+        """Return bounds of log₂ of the sums of the |coefficients| of the table's entries and of the denominator."""
+        if isinstance(self.table, fmpz_mat):
+            above = float(max((abs(entry).bit_length() for entry in self.table.entries()), default=0))
+        else:
+            above = max((length_bits(entry) for row in self.table for entry in row), default=0.0)
+        return above, length_bits(self.denominator)
 
     def fingerprint(self) -> str:
         """Return a text that differs between different matrices in practice."""
@@ -179,7 +184,11 @@ class Matrix:
 
     def common_denominator(self) -> Scalar:
         """Return the least common denominator of the entries."""
-        return Scalar(self.field, self.normal().denominator, self.field.one)
+        field = self.field
+        common = field.one
+        for entry in self.entries:
+            common = common_multiple(common, entry.within(field).denominator_part)
+        return Scalar(field, common, field.one)
 
     @property
     def is_zero(self) -> bool:
@@ -270,8 +279,18 @@ class Matrix:
         return Matrix(self.field, ring.transpose(self.table), self.denominator, shape)
 
     def normal(self) -> Matrix:
-        """Return the same matrix over the least common denominator of its entries."""
-        return Matrix.of(self.rows, self.shape[1]).within(self.field)
+        """Return the same matrix with what all entries and the denominator share cancelled."""
+        if isinstance(self.table, fmpz_mat):
+            return _lowest(self)
+        shared = self.denominator
+        for row in self.table:
+            for entry in row:
+                if shared.is_one():
+                    return self
+                if entry:
+                    shared = shared.gcd(entry)
+        table = tuple(tuple(entry / shared for entry in row) for row in self.table)
+        return Matrix(self.field, table, self.denominator / shared, self.shape)
 
     def substitute(self, values: Mapping[str, Scalar]) -> Matrix:
         """Return the matrix with generators replaced; raises ZeroDivisionError where a denominator vanishes."""

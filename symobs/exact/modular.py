@@ -30,34 +30,39 @@ class VanishingDenominator(Exception):
 class Point:
     """A value for every name, modulo one prime."""
 
-    __slots__ = ("prime", "values")
+    __slots__ = ("bits", "prime", "values")
 
     def __init__(self, names: Iterable[str], generator: random.Random) -> None:
         """Draw a prime of 62 bits and a residue for each name."""
         self.prime = random_prime(generator)
         self.values = {name: generator.getrandbits(POINT_BITS) for name in sorted(names)}
+        self.bits: dict[int, tuple[int, int]] = {}
 
     def scalar(self, value: Scalar) -> int:
-        """Return the residue of a scalar."""
+        """Return the residue of a scalar; the sizes of the integers it comes from are kept in `bits`."""
         arguments = [self.values.get(name, 0) for name in value.field.names]
-        below = int(value.denominator_part(*arguments) % self.prime)
-        if not below:
-            raise VanishingDenominator
-        above = int(value.numerator_part(*arguments) % self.prime)
-        return above * pow(below, -1, self.prime) % self.prime
+        above, below = value.numerator_part(*arguments), value.denominator_part(*arguments)
+        self.bits[id(value)] = above.bit_length(), below.bit_length()
+        return int(above % self.prime) * self._inverse(below) % self.prime
 
     def matrix(self, value: Matrix) -> nmod_mat:
-        """Return the matrix of residues."""
+        """Return the matrix of residues; the sizes of the integers it comes from are kept in `bits`."""
         arguments = [self.values.get(name, 0) for name in value.field.names]
-        below = int(value.denominator(*arguments) % self.prime)
-        if not below:
-            raise VanishingDenominator
+        below = value.denominator(*arguments)
         if isinstance(value.table, fmpz_mat):
+            entries = value.table.entries()
             table = nmod_mat(value.table, self.prime)
         else:
-            entries = [int(entry(*arguments) % self.prime) for row in value.table for entry in row]
-            table = nmod_mat(*value.shape, entries, self.prime)
-        return table * nmod(pow(below, -1, self.prime), self.prime)
+            entries = [entry(*arguments) for row in value.table for entry in row]
+            table = nmod_mat(*value.shape, [int(entry % self.prime) for entry in entries], self.prime)
+        self.bits[id(value)] = max((entry.bit_length() for entry in entries), default=0), below.bit_length()
+        return table * nmod(self._inverse(below), self.prime)
+
+    def _inverse(self, number: fmpz) -> int:
+        residue = int(number % self.prime)
+        if not residue:
+            raise VanishingDenominator
+        return pow(residue, -1, self.prime)
 
 
 def random_prime(generator: random.Random) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.exact.field import Field
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
@@ -33,7 +34,7 @@ def apply_polynomial(factors: Iterable[Scalar], variable: str, matrix: Matrix, v
     No power of the matrix is formed: a factor s + p costs one product of matrix and vector.
     """
     for factor in factors:
-        leading, *rest = factor.coefficients(variable)
+        leading, *rest = (c.within(matrix.field | _field_of(c)) for c in factor.coefficients(variable))
         image = vector if leading.is_one else vector * leading
         for coefficient in rest:
             image = matrix @ image
@@ -41,6 +42,11 @@ def apply_polynomial(factors: Iterable[Scalar], variable: str, matrix: Matrix, v
                 image = image + vector * coefficient
         vector = image
     return vector
+
+
+def _field_of(coefficient: Scalar) -> Field:
+    """Return the field of what really occurs: a coefficient's own context still holds the variable."""
+    return Field.of(coefficient.names)
 
 
 def companion(coefficients: Sequence[Scalar]) -> Matrix:

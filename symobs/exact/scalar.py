@@ -73,6 +73,11 @@ class Scalar:
         field = Field.of((name,))
         return Scalar(field, field.context.gen(0), field.one)
 
+    @staticmethod
+    def generator(field: Field, name: str) -> Scalar:
+        """Return the generator `name` as an element of `field`."""
+        return Scalar(field, field.context.gen(field.position[name]), field.one)
+
     def within(self, field: Field) -> Scalar:
         """Return the same value as an element of `field`, which must contain the generators it uses."""
         if field is self.field:
@@ -192,10 +197,13 @@ class Scalar:
         """The number of terms of numerator and denominator."""
         return len(self.numerator_part) + len(self.denominator_part)
 
-    def sizes(self) -> tuple[int, int, float, float]:
-        """Return the total degrees of both parts and bounds of log₂ of the sums of their |coefficients|."""
-        above, below = self.numerator_part, self.denominator_part
-        return _degree(above), _degree(below), length_bits(above), length_bits(below)
+    def degrees(self) -> tuple[int, int]:
+        """Return upper bounds of the total degrees of numerator and denominator."""
+        return degree_bound(self.numerator_part), degree_bound(self.denominator_part)
+
+    def lengths(self) -> tuple[float, float]:
+        """Return bounds of log₂ of the sums of the |coefficients| of numerator and denominator."""
+        return length_bits(self.numerator_part), length_bits(self.denominator_part)
 
     def fingerprint(self) -> str:
         """Return a text that differs between different values in practice: whole where short, else a summary."""
@@ -294,15 +302,16 @@ def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
     return f"{len(polynomial)} {polynomial.degrees()} {polynomial.leading_coefficient()}"
 
 
-def _degree(polynomial: fmpz_mpoly) -> int:
-    return max(int(polynomial.total_degree()), 0)
-
-
 def length_bits(polynomial: fmpz_mpoly) -> float:
     """Return an upper bound of log₂ Σ |coefficients|."""
     if not polynomial:
         return 0.0
     return max(abs(c) for c in polynomial.coeffs()).bit_length() + log2(len(polynomial))
+
+
+def degree_bound(polynomial: fmpz_mpoly) -> int:
+    """Return the sum of the degrees in each generator, which the total degree cannot exceed (and which is cheap)."""
+    return int(sum(polynomial.degrees())) if polynomial else 0
 
 
 def _constant(polynomial: fmpz_mpoly) -> fmpz:

@@ -141,8 +141,8 @@ def common_denominator_excess(entries: Sequence[Scalar]) -> str:
             size = Size.of(denominator)
             spent += work(common, size)
             common = common * size
-        if common.excess or spent > MOST_WORK or len(entries) * whole.bit_length() > MOST_WORK * 64:
-            return common.excess or "too much"
+        if spent > MOST_WORK or len(entries) * whole.bit_length() > MOST_WORK * 64:
+            return "too much"
     common = replace(common, bits=common.bits + whole.bit_length())
     spent += sum((Size.of(entry) * common).words for entry in entries) if fractions else 0
     return "too much" if spent > MOST_WORK else ""

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from lark import Token
 
 from symobs.errors import BudgetExceeded, InputError, UnknownName
-from symobs.exact import Complex, Scalar
-from symobs.expression.names import FUNCTIONS, Scope, refusal
+from symobs.exact import Complex, Field, Scalar
+from symobs.expression.names import FUNCTIONS, LONGEST_NAME, Scope, refusal
 from symobs.expression.source import Source, shown
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ _TOKEN = re.compile(
     r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
     r"|(?P<SPACE>[ \t\r\n]+)"
 )
+_NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT")
@@ -52,6 +54,12 @@ class Tokeniser:
         self.open: list[Token] = []
         self.symbols: dict[str, Scalar] = {}
         self.spaced = False
+
+    @cached_property
+    def field(self) -> Field:
+        """One context for every name of the text, so that its values need not be carried from one to another."""
+        names = {name for name in _NAMES.findall(self.text) if name not in FUNCTIONS and len(name) <= LONGEST_NAME}
+        return Field.of(names) if len(names) <= MOST_NAMES else Field.of(())
 
     def run(self) -> list[Token]:
         """Return the tokens, with brackets matched; raises ExpressionError with the place of the fault."""
@@ -180,7 +188,8 @@ class Tokeniser:
             self._require_admitted(name, at, called=called)
         if len(self.symbols) >= MOST_NAMES:
             raise self.source.error(f"more than {MOST_NAMES} different names", at, kind=BudgetExceeded)
-        return self.symbols.setdefault(name, Scalar.symbol(name))
+        shared = name in self.field.position  # not the e of 2e3e, which follows a number
+        return self.symbols.setdefault(name, Scalar.generator(self.field, name) if shared else Scalar.symbol(name))
 
     def _require_admitted(self, name: str, at: int, *, called: bool) -> None:
         if self.scope.names is not None:

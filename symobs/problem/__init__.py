@@ -1,0 +1,18 @@
+"""Problem files: read (TOML or JSON), validate with all errors at once, run.
+
+A file is never executed and never partly trusted: its size, its nesting and its keys are bounded before it is parsed.
+"""
+
+from symobs.problem.keys import schema
+from symobs.problem.tables import MAX_BYTES, Decimal, parse
+from symobs.problem.validation import OPEN, Problem, validate
+
+__all__ = ["MAX_BYTES", "OPEN", "Decimal", "Problem", "parse", "read", "schema", "validate"]
+
+
+def read(text: str, where: str = "problem") -> Problem:
+    """Return the problem a file describes; text that starts with `{` is JSON, else TOML.
+
+    Raises `ProblemErrors` with every error of the file.
+    """
+    return validate(parse(text, where))

@@ -1,0 +1,63 @@
+"""The keys of a problem file, and the JSON schema made of them and of the registry."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symobs.conditions import SIGNS
+from symobs.method import tasks
+from symobs.specification import KINDS
+
+TOP = {
+    "title": {"description": "the title of the page", "type": "string"},
+    "id": {"description": "ids of the problem", "type": ["array", "string"], "items": {"type": "string"}},
+    "source": {"description": "where the problem comes from", "type": "string"},
+    "task": {"description": "one task"},
+    "tasks": {"description": "several tasks, instead of task"},
+    "convention": {"description": "the convention the file is written in", "enum": ["standard"]},
+    "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
+    "plant": {"description": "A, B, C, D, or transfer_function; dt"},
+    "specification": {"description": "what the tasks need"},
+    "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
+}
+PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a problem file, read from the registry."""
+    known = sorted(tasks())
+    number_or_text = {"type": ["number", "string"]}
+    matrix = {"type": ["string", "array"], "items": {"type": "array", "items": number_or_text}}
+    sign = {"enum": list(SIGNS)}
+    details = {"sign": sign, "latex": {"type": "string"}}
+    symbol = {"type": "object", "properties": details, "additionalProperties": False}
+    plant = dict.fromkeys("ABCD", matrix) | {
+        "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
+        "dt": {"description": "0: continuous; true, or the period: discrete", "type": ["number", "boolean", "string"]},
+    }
+    keywords: dict[str, Any] = {}
+    for name in known:
+        for keyword, kind in tasks()[name].keywords.items():
+            keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
+    properties: dict[str, Any] = {
+        **TOP,
+        "task": {"enum": known},
+        "tasks": {"type": "array", "items": {"enum": known}, "minItems": 1, "uniqueItems": True},
+        "symbols": {"type": "object", "additionalProperties": {"anyOf": [sign, symbol]}},
+        "plant": {
+            "type": "object",
+            "properties": plant,
+            "additionalProperties": False,
+            "oneOf": [{"required": ["A"]}, {"required": ["transfer_function"]}],
+        },
+        "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "symobs problem",
+        "type": "object",
+        "properties": {name: {**TOP[name], **found} for name, found in properties.items()},
+        "additionalProperties": False,
+        "required": ["plant"],
+        "oneOf": [{"required": ["task"]}, {"required": ["tasks"]}],
+    }

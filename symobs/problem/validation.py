@@ -1,0 +1,259 @@
+"""From the tables of a file to a problem that can be run; every error of the file is found in one pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+from unicodedata import category
+
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expression import declared_name, parse_polynomial
+from symobs.expression.source import shown
+from symobs.method import Document, Result, Task, tasks
+from symobs.problem.keys import PLANT, TOP
+from symobs.problem.tables import Decimal
+from symobs.specification import read_poles
+from symobs.system import StateSpace, Symbols, read_matrix
+from symobs.system.time import read_time
+
+_MAX_SYMBOLS = 400
+_MAX_TEXT = 2000
+_MAX_UNKNOWN = 20
+_EXAMPLE = 'A = "[0 1; 0 -1]"'
+
+#: In place of a table of symbols: every well-formed name is a real symbol, as on the command line without a file.
+OPEN = object()
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A validated problem: everything but the answers."""
+
+    title: str
+    source: str
+    ids: tuple[str, ...]
+    tasks: tuple[Task, ...]
+    plant: StateSpace
+    specification: Mapping[str, Any]
+    expect: Mapping[str, Any] = field(default_factory=dict)
+
+    def solve(self, report: Callable[[str], None] | None = None) -> tuple[Result, ...]:
+        """Run every task; `report` is told which one begins.  All errors of all tasks are raised together."""
+        results: list[Result] = []
+        errors = _Errors()
+        for task in self.tasks:
+            if report is not None:
+                report(task.name)
+            keywords = {name: value for name, value in self.specification.items() if name in task.keywords}
+            with errors:
+                results.append(task.function(self.plant, **keywords))
+        if errors.found:
+            raise errors.together()
+        return tuple(results)
+
+    def document(self, results: tuple[Result, ...]) -> Document:
+        """Return what a format renders."""
+        return Document(self.title, self.source, results)
+
+
+class _Errors:
+    """Collects errors: `with errors:` keeps what its block raises and goes on behind it."""
+
+    def __init__(self) -> None:
+        self.found: list[SymobsError] = []
+
+    def note(self, message: str, where: str, repair: str) -> None:
+        """Keep an error that was not raised."""
+        self.found.append(InputError(message, where=where, repair=repair))
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> bool:
+        self.found += error.errors if isinstance(error, ProblemErrors) else ()
+        if isinstance(error, SymobsError) and not isinstance(error, ProblemErrors):
+            self.found.append(error)
+        return isinstance(error, SymobsError)
+
+    def together(self) -> ProblemErrors:
+        """Return all of them, each once."""
+        return ProblemErrors(tuple({str(error): error for error in self.found}.values()))
+
+
+def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
+    """Return the problem of a file's tables; `only` names a task to run instead of the file's own.
+
+    Raises `ProblemErrors` with every error found.
+    """
+    errors = _Errors()
+    _report_unknown(data, TOP, "", errors)
+    title, source = _text(data, "title", errors), _text(data, "source", errors)
+    ids = _ids(data.get("id", []), errors)
+    if data.get("convention", "standard") != "standard":
+        message = f'"{shown(str(data["convention"]), 40)}" is not a convention this version knows'
+        errors.note(message, "convention", 'write convention = "standard"')
+    asked = _tasks(data, errors, required=only is None)
+    wanted = asked if only is None else (tasks()[only],)
+    symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
+    plant = _plant(data, symbols, errors)
+    specification = _specification(data, {*asked, *wanted}, errors)
+    expect = _table(data, "expect", errors)
+    if not errors.found and plant is not None:
+        return Problem(title, source, ids, wanted, plant, specification, expect)
+    if plant is not None and wanted:
+        with errors:
+            Problem(title, source, ids, wanted, plant, specification).solve()
+    else:
+        _read_alone(data, specification, symbols, errors)
+    raise errors.together()
+
+
+def _came(value: object) -> str:
+    """Return what a value of a file is, in words."""
+    if value is None:
+        return "null"
+    words = {bool: "true or false", Decimal: "a number", int: "a number", str: "a text", list: "a list"}
+    return "a table" if isinstance(value, Mapping) else words.get(type(value), "a date or a time")
+
+
+def _report_unknown(table: Mapping[str, Any], known: Collection[str], where: str, errors: _Errors) -> None:
+    """Note every key that is not known, with the key or the place that was meant."""
+    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+    unknown = [key for key in table if key not in known]
+    for key in unknown[:_MAX_UNKNOWN]:
+        near = get_close_matches(key[:64], known, 1)
+        of = [task.name for task in tasks().values() if key in task.keywords]
+        if near:
+            repair = f"did you mean {near[0]}?"
+        elif key in PLANT:
+            repair = "it belongs to [plant]"
+        elif of:
+            repair = f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
+        else:
+            repair = f"known keys are {', '.join(known)}"
+        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair)
+    if len(unknown) > _MAX_UNKNOWN:
+        errors.note(f"{len(unknown) - _MAX_UNKNOWN} more unknown keys", where or "the file", "leave them out")
+
+
+def _table(data: Mapping[str, Any], name: str, errors: _Errors) -> Mapping[str, Any]:
+    value = data.get(name, {})
+    if isinstance(value, Mapping):
+        return value
+    errors.note(f"a table is expected, but {_came(value)} came", name, f"write [{name}] and its keys below")
+    return {}
+
+
+def _text(table: Mapping[str, Any], name: str, errors: _Errors) -> str:
+    value = table.get(name, "")
+    if not isinstance(value, str) or isinstance(value, Decimal):
+        errors.note(f"a text is expected, but {_came(value)} came", name, "write it in quotes")
+        return ""
+    if len(value) > _MAX_TEXT:
+        errors.note(f"the text has more than {_MAX_TEXT} characters", name, "shorten it")
+    for character in value[:_MAX_TEXT]:
+        if category(character) in {"Cc", "Cs"} and character not in "\t\n":
+            errors.note(f"the character U+{ord(character):04X} cannot be printed", name, "leave it out")
+            break
+    return value
+
+
+def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
+    entries = value if isinstance(value, list) else [value]
+    for i, entry in enumerate(entries):
+        if not isinstance(entry, str) or isinstance(entry, Decimal):
+            where = f"id[{i}]" if isinstance(value, list) else "id"
+            errors.note(f"a text is expected, but {_came(entry)} came", where, 'write id = ["S0-Ex4.2"]')
+    return tuple(str(entry) for entry in entries)
+
+
+def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple[Task, ...]:
+    known, key = tasks(), "tasks" if "tasks" in data else "task"
+    listed = f"known tasks are {', '.join(sorted(known))}"
+    if "task" in data and "tasks" in data:
+        errors.note("both task and tasks are given", "tasks", "keep one of them")
+    value = data.get(key, [])
+    if value == [] and required:
+        errors.note("no task is named", key, f'write for example task = "observer"; {listed}')
+    found: dict[str, Task] = {}
+    for i, name in enumerate(value if isinstance(value, list) else [value]):
+        where = f"{key}[{i}]" if isinstance(value, list) else key
+        if not isinstance(name, str):
+            errors.note(f"the name of a task is expected, but {_came(name)} came", where, listed)
+        elif name not in known:
+            errors.note(f'"{shown(name, 40)}" is not a task', where, listed)
+        elif name in found:
+            errors.note(f"the task {name} is named twice", where, "keep one of them")
+        else:
+            found[name] = known[name]
+    return tuple(found.values())
+
+
+def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
+    """Return the symbols; one that is declared wrongly is still known, where its name can be one."""
+    if len(table) > _MAX_SYMBOLS:
+        errors.note(f"{len(table)} symbols are declared, more than {_MAX_SYMBOLS}", "symbols", "declare what is used")
+    kept: dict[str, Any] = {}
+    for name in list(table)[:_MAX_SYMBOLS]:
+        with errors:
+            kept[declared_name(name, f"symbols.{shown(name, 40)}")] = "real"
+            Symbols.of({name: table[name]})
+            kept[name] = table[name]
+    return Symbols.of(kept)
+
+
+def _plant(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> StateSpace | None:
+    """Return the plant, None where it cannot be had."""
+    table = _table(data, "plant", errors)
+    if not isinstance(data.get("plant", {}), Mapping):
+        return None
+    _report_unknown(table, PLANT, "plant", errors)
+    dt: object = 0
+    with errors:
+        read_time(table.get("dt", 0), symbols)
+        dt = table.get("dt", 0)
+    given = [name for name in "ABCD" if name in table]
+    if "transfer_function" in table and given:
+        errors.note(f"both transfer_function and {given[0]} are given", "plant", "keep one of them")
+    elif "transfer_function" in table:
+        with errors:
+            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
+    elif "A" not in table:
+        errors.note("the state matrix is missing", "plant.A", f"write {_EXAMPLE} under [plant]")
+    else:
+        with errors:
+            return StateSpace(*(table.get(name) for name in "ABCD"), dt, symbols=symbols)
+    return None
+
+
+def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _Errors) -> dict[str, Any]:
+    """Return what the tasks can use of the specification."""
+    table = _table(data, "specification", errors)
+    kinds = {name: kind for task in wanted or tasks().values() for name, kind in task.keywords.items()}
+    _report_unknown(table, kinds, "specification", errors)
+    found: dict[str, Any] = {}
+    for name in kinds.keys() & table.keys():
+        if kinds[name] == "Name" and (not isinstance(table[name], str) or isinstance(table[name], Decimal)):
+            message = f"a name is expected, but {_came(table[name])} came"
+            errors.note(message, f"specification.{name}", "write it in quotes")
+        else:
+            found[name] = table[name]
+    return found
+
+
+def _read_alone(data: Mapping[str, Any], specification: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> None:
+    """Note which values of a specification cannot be read even by themselves, where no plant or no task is at hand."""
+    plant = data.get("plant")
+    variable = "z" if isinstance(plant, Mapping) and plant.get("dt", 0) not in (0, False) else "s"
+    kinds = {name: kind for task in tasks().values() for name, kind in task.keywords.items()}
+    for name, value in specification.items():
+        where = f"specification.{name}"
+        with errors:
+            if kinds[name] == "Poles":
+                read_poles(value, symbols, where)
+            elif kinds[name] == "PolynomialText":
+                parse_polynomial(value, variable, symbols.names, where=where)
+            elif kinds[name] == "GainText":
+                read_matrix(value, symbols, where)

@@ -1,0 +1,439 @@
+"""Derivations read without the kernel: every formula evaluated in plain fractions at random points.
+
+Nothing of `symobs.exact`, `symobs.formula.evaluate`, `certificate` or `derivation.check` takes part: a scalar is read by
+its terms, a matrix is a list of lists, a determinant is an elimination.  A polynomial identity of degree d that is false
+holds at a point drawn from 10⁹ values with probability at most d / 10⁹; three points are drawn.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
+from symobs.exact import Matrix, Root, Scalar
+from symobs.formula import (
+    Apply,
+    Block,
+    Derivative,
+    Exactly,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Predicate,
+    Product,
+    Quotient,
+    Relation,
+    Roots,
+    Sum,
+    Together,
+    Transpose,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.derivation import Derivation, Step
+    from symobs.formula import Environment, Fact, Formula
+
+Table = list[list[Fraction]]
+LARGEST = 10**9
+
+
+def product(left: Table, right: Table) -> Table:
+    columns = list(zip(*right, strict=True))
+    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in left]
+
+
+def identity(order: int) -> Table:
+    return [[Fraction(i == j) for j in range(order)] for i in range(order)]
+
+
+def eliminate(table: Table, width: int) -> tuple[int, Fraction, Table]:
+    """Return rank and determinant of the first `width` columns, and the rows reduced by Gauss and Jordan."""
+    rows, rank, determinant = [list(row) for row in table], 0, Fraction(1)
+    for column in range(width):
+        pivot = next((i for i in range(rank, len(rows)) if rows[i][column]), None)
+        if pivot is None:
+            determinant = Fraction(0)
+            continue
+        if pivot != rank:
+            rows[rank], rows[pivot], determinant = rows[pivot], rows[rank], -determinant
+        lead = rows[rank][column]
+        determinant *= lead
+        rows[rank] = [entry / lead for entry in rows[rank]]
+        for i, row in enumerate(rows):
+            if i != rank and row[column]:
+                rows[i] = [a - row[column] * b for a, b in zip(row, rows[rank], strict=True)]
+        rank += 1
+    return rank, determinant, rows
+
+
+def determinant(table: Table) -> Fraction:
+    return eliminate(table, len(table))[1]
+
+
+def inverse(table: Table) -> Table:
+    order = len(table)
+    rank, _, rows = eliminate([row + unit for row, unit in zip(table, identity(order), strict=True)], order)
+    if rank < order:
+        raise ZeroDivisionError
+    return [row[order:] for row in rows]
+
+
+def adjugate(table: Table) -> Table:
+    def cofactor(i: int, j: int) -> Fraction:
+        minor = [[x for b, x in enumerate(row) if b != i] for a, row in enumerate(table) if a != j]
+        return (-1) ** (i + j) * determinant(minor)
+
+    return [[cofactor(i, j) for j in range(len(table))] for i in range(len(table))]
+
+
+@dataclass
+class World:
+    """What the letters mean at one point; a letter stands for a value or a formula, read when asked for."""
+
+    seed: int
+    variable: str
+    signs: Mapping[str, str]
+    letters: dict[str, Any] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    rates: dict[str, Formula] = field(default_factory=dict)
+    meanings: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, environment: Environment, seed: int) -> World:
+        return cls(
+            seed,
+            environment.variable,
+            environment.signs,
+            {**environment.values, **environment.signals},
+            environment.sizes,
+            dict(environment.dynamics),
+            dict(environment.coefficients),
+        )
+
+    def copy(self) -> World:
+        return replace(self, letters=dict(self.letters), rates=dict(self.rates), meanings=dict(self.meanings))
+
+    # -- values ---------------------------------------------------------------------------------------------------
+
+    def number(self, name: str) -> Fraction:
+        """Return what a parameter is here: its meaning, or a random fraction of its sign."""
+        if name in self.meanings:
+            found = self.value(self.meanings[name])
+            return found if isinstance(found, Fraction) else found[0][0]
+        draw = random.Random(f"{self.seed} {name}")  # noqa: S311 - repeatable by design
+        size = Fraction(draw.randint(1, LARGEST), draw.randint(1, 9))
+        sign = self.signs.get(name, "real")
+        down = sign in {"negative", "nonpositive"} or (sign in {"real", "nonzero"} and draw.random() < 0.5)
+        return -size if down else size
+
+    def scalar(self, value: Scalar) -> Fraction:
+        return self.polynomial(value.numerator) / self.polynomial(value.denominator)
+
+    def polynomial(self, value: Scalar) -> Fraction:
+        numbers = {name: self.number(name) for name in value.names}
+        total = Fraction(0)
+        for coefficient, powers in value.terms():
+            term = Fraction(coefficient)
+            for name, exponent in powers:
+                term *= numbers[name] ** exponent
+            total += term
+        return total
+
+    def coefficients(self, value: Scalar) -> list[Fraction]:
+        """Return the coefficients of a polynomial of the variable, constant first."""
+        below = self.polynomial(value.denominator)
+        collected: dict[int, Fraction] = {}
+        for coefficient, powers in value.terms():
+            term, degree = Fraction(coefficient) / below, 0
+            for name, exponent in powers:
+                if name == self.variable:
+                    degree = exponent
+                else:
+                    term *= self.number(name) ** exponent
+            collected[degree] = collected.get(degree, Fraction(0)) + term
+        return [collected.get(degree, Fraction(0)) for degree in range(max(collected, default=0) + 1)]
+
+    def value(self, item: Any) -> Any:  # noqa: C901, PLR0911, PLR0912 - one case a kind of node
+        """Return a fraction, a table, or a signal: free signal → table of coefficients."""
+        match item:
+            case Scalar():
+                return self.scalar(item)
+            case Matrix():
+                return [[self.scalar(entry) for entry in row] for row in item.rows]
+            case Literal(value):
+                return self.value(value)
+            case Letter("s"):
+                return self.number(self.variable)
+            case Letter(name):
+                if self.letters[name] is None:
+                    return {name: identity(self.sizes[name])}
+                return self.value(self.letters[name])
+            case Identity(order):
+                return identity(order)
+            case Negative(operand):
+                return times(Fraction(-1), self.value(operand))
+            case Sum(terms):
+                total = self.value(terms[0])
+                for term in terms[1:]:
+                    total = plus(total, self.value(term))
+                return total
+            case Product(factors):
+                total = self.value(factors[-1])
+                for factor in reversed(factors[:-1]):
+                    total = times(self.value(factor), total)
+                return total
+            case Quotient(above, below):
+                return times(1 / single(self.value(below)), self.value(above))
+            case Power(base, exponent):
+                return power(self.value(base), exponent)
+            case Transpose(operand):
+                return [list(row) for row in zip(*self.value(operand), strict=True)]
+            case Apply(function, argument):
+                return self.apply(function, self.value(argument))
+            case Block(rows):
+                return stacked([[self.value(entry) for entry in row] for row in rows])
+            case Derivative(operand):
+                return self.rate(self.value(operand))
+        raise TypeError(item)
+
+    def apply(self, function: str, table: Table) -> Any:
+        if function.endswith("_at"):
+            total = [[Fraction(0)] * len(table) for _ in table]
+            for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):
+                total = plus(product(total, table), times(coefficient, identity(len(table))))
+            return total
+        if function == "rank":
+            return Fraction(eliminate(table, len(table[0]))[0])
+        return {"det": determinant, "adj": adjugate}[function](table)
+
+    def rate(self, signal: Mapping[str, Table]) -> Any:
+        parts = [times(table, self.value(self.rates[name])) for name, table in signal.items()]
+        total = parts[0]
+        for part in parts[1:]:
+            total = plus(total, part)
+        return total
+
+    # -- steps ----------------------------------------------------------------------------------------------------
+
+    def introduce(self, relation: Relation) -> None:
+        target, *rest = relation.members
+        meaning = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])
+        match target:
+            case Derivative(Letter(name)):
+                self.rates[name] = rest[0]
+            case Letter(name):
+                self.letters[name] = meaning.value if isinstance(meaning, Literal) else meaning
+            case Literal(Scalar() as value) if len(value.names) == 1:
+                (name,) = value.names
+                self.meanings[name] = rest[-1]
+            case _:
+                raise TypeError(target)
+
+    def read(self, steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:
+        """Yield what the steps say as (kind, content), each read at this point; relations introduce first members."""
+        for step in steps:
+            match step:
+                case Section(steps=inside):
+                    yield from self.read(inside)
+                case Given(relations):
+                    for relation in relations:
+                        yield from self.data(relation)
+                case Define(relation):
+                    yield from self.data(relation)
+                case Equal(relations):
+                    yield from self.facts(relations)
+                case Solve(equation, solution):
+                    yield from self.data(solution)
+                    yield from self.facts((equation,))
+                case Conclude(facts=facts) | Note(facts=facts):
+                    yield from self.facts(facts)
+                case Diagram(_, labels):
+                    for name, label in labels:
+                        yield f"label {name}", self.value(label)
+                case Case(when, substitution, inside):
+                    yield "condition", single(self.difference(when))
+                    stratum = self.copy()
+                    stratum.meanings |= {name: value for name, value in substitution}
+                    yield "zero", single(stratum.difference(when))
+                    yield from stratum.read(inside)
+            sentence = getattr(step, "sentence", None)
+            if sentence is not None:
+                yield "words", sentence.key
+                for _, slot in sentence.slots:
+                    yield from self.facts((slot,))
+
+    def difference(self, relation: Relation) -> Any:
+        return plus(self.value(relation.members[0]), times(Fraction(-1), self.value(relation.members[1])))
+
+    def data(self, relation: Relation) -> Iterator[tuple[str, Any]]:
+        if relation.operators == ("!=",):
+            yield "condition", self.difference(relation)
+            return
+        assert set(relation.operators) == {"="}, "an introduction is an equation"
+        self.introduce(relation)
+        yield from self.facts((relation,))
+
+    def facts(self, facts: Sequence[Fact | Formula | str]) -> Iterator[tuple[str, Any]]:
+        for fact in facts:
+            match fact:
+                case Relation(members, operators):
+                    values = [self.value(member) for member in members]
+                    for left, operator, right in zip(values[:-1], operators, values[1:], strict=True):
+                        yield operator, zeroed(plus(left, times(Fraction(-1), right)))
+                case Together(relations):
+                    yield from self.facts(relations)
+                case Predicate(name, subject):
+                    yield f"property {name}", single(self.value(subject))
+                case Roots(polynomial, values):
+                    yield "condition", single(self.value(polynomial))
+                    yield "roots", frozenset_of(self.root(root) for root in values)
+                case Exactly(about, where):
+                    yield f"property {about.name}", single(self.value(about.subject))
+                    yield "region", {(relation.operators, single(self.difference(relation))) for relation in where}
+                case str():
+                    yield "word", fact
+                case _:
+                    yield "shown", self.value(fact)
+
+    def root(self, root: Root) -> tuple[Any, ...]:
+        if not root.is_closed:
+            return ("of", tuple(self.coefficients(root.factor)), root.index)
+        radicand = self.scalar(root.radicand)
+        return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
+
+
+def frozenset_of(roots: Iterator[tuple[Any, ...]]) -> tuple[str, ...]:
+    """Return the roots in an order of their own: a multiset."""
+    return tuple(sorted(map(repr, roots)))
+
+
+def single(value: Any) -> Fraction:
+    """Read a 1×1 table as its entry."""
+    if isinstance(value, Fraction):
+        return value
+    ((entry,),) = value
+    return entry
+
+
+def is_number(value: Any) -> bool:
+    return isinstance(value, Fraction)
+
+
+def plus(left: Any, right: Any) -> Any:
+    if isinstance(left, dict):
+        return {
+            name: plus(left[name], right[name]) if name in left and name in right else (left.get(name) or right[name])
+            for name in {**left, **right}
+        }
+    if is_number(left) and is_number(right):
+        return left + right
+    if is_number(left) or is_number(right):
+        return single(left) + single(right)
+    return [[a + b for a, b in zip(p, q, strict=True)] for p, q in zip(left, right, strict=True)]
+
+
+def times(left: Any, right: Any) -> Any:
+    if isinstance(right, dict):
+        return {name: times(left, table) for name, table in right.items()}
+    if is_number(left):
+        return left * right if is_number(right) else [[left * entry for entry in row] for row in right]
+    if is_number(right):
+        return times(right, left)
+    if len(left[0]) == len(right):
+        return product(left, right)
+    return times(single(left), right) if len(left) == len(left[0]) == 1 else times(single(right), left)
+
+
+def power(base: Any, exponent: int) -> Any:
+    if exponent < 0:
+        base, exponent = (1 / base if is_number(base) else inverse(base)), -exponent
+    total = Fraction(1) if is_number(base) else identity(len(base))
+    for _ in range(exponent):
+        total = times(total, base)
+    return total
+
+
+def stacked(rows: list[list[Any]]) -> Any:
+    if isinstance(rows[0][0], dict):
+        names = dict.fromkeys(name for (part,) in rows for name in part)
+        heights = [len(next(iter(part.values()))) for (part,) in rows]
+        widths = {name: len(part[name][0]) for (part,) in rows for name in part}
+        return {
+            name: [
+                line
+                for (part,), height in zip(rows, heights, strict=True)
+                for line in part.get(name, [[Fraction(0)] * widths[name]] * height)
+            ]
+            for name in names
+        }
+    tables = [[[[part]] if is_number(part) else part for part in row] for row in rows]
+    return [[entry for part in row for entry in part[i]] for row in tables for i in range(len(row[0]))]
+
+
+def zeroed(value: Any) -> Any:
+    """Return 0 for a difference that vanishes in every entry, else the difference."""
+    if isinstance(value, dict):
+        return Fraction(0) if all(zeroed(table) == 0 for table in value.values()) else value
+    if is_number(value):
+        return value
+    return Fraction(0) if not any(entry for row in value for entry in row) else value
+
+
+# -- what is true -------------------------------------------------------------------------------------------------------
+
+
+def readings(steps: Sequence[Step], start: Environment, points: int = 3) -> list[list[tuple[str, Any]]]:
+    """Return what steps say at some random points."""
+    return [list(World.of(start, seed).read(steps)) for seed in range(points)]
+
+
+def is_true(derivation: Derivation) -> bool:
+    """Tell whether every equation of a derivation holds at random points; other lines need `still_true`."""
+    return all(
+        content == 0
+        for reading in readings(derivation.steps, derivation.start)
+        for kind, content in reading
+        if kind in {"=", "zero"}
+    )
+
+
+def still_true(changed: Derivation, original: Derivation) -> bool:
+    """Tell whether a changed derivation says other things that are true as well.
+
+    Equations hold; inequations and conditions differ from the original ones by a constant factor, or are between
+    constants; properties are of the same thing up to a factor; roots, regions, labels, words are the same.
+    """
+    try:
+        told = readings(changed.steps, changed.start)
+    except (ArithmeticError, ValueError, TypeError, LookupError, AssertionError):
+        return False
+    meant = readings(original.steps, original.start)
+    if any([kind for kind, _ in a] != [kind for kind, _ in b] for a, b in zip(told, meant, strict=True)):
+        return False
+    lines = zip(zip(*told, strict=True), zip(*meant, strict=True), strict=True)
+    return all(_agrees(new[0][0], [c for _, c in new], [c for _, c in old]) for new, old in lines)
+
+
+def _agrees(kind: str, new: list[Any], old: list[Any]) -> bool:
+    if kind in {"=", "zero"}:
+        return all(content == 0 for content in new)
+    if kind == "!==":
+        return any(content != 0 for content in new)
+    if new == old:
+        return True
+    if kind in {"!=", "condition"} or kind.startswith("property"):
+        values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
+        if any(b == 0 for _, b in values) or any(a == 0 for a, _ in values):
+            return False
+        constant = {a for a, _ in values}
+        return len(constant) == 1 and kind == "!=" or len({a / b for a, b in values}) == 1
+    if kind in {"<", ">", "<=", ">="}:
+        return len({single(a) / single(b) for a, b in zip(new, old, strict=True)}) == 1 and single(new[0]) / single(old[0]) > 0
+    return False

@@ -1,0 +1,462 @@
+"""A second opinion on derivations: plain SymPy matrices, and of symobs nothing but the shape of its formula tree.
+
+`Reader` walks the steps of a derivation, gives every letter a value of its own making, and compares all members of every
+line.  It works with symbols, or at one rational point where the expressions are too large for SymPy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, is_dataclass
+from functools import reduce
+from math import prod
+from operator import mul
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import sympy
+
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
+from symobs.exact import Matrix
+from symobs.formula import (
+    Apply,
+    Block,
+    Derivative,
+    Exactly,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Predicate,
+    Product,
+    Quotient,
+    Relation,
+    Roots,
+    Sum,
+    Together,
+    Transpose,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from symobs.derivation import Derivation, Sentence, Step
+    from symobs.exact import Root, Scalar
+    from symobs.formula import Fact, Formula
+
+Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free signal -> its coefficient matrix
+
+
+# -- plain linear algebra ------------------------------------------------------------------------------------------------
+
+
+def is_zero(expression: Any) -> bool:
+    """Whether a rational expression is 0."""
+    numerator = sympy.together(expression).as_numer_denom()[0]
+    return bool(sympy.expand(numerator) == 0)
+
+
+def observability_matrix(A: Value, C: Value) -> Value:
+    return sympy.Matrix.vstack(*[C * A**k for k in range(A.rows)])
+
+
+def polynomial_at(polynomial: Any, variable: sympy.Symbol, A: Value) -> Value:
+    total = sympy.zeros(A.rows, A.rows)
+    for coefficient in sympy.Poly(polynomial, variable).all_coeffs():
+        total = total * A + coefficient * sympy.eye(A.rows)
+    return total
+
+
+def inverse(matrix: Value) -> Value:
+    """Return adj / det: no pivot has to be known not to vanish."""
+    return (matrix.adjugate() / matrix.det(method="berkowitz")).applyfunc(sympy.cancel)
+
+
+def ackermann(A: Value, C: Value, polynomial: Any, variable: sympy.Symbol) -> Value:
+    """Return φ(A) 𝒪⁻¹ eₙ."""
+    last = sympy.eye(A.rows)[:, -1]
+    return (polynomial_at(polynomial, variable, A) * (inverse(observability_matrix(A, C)) * last)).applyfunc(
+        sympy.cancel
+    )
+
+
+def characteristic(A: Value, s: Any) -> Any:
+    return sympy.expand((s * sympy.eye(A.rows) - A).det(method="berkowitz"))
+
+
+def response(A: Value, B: Value, C: Value, s: Any) -> Any:
+    """Return C (sI − A)⁻¹ B of one input and one output."""
+    pencil = s * sympy.eye(A.rows) - A
+    return sympy.cancel((C * pencil.adjugate() * B)[0] / pencil.det(method="berkowitz"))
+
+
+def canonical_transformation(A: Value, test: Value, s: Any) -> Value:
+    """Return the controllability matrix times the Hankel matrix of χ, constant coefficient excluded."""
+    order = A.rows
+    ascending = sympy.Poly(characteristic(A, s), s).all_coeffs()[::-1]
+    hankel = sympy.Matrix(order, order, lambda i, j: ascending[i + j + 1] if i + j < order else 0)
+    return test * hankel
+
+
+def is_stable(polynomial: Any, variable: sympy.Symbol, *, discrete: bool) -> bool:
+    """Whether all roots of a polynomial with numbers for coefficients are stable, by numeric roots."""
+    roots = sympy.Poly(polynomial, variable).nroots(n=30, maxsteps=500)
+    return all(abs(r) < 1 if discrete else sympy.re(r) < 0 for r in roots)
+
+
+# -- reading what symobs wrote -------------------------------------------------------------------------------------------
+
+
+def facts_in(item: object) -> Iterator[Fact]:
+    """Yield every fact anywhere in a derivation, by the fields of its dataclasses alone."""
+    if isinstance(item, (Relation, Predicate, Roots, Exactly)):
+        yield item
+    elif isinstance(item, (tuple, list)):
+        for part in item:
+            yield from facts_in(part)
+    elif is_dataclass(item):
+        for part in fields(item):
+            yield from facts_in(getattr(item, part.name))
+
+
+def values_of(facts: Iterable[Fact]) -> int:
+    """Count what must agree: all members of a relation but its first; one for any other fact."""
+    return sum(len(fact.members) - 1 if isinstance(fact, Relation) else 1 for fact in facts)
+
+
+def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
+    """Return a kernel scalar term by term; generators mean what `names` says, else themselves."""
+    powers: dict[tuple[str, int], Any] = {}
+
+    def power(name: str, exponent: int) -> Any:
+        if (name, exponent) not in powers:
+            powers[name, exponent] = names.get(name, sympy.Symbol(name)) ** exponent
+        return powers[name, exponent]
+
+    def polynomial(part: Scalar) -> Any:
+        return sympy.Add(
+            *(reduce(mul, (power(*p) for p in monomial), sympy.Integer(c)) for c, monomial in part.terms())
+        )
+
+    return polynomial(value.numerator) / polynomial(value.denominator)
+
+
+def sympy_root(root: Root, names: Mapping[str, Any]) -> Any:
+    """Return centre ± √radicand."""
+    assert root.is_closed
+    return sympy_scalar(root.centre, names) + root.sign * sympy.sqrt(sympy_scalar(root.radicand, names))
+
+
+@dataclass
+class Tally:
+    """How many values were compared, and what was only introduced or spoken of, so that there was nothing to compare."""
+
+    compared: int = 0
+    introduced: list[str] = field(default_factory=list)
+    spoken: list[str] = field(default_factory=list)
+
+
+class Reader:
+    """A walk through one derivation.
+
+    known     what letters must be worth, found without symobs: letter -> one value, or several of which one must fit
+    names     generators replaced on sight: nothing, or the coordinates of a rational point
+    samples   parameter points allowed by the declared signs, for what no equation states
+    """
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        known: Mapping[str, tuple[Value, ...]],
+        samples: Callable[[], Iterable[Mapping[str, Any]]],
+        names: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.derivation = derivation
+        self.known = known
+        self._samples = samples
+        self.assumed: list[Any] = []
+        self.symbol = sympy.Symbol(derivation.variable)
+        self.names: dict[str, Any] = dict(names or {})
+        self.letters: dict[str, Value] = {}
+        self.sizes = dict(derivation.start.sizes)
+        self.signals: dict[str, Formula] = {}
+        self.rates: dict[str, Formula] = {}
+        self.tally = Tally()
+
+    def read(self) -> Tally:
+        for step in self.derivation.steps:
+            self.step(step)
+        return self.tally
+
+    def samples(self) -> Iterator[Mapping[str, Any]]:
+        """Yield the sample points where everything assumed so far holds."""
+        return (point for point in self._samples() if all(value.subs(point) != 0 for value in self.assumed))
+
+    # -- steps -----------------------------------------------------------------------------------------------------------
+
+    def step(self, step: Step) -> None:
+        match step:
+            case Given(relations):
+                for relation in relations:
+                    self.introduce(relation)
+            case Define(relation):
+                self.introduce(relation)
+            case Equal(relations):
+                for relation in relations:
+                    self.fact(relation)
+            case Solve(equation, solution):
+                self.introduce(solution)
+                self.fact(equation)
+            case Conclude(facts=facts) | Note(facts=facts):
+                for fact in facts:
+                    self.fact(fact)
+            case Diagram(_, labels):
+                for name, label in labels:
+                    letter = {"plant": "P", "compensator": "F"}[name]
+                    assert self.agree(self.value(label), self.letters[letter]), label
+            case Case(when, substitution, steps):
+                self.case(when, {name: sympy_scalar(value, self.names) for name, value in substitution}, steps)
+            case Section(title, steps):
+                self.sentence(title)
+                for inside in steps:
+                    self.step(inside)
+        self.sentence(getattr(step, "sentence", None))
+
+    def sentence(self, sentence: Sentence | None) -> None:
+        if sentence is None:
+            return
+        for name, slot in sentence.slots:
+            if isinstance(slot, (Relation, Together, Predicate, Roots, Exactly)):
+                self.fact(slot)
+            elif not isinstance(slot, str):
+                self.value(slot)
+                self.tally.spoken.append(f"{sentence.key}.{name}")
+
+    def case(self, when: Relation, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
+        """Read on with the parameters replaced; letters that have no value there are forgotten."""
+        outside, letters = self.names, self.letters
+        replaced = {sympy.Symbol(name): value for name, value in substitution.items()}
+        self.names = {**outside, **substitution}
+        self.letters = {}
+        for name, value in letters.items():
+            moved = value.subs(replaced)
+            if not moved.has(sympy.zoo, sympy.nan, sympy.oo):
+                self.letters[name] = moved
+        self.fact(when)
+        for step in steps:
+            self.step(step)
+        self.names, self.letters = outside, letters
+
+    def introduce(self, relation: Relation) -> None:
+        """Compare the members after the first with each other and with what is known, then let the first mean them."""
+        target, *rest = relation.members
+        if relation.operators == ("!=",):
+            self.assumed.append(scalar(self.value(target)) - scalar(self.value(rest[0])))
+            self.tally.introduced.append("!=")
+            return
+        values = [self.value(member) for member in rest]
+        for value in values[1:]:
+            assert self.agree(values[0], value), relation
+        self.tally.compared += len(values) - 1
+        match target:
+            case Derivative(Letter(name)):
+                self.settle(f"{name}'", values[0])
+                self.rates[name] = rest[0]
+            case Literal(symbol):
+                (name,) = symbol.names  # type: ignore[union-attr]
+                self.settle(name, values[0])
+                self.names[name] = values[0]
+            case Letter(name):
+                self.settle(name, values[0])
+                if isinstance(values[0], dict):
+                    self.signals[name] = rest[0]
+                else:
+                    self.letters[name] = values[0]
+            case _:
+                raise AssertionError(relation)
+
+    def settle(self, name: str, value: Value) -> None:
+        """Hold a new letter against its independent value; one that has none is a definition."""
+        if name in self.known:
+            assert any(self.agree(value, wanted) for wanted in self.known[name]), (name, value)
+            self.tally.compared += 1
+        else:
+            self.tally.introduced.append(name)
+
+    # -- facts -----------------------------------------------------------------------------------------------------------
+
+    def fact(self, fact: Fact) -> None:
+        match fact:
+            case Relation(members, operators):
+                values = [self.value(member) for member in members]
+                for left, operator, right in zip(values, operators, values[1:], strict=False):
+                    assert self.holds(left, operator, right), fact
+                self.tally.compared += len(operators)
+                return
+            case Together(relations):
+                for relation in relations:
+                    self.fact(relation)
+                return
+            case Roots(polynomial, roots):
+                found = [sympy_root(root, self.names) for root in roots]
+                product = prod((self.symbol - root for root in found), start=sympy.Integer(1))
+                assert is_zero(product - scalar(self.value(polynomial))), fact
+            case Exactly(Predicate("stable", subject), where):
+                self.exactly(subject, where)
+            case Predicate(name, subject):
+                self.predicate(name, subject)
+        self.tally.compared += 1
+
+    def holds(self, left: Value, operator: str, right: Value) -> bool:
+        if operator in {"=", "!=="}:
+            return self.agree(left, right) == (operator == "=")
+        difference = scalar(left) - scalar(right)
+        return all(compare(difference.subs(point), operator) for point in self.samples())
+
+    def predicate(self, name: str, subject: Formula) -> None:
+        value = sympy.cancel(scalar(self.value(subject)))
+        above, below = (sympy.Poly(part, self.symbol) for part in value.as_numer_denom())
+        if name == "strictly_proper":
+            assert above.degree() < below.degree(), subject
+            return
+        polynomial = (below if below.degree() > 0 else above).as_expr()
+        for point in self.samples():
+            if name == "never_zero":
+                assert value.subs(point) != 0
+            else:
+                stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)
+                assert stable == {"stable": True, "unstable": False}[name], subject
+
+    def exactly(self, subject: Formula, where: tuple[Relation, ...]) -> None:
+        """Compare the roots at every sample with the inequalities; both outcomes must occur."""
+        polynomial, seen = scalar(self.value(subject)), set()
+        sides = [
+            (scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where
+        ]
+        for point in self.samples():
+            stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)
+            assert stable == all(compare(side.subs(point), operator) for side, operator in sides), (subject, point)
+            seen.add(stable)
+        assert seen == {True, False}
+
+    def agree(self, left: Value, right: Value) -> bool:
+        if isinstance(left, dict) or isinstance(right, dict):
+            assert isinstance(left, dict)
+            assert isinstance(right, dict)
+            return all(
+                self.agree(left.get(name, 0 * right.get(name, 0)), right.get(name, 0 * left.get(name, 0)))
+                for name in left.keys() | right.keys()
+            )
+        if shape(left) != shape(right):
+            left, right = scalar(left), scalar(right)
+        difference = left - right
+        return all(map(is_zero, difference)) if shape(difference) else is_zero(difference)
+
+    # -- formulas --------------------------------------------------------------------------------------------------------
+
+    def value(self, formula: Formula) -> Value:
+        match formula:
+            case Letter("s"):
+                return self.symbol
+            case Letter(name) if name in self.letters:
+                return self.letters[name]
+            case Letter(name):
+                return self.value(self.signals[name]) if name in self.signals else {name: sympy.eye(self.sizes[name])}
+            case Literal(value):
+                return self.literal(value)
+            case Identity(order):
+                return sympy.eye(order)
+            case Sum(terms):
+                return reduce(plus, map(self.value, terms))
+            case Negative(operand):
+                return times(sympy.Integer(-1), self.value(operand))
+            case Product(factors):
+                return reduce(lambda right, left: times(left, right), map(self.value, reversed(factors)))
+            case Power(base, exponent):
+                value = self.value(base)
+                return (inverse(value) if exponent < 0 else value) ** abs(exponent) if shape(value) else value**exponent
+            case Transpose(operand):
+                return self.value(operand).T
+            case Quotient(above, below):
+                return times(1 / scalar(self.value(below)), self.value(above))
+            case Apply(function, argument):
+                return self.function(function, self.value(argument))
+            case Block(rows):
+                return stacked([[self.value(entry) for entry in row] for row in rows])
+            case Derivative(operand):
+                return self.rate(self.value(operand))
+        raise AssertionError(formula)
+
+    def literal(self, value: Scalar | Matrix) -> Value:
+        if isinstance(value, Matrix):
+            return sympy.Matrix(*value.shape, [sympy_scalar(entry, self.names) for entry in value.entries])
+        return sympy_scalar(value, self.names)
+
+    def function(self, name: str, value: Value) -> Value:
+        match name:
+            case "det":
+                return value.det(method="berkowitz")
+            case "adj":
+                return value.adjugate()
+            case "rank":
+                point = next(iter(self.samples()))
+                return sympy.Integer(value.subs(point).rank())
+        return polynomial_at(self.known[name][0], self.symbol, value)
+
+    def rate(self, signal: dict[str, Value]) -> Value:
+        return reduce(plus, (times(part, self.value(self.rates[name])) for name, part in signal.items()))
+
+
+def shape(value: Value) -> tuple[int, int] | None:
+    return value.shape if hasattr(value, "shape") else None
+
+
+def scalar(value: Value) -> Any:
+    """Return a 1×1 matrix as its entry."""
+    if shape(value) is None:
+        return value
+    assert shape(value) == (1, 1)
+    return value[0, 0]
+
+
+def plus(left: Value, right: Value) -> Value:
+    if isinstance(left, dict):
+        both = left.keys() & right.keys()
+        return {**left, **right, **{name: left[name] + right[name] for name in both}}
+    return left + right if shape(left) == shape(right) else scalar(left) + scalar(right)
+
+
+def times(left: Value, right: Value) -> Value:
+    if isinstance(right, dict):
+        return {name: times(left, part) for name, part in right.items()}
+    one, other = shape(left), shape(right)
+    if one is None or other is None or one[1] == other[0]:
+        return left * right
+    return left[0, 0] * right if one == (1, 1) else left * scalar(right)
+
+
+def stacked(rows: list[list[Value]]) -> Value:
+    if isinstance(rows[0][0], dict):
+        parts = [row[0] for row in rows]
+        names = {name: part for signal in parts for name, part in signal.items()}
+        heights = [next(iter(signal.values())).rows for signal in parts]
+        return {
+            name: sympy.Matrix.vstack(
+                *[s.get(name, sympy.zeros(h, some.cols)) for s, h in zip(parts, heights, strict=True)]
+            )
+            for name, some in names.items()
+        }
+    blocks = [[part if shape(part) else sympy.Matrix([[part]]) for part in row] for row in rows]
+    return sympy.Matrix.vstack(*[sympy.Matrix.hstack(*row) for row in blocks])
+
+
+def compare(difference: Any, operator: str) -> bool:
+    """Tell whether difference operator 0 holds for a number."""
+    return bool(
+        {
+            "!=": difference != 0,
+            "<": difference < 0,
+            ">": difference > 0,
+            "<=": difference <= 0,
+            ">=": difference >= 0,
+        }[operator]
+    )
