@@ -30,12 +30,13 @@ from symobs.formula import (
     Relation,
     agree,
     children,
+    differ,
     evaluate,
 )
 from symobs.formula.plain import plain_relation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 #: Claims whose values have at most this many terms are checked exactly.
 EXACT_UP_TO = 60
@@ -214,16 +215,15 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
 
     What holds with the named coefficients free holds whatever they stand for, so that is tried first.
     """
-    free = replace(environment, coefficients={})
+    free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
-    small = _terms(relation, free) <= EXACT_UP_TO
-    if (small or pointwise) and _holds_exactly(relation, free):
+    leaves = _distinct(relation, environment)
+    exactly = pointwise or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
+    if exactly and _holds_exactly(relation, free):
         return "exact", 0.0
-    if not environment.coefficients or pointwise:
-        if small or pointwise:
-            return "", 0.0
-        return _holds_at_points(relation, environment)
-    return _holds_at_points(relation, environment)
+    if exactly and (pointwise or not environment.coefficients):
+        return "", 0.0
+    return _holds_at_points(relation, environment, leaves)
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
@@ -239,7 +239,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "=":
         return agree(left, right, arithmetic)
     if operator == "!==":
-        return not agree(left, right, arithmetic)
+        return differ(left, right, arithmetic)
     difference = _as_scalar(left) - _as_scalar(right)
     if operator == "!=":
         return _excluded_from_zero(difference, environment)
@@ -269,10 +269,12 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
     return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
 
 
-def _holds_at_points(relation: Relation, environment: Environment) -> tuple[str, float]:
-    generator = random.Random(_seed(relation, environment))  # noqa: S311 - repeatable by design
+def _holds_at_points(
+    relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]
+) -> tuple[str, float]:
+    generator = random.Random(_seed(relation, environment, leaves))  # noqa: S311 - repeatable by design
     error, points = 1.0, 0
-    names = _generators(relation, environment)
+    names = {environment.variable}.union(*(leaf.field.names for leaf in [*leaves, *environment.coefficients.values()]))
     for _ in range(_DRAWS):
         arithmetic = Modular(environment, Point(names, generator))
         try:
@@ -290,7 +292,7 @@ def _holds_at_points(relation: Relation, environment: Environment) -> tuple[str,
 def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular) -> bool:
     values = [evaluate(member, environment, arithmetic) for member in relation.members]
     return all(
-        agree(left, right, arithmetic) == (operator == "=")
+        agree(left, right, arithmetic) if operator == "=" else differ(left, right, arithmetic)
         for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True)
     )
 
@@ -340,19 +342,8 @@ def _distinct(relation: Relation, environment: Environment) -> list[Scalar | Mat
     return list(leaves.values())
 
 
-def _terms(relation: Relation, environment: Environment) -> int:
-    return sum(leaf.size for leaf in _distinct(relation, environment))
-
-
-def _generators(relation: Relation, environment: Environment) -> set[str]:
-    names = {environment.variable}
-    for leaf in [*_distinct(relation, environment), *environment.coefficients.values()]:
-        names |= set(leaf.field.names)
-    return names
-
-
-def _seed(relation: Relation, environment: Environment) -> int:
+def _seed(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> int:
     digest = hashlib.sha256(plain_relation(relation, environment.variable).encode())
-    for leaf in _distinct(relation, environment):
+    for leaf in leaves:
         digest.update(leaf.fingerprint().encode())
     return int.from_bytes(digest.digest(), "big")

@@ -221,7 +221,9 @@ def _task_command(task: Any) -> click.Command:
     from symobs.specification import KINDS  # noqa: PLC0415
 
     def option(group: str, name: str, described: str) -> click.Option:
-        return click.Option([*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described)
+        return click.Option(
+            [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described
+        )
 
     parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
     parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]

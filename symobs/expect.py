@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from symobs.method import Result
 
 _RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
+_COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
+_NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
+_WORD = re.compile(r"[A-Za-z]+")
 _MOST_SHOWN = 200
 
 
@@ -34,8 +37,9 @@ def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str
             expected |= {key: (entry, f"expect.{result.task}.{key}") for key, entry in own.items()}
         lines += _held_against(result, expected, errors)
     known = sorted({name for result in results for name in _available(result)})
-    for key in expect.keys() - applicable(results, expect).keys():
-        errors.append(_no_field(f"expect.{shown(key, 40)}", "no task of this file", known))
+    found = applicable(results, expect)
+    strange = [key for key in expect if key not in found]
+    errors += [_no_field(f"expect.{shown(key, 40)}", "no task of this file", known) for key in strange]
     if errors:
         raise ProblemErrors(tuple(errors))
     return lines
@@ -46,9 +50,7 @@ def applicable(results: Sequence[Result], expect: Mapping[str, Any]) -> dict[str
     tasks = {result.task for result in results}
     fields = {name for result in results for name in _available(result)}
     return {
-        key: entry
-        for key, entry in expect.items()
-        if key in fields or (key in tasks and isinstance(entry, Mapping))
+        key: entry for key, entry in expect.items() if key in fields or (key in tasks and isinstance(entry, Mapping))
     }
 
 
@@ -56,8 +58,8 @@ def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], error
     """Return the lines for one result; of answers that are not unique, the others are held against the one expected."""
     lines: list[str] = []
     chosen = result
-    for name in expected.keys() & result.answer.keys():
-        chosen = _with_member(chosen, name, *expected[name])
+    for name, (entry, where) in expected.items():
+        chosen = _with_member(chosen, name, entry, where) if name in result.answer else chosen
     for name, (entry, where) in expected.items():
         if name not in _available(result):
             errors.append(_no_field(where, f"the task {result.task}", _available(result)))
@@ -65,11 +67,199 @@ def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], error
         try:
             if not met(chosen, name, entry, where):
                 found = _shown(_found(result, name))
-                lines.append(f"{where}: expected {shown(_shown(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}")
+                lines.append(
+                    f"{where}: expected {shown(_shown(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}"
+                )
         except SymobsError as error:
             errors.append(error)
     return lines
 
 
+def _with_member(result: Result, name: str, entry: Any, where: str) -> Result:
+    """Return the result with another gain of its family, where that is what is expected; else the result itself."""
+    answer = result.answer[name]
+    if not isinstance(answer, Matrix) or result.fields.get("family") is None:
+        return result
+    try:
+        wanted = parse_matrix(entry, _names(result), where=where)
+        return result.with_answer(name, wanted) if wanted.shape == answer.shape else result
+    except (CertificateRejected, InputError):  # no member, or unreadable, which `met` will say
+        return result
+
+
+def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[SymobsError]:
+    """Return what can be said of expected answers without results: the texts that are no mathematics at all."""
+    known = None if names is None else {**names, variable: "real"}
+    errors: list[SymobsError] = []
+    waiting: list[tuple[str, Any]] = [("expect", expect)]
+    while waiting:
+        where, value = waiting.pop()
+        if isinstance(value, Mapping):
+            waiting += [(f"{where}.{shown(key, 40)}", entry) for key, entry in value.items()]
+        elif isinstance(value, list):
+            waiting += [(f"{where}[{i}]", entry) for i, entry in enumerate(value)]
+        elif isinstance(value, str) and not _WORD.fullmatch(value) and not _NOT_RATIONAL.search(value):
+            relation = _RELATION.match(value)
+            try:
+                for part in (relation[1], relation[3]) if relation else (value,):
+                    read = parse_matrix if part.lstrip().startswith("[") else parse_poles
+                    read(part, known, where=where)
+            except SymobsError as error:
+                errors.append(error)
+    return errors
+
+
+# -- one field ------------------------------------------------------------------------------------------------------
+
+
 def _no_field(where: str, who: str, known: Sequence[str]) -> InputError:
     return InputError(f"{who} has such a field", where=where, repair=f"known fields are {', '.join(known)}")
+
+
+def _available(result: Result) -> list[str]:
+    return ["verdict", "conditions", *result.fields]
+
+
+def _found(result: Result, name: str) -> Any:
+    if name == "verdict":
+        return result.verdict
+    if name == "conditions":
+        return result.conditions
+    return result.fields[name]
+
+
+def _names(result: Result) -> Any:
+    return result.plant.symbols.names
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_shown(entry) for entry in value) + "]"
+    return "none" if value is None else str(value)
+
+
+def met(result: Result, name: str, expected: Any, where: str) -> bool:
+    """Tell whether an expected answer is the result's."""
+    found, names, variable = _found(result, name), _names(result), result.plant.variable
+    if isinstance(found, Matrix):
+        return parse_matrix(expected, names, where=where) == found
+    if isinstance(found, (Scalar, Factored)):
+        value = found.value if isinstance(found, Factored) else found
+        return parse_scalar(expected, names, variable=variable, where=where) == value
+    if isinstance(found, int) and not isinstance(found, bool):
+        return parse_scalar(expected, names, where=where) == Scalar.of(found)
+    if found is None or isinstance(found, (str, bool)):
+        return isinstance(expected, type(found)) and bool(found == expected)
+    if isinstance(found, (list, tuple)):
+        return _lists_agree(list(found), expected if isinstance(expected, list) else [expected], result, where)
+    raise InputError(f"the field {name} cannot be compared", where=where, repair="leave it out")
+
+
+def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: str) -> bool:
+    names, variable = _names(result), result.plant.variable
+    if not found or not expected:
+        return not found and not expected
+    if all(isinstance(entry, Root) for entry in found):
+        return Counter(map(_key, found)) == Counter(map(_key, _roots(expected, names, variable, where)))
+    if all(isinstance(entry, (Condition, str)) for entry in found):
+        return {_relation(entry, names, where) for entry in expected} == {
+            _relation(str(entry), names, where) for entry in found
+        }
+    if all(isinstance(entry, list) for entry in found):
+        return _same_span(found, expected, names, where)
+    return bool(found == expected)
+
+
+# -- relations ------------------------------------------------------------------------------------------------------
+
+
+def _relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
+    """Return a relation as (what is compared with 0, up to a factor that does not matter, operator)."""
+    if text == "False":
+        return Scalar.of(0), ">"
+    match = _RELATION.match(str(text))
+    if match is None:
+        message = f'"{shown(str(text))}" is not a relation'
+        raise InputError(message, where=where, repair='write for example "2*c - 1 != 0"')
+    left, operator, right = match.groups()
+    difference = parse_scalar(left, names, where=where) - parse_scalar(right, names, where=where)
+    if operator in {"<", "<="}:
+        difference, operator = -difference, operator.replace("<", ">")
+    if difference.is_zero:
+        return difference, operator
+    unit, _ = difference.factors()
+    return difference / (unit if operator in {"!=", "=="} else Scalar.of(abs(unit.fraction()))), operator
+
+
+# -- roots ----------------------------------------------------------------------------------------------------------
+
+
+def _key(root: Root) -> Any:
+    exact: Complex | None = root.exact()
+    return exact if exact is not None else (root.centre, root.radicand, root.sign, root.factor, root.index)
+
+
+def _roots(expected: list[Any], names: Any, variable: str, where: str) -> list[Root]:
+    """Return the roots that texts stand for: numbers, a + b sqrt(c), CRootOf(polynomial, index)."""
+    roots: list[Root] = []
+    for i, entry in enumerate(expected):
+        place = f"{where}[{i}]" if len(expected) > 1 else where
+        counted = _COUNTED.fullmatch(entry) if isinstance(entry, str) else None
+        if counted is not None:
+            factor, zero = parse_scalar(counted[1], names, variable=variable, where=place), Scalar.of(0)
+            roots.append(Root(factor, variable, zero, zero, 1, int(counted[2])))
+        elif isinstance(entry, str) and "sqrt" in entry:
+            roots += [_surd(part, names, variable, place) for part in entry.strip(" []").split(",")]
+        else:
+            read = parse_poles(entry if isinstance(entry, str) else [entry], names, where=place)
+            roots += [root_of_pole(pole, variable) for pole in read]
+    return roots
+
+
+def _surd(text: str, names: Any, variable: str, where: str) -> Root:
+    """Return the root a + b sqrt(c) or a + b sqrt(c) I: sqrt(c) is read as a new name q, with q**2 = c."""
+    before, _, behind = text.partition("sqrt")
+    end = depth = 0
+    while end < len(behind) and (depth or not end):
+        depth += (behind[end] == "(") - (behind[end] == ")")
+        end += 1
+    q = "sqrt_"
+    while names is not None and q in names:
+        q += "_"
+    known = None if names is None else {**names, q: "real"}
+    value = parse_poles(before + q + behind[end:], known, where=where)[0]
+    square = parse_scalar(behind[:end], names, where=where)
+    real, imaginary = (_in_powers(part, q, text, where) for part in (value.real, value.imaginary))
+    if not imaginary[0].is_zero or not (real[1] * imaginary[1]).is_zero:
+        raise _no_surd(text, where)
+    slope = real[1] + imaginary[1]
+    radicand = slope**2 * (square if imaginary[1].is_zero else -square)
+    sign = -1 if not slope.is_zero and slope.factors()[0].fraction() < 0 else 1
+    return Root((Scalar.symbol(variable) - real[0]) ** 2 - radicand, variable, real[0], radicand, sign)
+
+
+def _in_powers(value: Scalar, q: str, text: str, where: str) -> tuple[Scalar, Scalar]:
+    """Return (a, b) with value = a + b q."""
+    if not value.is_polynomial_in(q) or value.degree(q) > 1:
+        raise _no_surd(text, where)
+    *slope, constant = value.coefficients(q) or (Scalar.of(0),)
+    return constant, slope[0] if slope else Scalar.of(0)
+
+
+def _no_surd(text: str, where: str) -> InputError:
+    return InputError(f'"{shown(text)}" is not of the form a + b sqrt(c)', where=where, repair="leave it out")
+
+
+# -- vectors --------------------------------------------------------------------------------------------------------
+
+
+def _same_span(found: list[list[Scalar]], expected: list[Any], names: Any, where: str) -> bool:
+    if len(found) != len(expected):
+        return False
+    wanted = [parse_matrix([entry] if not isinstance(entry, str) else entry, names, where=where) for entry in expected]
+    rows = [Matrix.row(vector) for vector in found]
+    columns = [row if row.shape[0] == 1 else row.T for row in wanted]
+    if any(row.shape != rows[0].shape for row in columns):
+        return False
+    together = Matrix.block([[row] for row in [*rows, *columns]])
+    return rank(together) == rank(Matrix.block([[row] for row in columns])) == len(rows)

@@ -25,7 +25,7 @@ Name: TypeAlias = str
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
         "description": 'poles: a list or a comma-separated text, "-20+20i, -20-20i", "-p", "-1/2"',
-        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["integer", "string"]}}],
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["number", "string"]}}],
     },
     "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
     "GainText": {
@@ -111,18 +111,13 @@ def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ..
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions."""
     if isinstance(value, str):
         return parse_poles(value, symbols.names, where=where)
-    if not isinstance(value, Sequence):
-        value = [value]
-    poles: list[Complex] = []
-    for index, entry in enumerate(value):
-        place = f"{where}[{index}]"
-        if isinstance(entry, Complex):
-            poles.append(entry)
-        elif type(entry).__module__.startswith("sympy"):
-            poles.append(read_complex(entry, place))
-        else:
-            poles += parse_poles([entry], symbols.names, where=place)
-    return tuple(poles)
+    listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
+    entries = listed if isinstance(listed, Sequence) else [listed]
+    read = [
+        read_complex(entry, f"{where}[{index}]") if type(entry).__module__.startswith("sympy") else entry
+        for index, entry in enumerate(entries)
+    ]
+    return parse_poles(read, symbols.names, where=where)
 
 
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:

@@ -328,9 +328,7 @@ class Reader:
     def exactly(self, subject: Formula, where: tuple[Relation, ...]) -> None:
         """Compare the roots at every sample with the inequalities; both outcomes must occur."""
         polynomial, seen = self.polynomial(subject), set()
-        sides = [
-            (scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where
-        ]
+        sides = [(scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where]
         for point in self.samples():
             stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)
             assert stable == all(compare(side.subs(point), operator) for side, operator in sides), (subject, point)

@@ -435,5 +435,8 @@ def _agrees(kind: str, new: list[Any], old: list[Any]) -> bool:
         constant = {a for a, _ in values}
         return len(constant) == 1 and kind == "!=" or len({a / b for a, b in values}) == 1
     if kind in {"<", ">", "<=", ">="}:
-        return len({single(a) / single(b) for a, b in zip(new, old, strict=True)}) == 1 and single(new[0]) / single(old[0]) > 0
+        return (
+            len({single(a) / single(b) for a, b in zip(new, old, strict=True)}) == 1
+            and single(new[0]) / single(old[0]) > 0
+        )
     return False

@@ -152,7 +152,7 @@ class Tally:
 
     compared: int = 0
     introduced: list[str] = field(default_factory=list)
-    spoken: list[str] = field(default_factory=list)
+    spoken: list[tuple[str, Value]] = field(default_factory=list)
 
 
 class Reader:
@@ -228,8 +228,7 @@ class Reader:
             if isinstance(slot, (Relation, Together, Predicate, Roots, Exactly)):
                 self.fact(slot)
             elif not isinstance(slot, str):
-                self.value(slot)
-                self.tally.spoken.append(f"{sentence.key}.{name}")
+                self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
     def case(self, when: Relation, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
         """Read on with the parameters replaced; letters that have no value there are forgotten."""
@@ -251,7 +250,6 @@ class Reader:
         target, *rest = relation.members
         if relation.operators == ("!=",):
             self.assumed.append(scalar(self.value(target)) - scalar(self.value(rest[0])))
-            self.tally.introduced.append("!=")
             return
         values = [self.value(member) for member in rest]
         for value in values[1:]:
@@ -329,9 +327,7 @@ class Reader:
     def exactly(self, subject: Formula, where: tuple[Relation, ...]) -> None:
         """Compare the roots at every sample with the inequalities; both outcomes must occur."""
         polynomial, seen = scalar(self.value(subject)), set()
-        sides = [
-            (scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where
-        ]
+        sides = [(scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where]
         for point in self.samples():
             stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)
             assert stable == all(compare(side.subs(point), operator) for side, operator in sides), (subject, point)

@@ -22,7 +22,8 @@ from symobs.conditions import (
     vanishing_factors,
 )
 from symobs.exact import Scalar
-from tests.strategies import Twin, polynomials, random_fraction, rational_functions, seeded, value_at
+from tests.plain import random_fraction, seeded, value_at
+from tests.strategies import Twin, polynomials, rational_functions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

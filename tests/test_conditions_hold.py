@@ -1,15 +1,15 @@
 """Conditions are right: results specialised at random rational points, judged by plain arithmetic of fractions.
 
-At points where the conditions of a result hold, its values must meet the claim of the plant at that point.  Where a
-denominator of the plant vanishes there is no plant.  Where a factor of det 𝒪 or det 𝒞 vanishes the rank drops, and
-either no gain exists or a case of the result says why one survives, and that case is right on its stratum.
+At points where the conditions of a result hold, its values meet the claim of the plant at that point.  Where a
+denominator of the plant vanishes there is no plant.  Where a factor of det 𝒪 or det 𝒞 vanishes the rank drops, and either
+no gain exists or a case of the result says why one survives, and that case is right on its stratum.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,49 +17,37 @@ import pytest
 
 import symobs
 from symobs.conditions import never_zero
-from symobs.exact import Complex, Factored, Matrix, Scalar
-from symobs.expression import parse_polynomial
+from symobs.exact import Matrix, Scalar
 from symobs.problem import Problem, read
-from symobs.specification import read_poles
-from tests.strategies import (
-    Point,
-    Polynomial,
-    Rows,
+from tests.claims import HOLDS, Setting
+from tests.plain import (
     assignable,
     at_number,
-    characteristic,
-    coefficients_at,
-    faddeev_leverrier,
-    is_hurwitz,
-    is_schur,
     matrix_at,
-    multiply,
     observability_rows,
-    product,
     random_fraction,
     rank_of,
     seeded,
-    subtract,
-    transposed,
     value_at,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
-    from symobs.method import Case, Result
+    from symobs.conditions import Condition
+    from symobs.method import Result
 
 POINTS = 200
-PROBES = [Fraction(7, 3), Fraction(-11, 5), Fraction(23)]  # values of s at which rational functions are compared
+#: Points on a stratum: one parameter is solved for, the others are random.
+ON_STRATUM = 25
 
 BUILT = {
     f"fixed_modes_{'_'.join(str(-pole) for pole in poles)}": f"""
-        tasks = ["observability", "controllability", "observer", "state_feedback", "characteristic_polynomial"]
+        tasks = ["observability", "observer", "characteristic_polynomial"]
         [symbols]
         c = "real"
         [plant]
         A = "[0 1; -2 -3]"
-        B = "[0; 1]"
         C = "[1 c]"
         [specification]
         poles = {poles}
@@ -70,7 +58,7 @@ BUILT = {
         tasks = ["observability", "controllability", "transfer_function", "characteristic_polynomial", "compensator"]
         [symbols]
         m = "real"
-        k = { sign = "nonnegative" }
+        k = "nonnegative"
         d = "real"
         p = "real"
         q = "nonzero"
@@ -108,58 +96,8 @@ def solved(name: str) -> tuple[Problem, tuple[Result, ...]]:
     return problem, problem.solve()
 
 
-# -- the plant and what is asked for, at a point -------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A plant and desired polynomials in plain fractions, and the point they belong to."""
-
-    A: Rows
-    B: Rows
-    C: Rows
-    D: Rows
-    wanted: dict[str, Polynomial]
-    point: Point
-    discrete: bool
-
-    @staticmethod
-    def of(problem: Problem, point: Point) -> Setting:
-        m = problem.plant.matrices
-        parts = [matrix_at(part, point) for part in (m.A, m.B, m.C, m.D)]
-        return Setting(*parts, dict(wanted(problem, point)), point, problem.plant.is_discrete)
-
-    def is_stable(self, polynomial: Polynomial) -> bool:
-        return is_schur(polynomial) if self.discrete else is_hurwitz(polynomial)
-
-
-def wanted(problem: Problem, point: Point) -> Iterator[tuple[str, Polynomial]]:
-    """Read the desired polynomials off the specification and multiply the poles out in fractions."""
-    symbols, variable = problem.plant.symbols, problem.plant.variable
-    for key, value in problem.specification.items():
-        kind = key.removesuffix("poles").removesuffix("polynomial")
-        if key.endswith("poles"):
-            yield kind, multiplied_out(read_poles(value, symbols, key), point)
-        elif key.endswith("polynomial"):
-            yield kind, coefficients_at(parse_polynomial(value, variable, symbols.names, where=key), variable, point)
-
-
-def multiplied_out(poles: tuple[Complex, ...], point: Point) -> Polynomial:
-    real, imaginary = [Fraction(1)], [Fraction(0)]
-    for pole in poles:
-        x, y = value_at(pole.real, point), value_at(pole.imaginary, point)
-        zero = [Fraction(0)]
-        by_x, by_y = (product([part, [-x]]) for part in (real, imaginary)), (product([p, [-y]]) for p in (real, imaginary))
-        (rx, ix), (ry, iy) = by_x, by_y
-        real, imaginary = (
-            [u + v - w for u, v, w in zip(real + zero, zero + rx, zero + iy, strict=True)],
-            [u + v + w for u, v, w in zip(imaginary + zero, zero + ix, zero + ry, strict=True)],
-        )
-    assert not any(imaginary), "the poles asked for are closed under conjugation"
-    return real
-
-
 def names_of(problem: Problem, results: tuple[Result, ...]) -> list[str]:
+    """Return the parameters of plant and answers."""
     found = set(problem.plant.field.names) | set(problem.plant.symbols.signs)
     for result in results:
         for value in result.answer.values():
@@ -168,158 +106,186 @@ def names_of(problem: Problem, results: tuple[Result, ...]) -> list[str]:
 
 
 def points(problem: Problem, names: list[str], seed: object) -> Iterator[dict[str, Fraction]]:
-    """Yield random points that respect the declared signs, simple ones among them, so that coincidences occur."""
+    """Yield random points that respect the declared signs."""
     generator, sign = seeded(seed), problem.plant.symbols.sign
     while True:
         yield {name: random_fraction(generator, sign(name)) for name in names}
 
 
-def exists(problem: Problem, point: Point) -> bool:
-    """Whether there is a plant and a specification at a point."""
+def setting(problem: Problem, point: dict[str, Fraction]) -> Setting | None:
+    """Return plant and specification at a point, None where they do not exist."""
     try:
-        Setting.of(problem, point)
+        return Setting.of(problem.plant, problem.specification, point)
     except ZeroDivisionError:
-        return False
-    return True
+        return None
 
 
-# -- what each task claims, at a point -----------------------------------------------------------------------------------
+def scalars(point: dict[str, Fraction]) -> dict[str, Scalar]:
+    return {name: Scalar.of(value) for name, value in point.items()}
 
 
-def gain_holds(result: Result, at: Setting, kind: str, gain: Rows) -> None:
-    """Hold a gain against φ: from the specification, or the polynomial reported for a given gain."""
-    feedback = result.task == "state_feedback"
-    closed = subtract(at.A, multiply(at.B, gain) if feedback else multiply(gain, at.C))
-    reported = coefficients_at(result.fields["polynomial"], result.plant.variable, at.point)
-    assert characteristic(closed) == reported == at.wanted.get(kind, reported)
-
-
-def design_holds(result: Result, at: Setting, kind: str = "") -> None:
-    letter = "K" if result.task == "state_feedback" else "L"
-    A, C = (at.A, at.C) if letter == "L" else (transposed(at.A), transposed(at.B))
-    if result.answer[letter] is None:
-        assert not assignable(A, C, at.wanted[kind])
-        return
-    gain = matrix_at(result.answer[letter], at.point)
-    gain_holds(result, at, kind, gain)
-    if letter == "K":
-        assert matrix_at(result.fields["closed_loop_matrix"], at.point) == subtract(at.A, multiply(at.B, gain))
-    else:
-        assert matrix_at(result.fields["A"], at.point) == subtract(at.A, multiply(gain, at.C))
-        if result.plant.matrices.has_input:
-            assert matrix_at(result.fields["B_u"], at.point) == subtract(at.B, multiply(gain, at.D))
-    family = result.fields["family"]
-    for shift in (Fraction(0), Fraction(5, 7)) if family else ():
-        free = {name: shift * (k + 1) for k, name in enumerate(family["parameters"])}
-        gain_holds(result, at, kind, matrix_at(family[letter], {**at.point, **free}))
-    stability_holds(result, at, at.wanted.get(kind, characteristic(subtract(at.A, multiply(at.B, gain) if letter == "K" else multiply(gain, at.C)))))
-
-
-def stability_holds(result: Result, at: Setting, polynomial: Polynomial) -> None:
-    verdict = result.fields["stable"]
-    if verdict == "conditional":
-        positive: tuple[Scalar, ...] = result.stability.positive
-        assert at.is_stable(polynomial) == all(value_at(value, at.point) > 0 for value in positive)
-    else:
-        assert at.is_stable(polynomial) == (verdict == "yes")
-
-
-def response(A: Rows, B: Rows, C: Rows, s: Fraction) -> Fraction:
-    """Return C (sI − A)⁻¹ B at a number s."""
-    chi, adjugates = faddeev_leverrier(A)
-    return at_number([multiply(multiply(C, part), B)[0][0] for part in adjugates], s) / at_number(chi, s)
-
-
-def rational_at(value: Scalar | Factored, variable: str, s: Fraction, point: Point) -> Fraction:
-    return value_at(value.value if isinstance(value, Factored) else value, {**point, variable: s})
-
-
-def compensator_holds(result: Result, at: Setting) -> None:
-    design_holds(result.feedback, at, "control_")
-    design_holds(result.estimator, at, "observer_")
-    if result.answer["F"] is None:
-        assert None in (result.answer["K"], result.answer["L"])
-        return
-    K, L = (matrix_at(result.answer[name], at.point) for name in "KL")
-    BK, LC, variable = multiply(at.B, K), multiply(L, at.C), result.plant.variable
-    LDK = multiply(multiply(L, at.D), K)
-    own = subtract(subtract(subtract(at.A, BK), LC), [[-x for x in row] for row in LDK])
-    assert matrix_at(result.fields["compensator_matrix"], at.point) == own
-    whole = product([at.wanted["control_"], at.wanted["observer_"]])
-    for name in ("closed_loop_matrix", "closed_loop_matrix_estimate"):
-        assert characteristic(matrix_at(result.fields[name], at.point)) == whole
-    for s in PROBES:
-        if not at_number(characteristic(own), s) or not at_number(characteristic(at.A), s) or not at_number(whole, s):
-            continue
-        F, P = response(own, L, K, s), response(at.A, at.B, at.C, s) + at.D[0][0]
-        assert rational_at(result.fields["F"], variable, s, at.point) == F
-        assert rational_at(result.fields["closed_loop"], variable, s, at.point) == P / (1 + P * F)
-        assert rational_at(result.fields["closed_loop_polynomial"], variable, s, at.point) == at_number(whole, s)
-    if result.fields["F_stable"] != "conditional" and not never_reduced(result.fields["F"], variable):
-        assert at.is_stable(characteristic(own)) == (result.fields["F_stable"] == "yes")
-
-
-def never_reduced(F: Scalar, variable: str) -> bool:
-    """Whether F is of lower order than its realisation, so that its poles are not all of the matrix's."""
-    return F.is_zero or F.denominator.degree(variable) < F.numerator.degree(variable) + 1
-
-
-def rank_holds(result: Result, at: Setting) -> None:
-    controllable = result.task == "controllability"
-    A, C = (transposed(at.A), transposed(at.B)) if controllable else (at.A, at.C)
-    rows = observability_rows(A, C)
-    found = matrix_at(result.fields["matrix"], at.point)
-    assert (transposed(found) if controllable else found) == rows
-    assert rank_of(rows) == result.fields["rank"]
-    kernel = [[value_at(entry, at.point) for entry in vector] for vector in result.fields["kernel"]]
-    assert rank_of(kernel) == len(kernel) == len(A) - result.fields["rank"]
-    assert not any(any(row) for row in multiply(rows, transposed(kernel)) if kernel)
-
-
-def polynomial_holds(result: Result, at: Setting) -> None:
-    chi = characteristic(at.A)
-    assert coefficients_at(result.fields["polynomial"], result.plant.variable, at.point) == chi
-    factors = [coefficients_at(f, result.plant.variable, at.point) for f, k in result.fields["factors"] for _ in range(k)]
-    assert product(factors) == chi
-    if result.fields["stable"] != "conditional":
-        assert at.is_stable(chi) == (result.fields["stable"] == "yes")
-
-
-def transfer_holds(result: Result, at: Setting) -> None:
-    for s in PROBES:
-        if at_number(characteristic(at.A), s):
-            expected = response(at.A, at.B, at.C, s) + at.D[0][0]
-            assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
-
-
-HOLDS: dict[str, Callable[[Any, Setting], None]] = {
-    "observer": design_holds,
-    "state_feedback": design_holds,
-    "compensator": compensator_holds,
-    "observability": rank_holds,
-    "controllability": rank_holds,
-    "characteristic_polynomial": polynomial_holds,
-    "transfer_function": transfer_holds,
-}
-
-# -- the tests -----------------------------------------------------------------------------------------------------------
+def holds(conditions: tuple[Condition, ...], point: dict[str, Fraction]) -> bool:
+    return all((value_at(c.expression, point) == 0) == (c.operator == "==") for c in conditions)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_claim_holds_wherever_the_conditions_do(name: str) -> None:
+def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
     problem, results = solved(name)
     names = names_of(problem, results)
-    count = POINTS if names else 1
     for result in results:
-        assert all(condition.operator == "!=" for condition in result.conditions)
-        tested = 0
-        for point in points(problem, names, name):
-            if tested == count:
-                break
-            if not exists(problem, point) or not all(value_at(c.expression, point) for c in result.conditions):
+        wanted = POINTS if names else 1
+        for point in islice(points(problem, names, name), 4 * wanted):
+            at = setting(problem, point)
+            if at is None or not holds(result.conditions, point):
                 continue
-            HOLDS[result.task](result, Setting.of(problem, point))
-            substituted = result.plant.substitute({n: Scalar.of(x) for n, x in point.items()})
-            assert substituted.matrices.A == Matrix.of(matrix_at(result.plant.matrices.A, point))
-            tested += 1
-        assert tested == count
+            HOLDS[result.task](result, at)
+            assert Matrix.of(at.A) == result.plant.substitute(scalars(point)).matrices.A
+            wanted -= 1
+            if not wanted:
+                break
+        assert not wanted
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
+    """No denominator is left out: each factor of one is a condition or excluded by the declared signs."""
+    problem, results = solved(name)
+    signs = problem.plant.symbols.signs
+    for result in results:
+        listed = {condition.expression for condition in result.conditions}
+        for value in result.answer.values():
+            for entry in value.entries if isinstance(value, Matrix) else [value] if isinstance(value, Scalar) else []:
+                factors = {factor for factor, _ in entry.denominator.factors()[1]}
+                inner = {factor for factor in factors if problem.plant.variable not in factor.names}
+                assert all(factor in listed or never_zero(factor, signs) for factor in inner)
+
+
+def zeros(problem: Problem, names: list[str], factor: Scalar, seed: object) -> Iterator[dict[str, Fraction]]:
+    """Yield points where a factor vanishes, solved for a parameter in which it is linear, the others random."""
+    linear = [name for name in sorted(factor.names) if factor.degree(name) == 1]
+    for point in islice(points(problem, names, seed), ON_STRATUM):
+        for name in linear:
+            lead, constant = (value_at(c, point) for c in factor.coefficients(name))
+            if lead:
+                yield {**point, name: -constant / lead}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_where_a_domain_condition_fails_there_is_no_plant(name: str) -> None:
+    problem, results = solved(name)
+    names, m = names_of(problem, results), problem.plant.matrices
+    entries = [entry for part in (m.A, m.B, m.C, m.D) for entry in part.entries]
+    factors = {factor for entry in entries for factor, _ in entry.denominator.factors()[1]}
+    domain = {c.expression for result in results for c in result.conditions if c.kind == "domain"}
+    assert domain == {factor for factor in factors if not never_zero(factor, problem.plant.symbols.signs)}
+    for factor in factors:
+        found = list(zeros(problem, names, factor, name))
+        assert found
+        for point in found:
+            assert setting(problem, point) is None
+            with pytest.raises(ZeroDivisionError):
+                problem.plant.substitute(scalars(point))
+
+
+def ranked(result: Any) -> list[tuple[Any, bool]]:
+    """Return the parts of a result that stand on a rank, and whether the pair is the dual one."""
+    if result.task == "compensator":
+        return [(result.feedback, True), (result.estimator, False)]
+    return [(result, result.task in {"controllability", "state_feedback"})] if result.existence else []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_where_an_existence_factor_vanishes_the_rank_drops_and_the_case_is_right(name: str) -> None:
+    problem, results = solved(name)
+    names, sign = names_of(problem, results), problem.plant.symbols
+    for result in results:
+        for part, dual in ranked(result):
+            for determinant in part.existence:
+                for factor, _ in determinant.numerator.factors()[1]:
+                    possible = not never_zero(factor, sign.signs)
+                    stratum = [case for case in result.cases if factor in {c.expression for c in case.when}]
+                    assert bool(stratum) == possible
+                    for point in zeros(problem, names, factor, name):
+                        on_stratum(problem, result, dual=dual, point=point)
+
+
+def on_stratum(problem: Problem, result: Any, *, dual: bool, point: dict[str, Fraction]) -> None:
+    at = setting(problem, point)
+    if at is None:
+        return
+    A, C = at.pair(dual=dual)
+    assert rank_of(observability_rows(A, C)) < len(A)
+    for case in result.cases:
+        if holds(case.when, point):
+            assert case.result is not None
+            if holds(case.result.conditions, point):
+                assert Setting.of(case.result.plant, {}, point).A == at.A
+                HOLDS[result.task](case.result, at)
+
+
+def test_there_are_strata_among_the_examples() -> None:
+    """The test above is not empty: gains that survive, gains that do not, and rank drops were all met."""
+    verdicts = {(r.task, c.result.verdict) for name in NAMES for r in solved(name)[1] for c in r.cases if c.result}
+    tasks = {"observer", "compensator"}
+    assert verdicts >= {*((task, verdict) for task in tasks for verdict in ("yes", "no")), ("observability", "no")}
+    assert sum(bool(names_of(*solved(name))) for name in FILES) >= 8
+
+
+# -- A = [0 1; −2 −3], C = [1 c]: at c = 1 the mode −1 is not observable, at c = 1/2 the mode −2 -----------------------
+
+
+@pytest.mark.parametrize(("poles", "survivors"), [([-1, -5], {1}), ([-1, -2], {1, Fraction(1, 2)})])
+def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivors: set[Fraction]) -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
+    result = symobs.observer(plant, poles=poles)
+    cases = {case.substitution["c"].fraction(): case.result for case in result.cases}
+    assert set(cases) == {1, Fraction(1, 2)}
+    for c, mode in ((Fraction(1), -1), (Fraction(1, 2), -2)):
+        at, found = Setting.of(plant, {"poles": poles}, {"c": c}), cases[c]
+        # PBH: the mode is an eigenvalue of A with an eigenvector that the output does not see
+        pencil = [[entry - (mode if i == j else 0) for j, entry in enumerate(row)] for i, row in enumerate(at.A)]
+        assert rank_of(pencil) == rank_of([*pencil, *at.C]) == 1
+        assert (
+            (at_number(at.wanted[""], Fraction(mode)) == 0) == assignable(at.A, at.C, at.wanted[""]) == (c in survivors)
+        )
+        assert found.verdict == ("yes" if c in survivors else "no")
+        assert [str(root) for root in found.fields["fixed_modes"]] == [str(mode)]
+        HOLDS["observer"](found, at)
+    page = " ".join(str(result.to("text")).split())
+    for mode in (-1, -2):
+        survives = "is among" if mode in poles else "is not among"
+        assert f"its fixed mode {mode} {survives} the poles asked for" in page
+    if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1
+        assert matrix_at(result.answer["L"], {"c": Fraction(1)}) == [[-3], [6]]
+        with pytest.raises(ZeroDivisionError):
+            matrix_at(result.answer["L"], {"c": Fraction(1, 2)})
+
+
+# -- what generic answers must not hide --------------------------------------------------------------------------------
+
+
+def test_a_gain_that_exists_at_a_point_is_not_denied_without_a_condition() -> None:
+    """The fixed mode is a; at a = −2 it is among the poles asked for."""
+    plant = symobs.StateSpace("[a 0; 0 -1]", None, "[0 1]")
+    result = symobs.observer(plant, poles=[-2, -3])
+    at = Setting.of(plant, {"poles": [-2, -3]}, {"a": Fraction(-2)})
+    assert assignable(at.A, at.C, at.wanted[""])
+    assert result.verdict != "no" or not holds(result.conditions, dict(at.point))
+
+
+def test_a_rank_below_n_says_where_it_drops_further() -> None:
+    """The rank is 2, but 1 at c = 0."""
+    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -3]", None, "[0 1 c]")
+    result = symobs.observability(plant)
+    at = Setting.of(plant, {}, {"c": Fraction(0)})
+    assert result.fields["rank"] == 2
+    assert rank_of(observability_rows(at.A, at.C)) == 1
+    assert not holds(result.conditions, dict(at.point))
+
+
+@pytest.mark.parametrize("pole", ["-1/(c - 1)", "-1/(2*c - 1)"])
+def test_a_stratum_on_which_nothing_is_asked_for_is_no_case(pole: str) -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
+    result = symobs.observer(plant, poles=[pole, -5])
+    assert len(result.cases) == 1
+    assert result.to("text")

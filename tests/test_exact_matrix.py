@@ -29,19 +29,17 @@ from symobs.exact import (
 from symobs.exact.krylov import Krylov
 from symobs.exact.modular import Point, VanishingDenominator, random_prime
 from symobs.exact.sympy_border import matrix_from_sympy, matrix_to_sympy, scalar_to_sympy
+from tests.plain import matrix_at, seeded, value_at
 from tests.strategies import (
     Twin,
     fraction_entries,
     matrices,
-    matrix_at,
     numeric_entries,
     parametric_entries,
     polynomials,
     rational_functions,
-    seeded,
     small_fractions,
     twin_number,
-    value_at,
 )
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
 from symobs.stability import Stability, as_inequality, hurwitz_matrix, monic, stability
-from tests.strategies import at_number, coefficients_at, is_hurwitz, random_fraction, seeded, value_at
+from tests.plain import at_number, coefficients_at, is_hurwitz, random_fraction, seeded, value_at
 
 s, z = Scalar.symbol("s"), Scalar.symbol("z")
 a, b, c, k = (Scalar.symbol(name) for name in ("a", "b", "c", "k"))

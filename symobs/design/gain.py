@@ -6,7 +6,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.strata import strata
@@ -14,7 +14,7 @@ from symobs.certificate import Claim
 from symobs.design.assignment import Pair, remainder
 from symobs.errors import InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
-from symobs.formula import Environment, Literal, Negative, Sum
+from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
@@ -52,9 +52,17 @@ class GainDesign(Result):
         raise NotImplementedError
 
     @staticmethod
-    def closed(environment: Environment) -> Term:
-        """Return the formula A − LC or A − BK."""
+    def moved(environment: Environment) -> Term:
+        """Return what the gain takes from A: LC or BK."""
         raise NotImplementedError
+
+    @classmethod
+    @cache
+    def assignment(cls, order: int) -> Relation:
+        """Return the claim of the type: det(sI − A + LC) = φ(s)."""
+        e = Environment()
+        pencil = letter("s", e) @ identity(order, e) - letter("A", e) + cls.moved(e)
+        return relation(pencil.apply("det"), letter("phi", e))
 
     # -- construction ------------------------------------------------------------------------------------------------
 
@@ -70,7 +78,8 @@ class GainDesign(Result):
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
         """Return the design with a given gain, its polynomial found."""
         e = Environment(variable=plant.variable, values=letters_of(plant) | {cls.letter: gain})
-        polynomial = cls.closed(e).value.normal().characteristic_polynomial(plant.variable)
+        closed = letter("A", e) - cls.moved(e)
+        polynomial = closed.value.normal().characteristic_polynomial(plant.variable)
         return cls(plant, "given", {cls.letter: gain, "polynomial": polynomial}, None)
 
     # -- claims ------------------------------------------------------------------------------------------------------
@@ -89,8 +98,7 @@ class GainDesign(Result):
         phi = self.answer["polynomial"]
         values = letters_of(self.plant) | {self.letter: gain, "phi": phi}
         e = Environment(variable=self.plant.variable, values=values)
-        pencil = letter("s", e) @ identity(self.plant.order, e) - self.closed(e)
-        return Claim(relation(_signs_turned(pencil).apply("det"), letter("phi", e)), e)
+        return Claim(self.assignment(self.plant.order), e)
 
     def _impossible(self) -> Iterator[Claim]:
         """C N = 0 and A N = N X make det(sI − X) a factor of every det(sI − A + LC); it does not divide φ."""
@@ -206,16 +214,6 @@ def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
     if m.has_input and m.has_output:
         values["D"] = m.D
     return values
-
-
-def _signs_turned(pencil: Term) -> Term:
-    """Write sI − (A − LC) as sI − A + LC."""
-    assert isinstance(pencil.formula, Sum)  # noqa: S101 - built two lines above
-    first, last = pencil.formula.terms[:-1], pencil.formula.terms[-1]
-    assert isinstance(last, Negative)  # noqa: S101
-    inner = last.operand.terms if isinstance(last.operand, Sum) else (last.operand,)
-    turned = tuple(part.operand if isinstance(part, Negative) else Negative(part) for part in inner)
-    return Term(Sum((*first, *turned)), pencil.environment)
 
 
 def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> tuple[str, ...]:

@@ -49,9 +49,9 @@ class ObserverDesign(GainDesign):
         return gain
 
     @staticmethod
-    def closed(environment: Environment) -> Term:
-        """Return A − LC."""
-        return letter("A", environment) - letter("L", environment) @ letter("C", environment)
+    def moved(environment: Environment) -> Term:
+        """Return LC."""
+        return letter("L", environment) @ letter("C", environment)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

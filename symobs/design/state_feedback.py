@@ -50,9 +50,9 @@ class StateFeedbackDesign(GainDesign):
         return gain.T
 
     @staticmethod
-    def closed(environment: Environment) -> Term:
-        """Return A − BK."""
-        return letter("A", environment) - letter("B", environment) @ letter("K", environment)
+    def moved(environment: Environment) -> Term:
+        """Return BK."""
+        return letter("B", environment) @ letter("K", environment)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

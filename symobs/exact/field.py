@@ -25,7 +25,7 @@ def _canonical(name: str) -> tuple[int, str]:
 class Field:
     """Q(names): rational functions with rational coefficients in the generators `names`."""
 
-    __slots__ = ("context", "names", "one", "position", "zero")
+    __slots__ = ("context", "names", "one", "position", "routes", "zero")
 
     names: tuple[str, ...]
     context: fmpz_mpoly_ctx
@@ -37,6 +37,7 @@ class Field:
         self.position = {name: index for index, name in enumerate(names)}
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
+        self.routes: dict[tuple[str, ...], Route] = {}
 
     @staticmethod
     def of(names: Iterable[str]) -> Field:
@@ -60,14 +61,46 @@ class Field:
         return (Field.of, (self.names,))
 
     def lift(self, polynomial: fmpz_mpoly, source: Field) -> fmpz_mpoly:
-        """Carry a polynomial of `source` over; generators it does not use may be missing here."""
+        """Carry a polynomial of `source` over; raises ValueError where it uses a generator that is missing here."""
         if source is self:
             return polynomial
         if not polynomial:
             return self.zero
         if polynomial.is_constant():
             return self.context.constant(polynomial.leading_coefficient())
-        return polynomial.project_to_context(self.context)
+        route = self.routes.get(source.names)
+        if route is None:
+            route = self.routes[source.names] = Route(self, source)
+        return route.carry(polynomial)
+
+
+class Route:
+    """The way of polynomials from one context into another."""
+
+    __slots__ = ("images", "mapping", "missing", "target")
+
+    def __init__(self, target: Field, source: Field) -> None:
+        """Find where each generator goes."""
+        self.target = target.context
+        self.mapping = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
+        self.missing = [i for i in range(len(source.names)) if i not in self.mapping]
+        generators = {i: target.context.gen(k) for i, k in self.mapping.items()}
+        self.images = [generators.get(i, target.zero) for i in range(len(source.names))]
+
+    def carry(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the polynomial in the target's context; composition is the faster way for short ones."""
+        if self.missing:
+            degrees = polynomial.degrees()
+            if any(degrees[i] > 0 for i in self.missing):
+                message = f"{polynomial} is not an element of Q({', '.join(self.target.names())})"
+                raise ValueError(message)
+        if len(polynomial) <= _SHORT:
+            return polynomial.compose(*self.images, ctx=self.target)
+        return polynomial.project_to_context(self.target, self.mapping)
+
+
+#: Polynomials of up to this many terms are carried by composition.
+_SHORT = 40
 
 
 @lru_cache(maxsize=4096)

@@ -6,7 +6,7 @@ not reduce; reading an entry does, and `rows` (all entries, reduced) is computed
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
@@ -59,6 +59,7 @@ class Matrix:
         return matrix
 
     @staticmethod
+    @lru_cache(maxsize=64)
     def identity(order: int) -> Matrix:
         """Return the identity."""
         return Matrix.of([[int(i == j) for j in range(order)] for i in range(order)])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.exact import ring
 from symobs.exact.field import Field
-from symobs.exact.matrix import Matrix
+from symobs.exact.matrix import Matrix, common_multiple
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -34,19 +35,42 @@ def apply_polynomial(factors: Iterable[Scalar], variable: str, matrix: Matrix, v
     No power of the matrix is formed: a factor s + p costs one product of matrix and vector.
     """
     for factor in factors:
-        leading, *rest = (c.within(matrix.field | _field_of(c)) for c in factor.coefficients(variable))
-        image = vector if leading.is_one else vector * leading
-        for coefficient in rest:
-            image = matrix @ image
-            if not coefficient.is_zero:
-                image = image + vector * coefficient
-        vector = image
+        coefficients = factor.coefficients(variable)
+        field = matrix.field | vector.field | Field.of({name for c in coefficients for name in c.names})
+        lifted = [coefficient.within(field) for coefficient in coefficients]
+        if field.names:
+            vector = _horner(lifted, matrix.within(field), vector.within(field))
+        else:
+            vector = _numeric_horner(lifted, matrix, vector)
     return vector
 
 
-def _field_of(coefficient: Scalar) -> Field:
-    """Return the field of what really occurs: a coefficient's own context still holds the variable."""
-    return Field.of(coefficient.names)
+def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Matrix:
+    """Return Σ cₖ Mⁿ⁻ᵏ v on the integral tables: with M = N/d the step is w ← N w + cₖ dᵏ v."""
+    field, rows, scale = matrix.field, matrix.polynomials, matrix.denominator
+    column = [row[0] for row in vector.polynomials]
+    common = field.one
+    for coefficient in coefficients:
+        common = common_multiple(common, coefficient.denominator_part)
+    whole = [c.numerator_part * (common / c.denominator_part) for c in coefficients]
+    image = [entry * whole[0] for entry in column] if not whole[0].is_one() else column
+    power = field.one
+    for coefficient in whole[1:]:
+        power = power * scale
+        factor = coefficient * power
+        image = [ring.dot(row, image, field.zero) for row in rows]
+        if factor:
+            image = [entry + factor * old for entry, old in zip(image, column, strict=True)]
+    return Matrix(field, tuple((entry,) for entry in image), vector.denominator * common * power, vector.shape)
+
+
+def _numeric_horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Matrix:
+    image = vector * coefficients[0]
+    for coefficient in coefficients[1:]:
+        image = matrix @ image
+        if not coefficient.is_zero:
+            image = image + vector * coefficient
+    return image
 
 
 def companion(coefficients: Sequence[Scalar]) -> Matrix:

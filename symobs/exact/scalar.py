@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
 _COEFFICIENT_LIMIT = 2**31
 #: Up to this many terms a fingerprint is the whole text.
-_WHOLE_TEXT = 60
+_WHOLE_TEXT = 20
 
 
 class Scalar:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
 
 _LONGEST_REPAIR = 30
+_KINDS = {bool: "true or false", dict: "a table", int: "a number", list: "a list", type(None): "nothing"}
 
 
 def parse_scalar(value: object, names: Names = None, *, variable: str | None = None, where: str = "") -> Scalar:
@@ -117,7 +118,7 @@ def _exact(value: object, where: str) -> Number:
     if isinstance(value, (Scalar, Complex)):
         return value
     if isinstance(value, bool) or not isinstance(value, numbers.Complex):
-        repair = 'give an int, a Fraction or a text such as "1/10"'
+        repair = 'write an integer or a text such as "1/10"'
         raise InputError(f"{_kind(value)} is not an exact number", where=where, repair=repair)
     if not isinstance(value, numbers.Rational):
         repair = f'write an exact value such as "{_exact_text(value)}"'
@@ -192,4 +193,4 @@ def _cell(where: str, row: int, column: int) -> str:
 
 
 def _kind(value: object) -> str:
-    return f"a value of type {type(value).__name__}"
+    return _KINDS.get(type(value), f"a value of type {type(value).__name__}")

@@ -1,6 +1,6 @@
 """Formulas: the tree, its evaluation, and terms (a formula with its exact value)."""
 
-from symobs.formula.evaluate import Arithmetic, Environment, Exact, Modular, Signal, agree, evaluate
+from symobs.formula.evaluate import Arithmetic, Environment, Exact, Modular, Signal, agree, differ, evaluate
 from symobs.formula.nodes import (
     Apply,
     Block,
@@ -52,6 +52,7 @@ __all__ = [
     "Together",
     "Transpose",
     "agree",
+    "differ",
     "children",
     "evaluate",
     "letters",

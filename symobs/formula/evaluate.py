@@ -358,10 +358,22 @@ def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
             arithmetic.equal(value, arithmetic.leaf(Matrix.zeros(*arithmetic.shape(value))))  # type: ignore[misc]
             for value in difference.coefficients.values()
         )
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and arithmetic.equal(left, right)
+
+
+def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Tell whether two values of one kind and shape are different; values that cannot be compared do not count."""
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and not arithmetic.equal(left, right)
+
+
+def _alike(left: Any, right: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
+    """Return two values as one kind and shape, a 1×1 matrix read as a scalar; (None, None) where they cannot be."""
     if isinstance(left, Signal) or isinstance(right, Signal):
-        return False
+        return None, None
     if arithmetic.shape(left) != arithmetic.shape(right):
         left, right = _scalar(left, arithmetic), _scalar(right, arithmetic)
         if arithmetic.shape(left) != arithmetic.shape(right):
-            return False
-    return arithmetic.equal(left, right)
+            return None, None
+    return left, right

@@ -8,7 +8,7 @@ from symobs.conditions import SIGNS
 from symobs.method import tasks
 from symobs.specification import KINDS
 
-TOP = {
+TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
     "id": {"description": "ids of the problem", "type": ["array", "string"], "items": {"type": "string"}},
     "source": {"description": "where the problem comes from", "type": "string"},
@@ -26,7 +26,7 @@ PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
 def schema() -> dict[str, Any]:
     """Return the JSON schema of a problem file, read from the registry."""
     known = sorted(tasks())
-    number_or_text = {"type": ["number", "string"]}
+    number_or_text: dict[str, Any] = {"type": ["number", "string"]}
     matrix = {"type": ["string", "array"], "items": {"type": "array", "items": number_or_text}}
     sign = {"enum": list(SIGNS)}
     details = {"sign": sign, "latex": {"type": "string"}}

@@ -1,4 +1,4 @@
-"""From the text of a file to its tables, decimals kept as text.  What would cost a parser too much is refused before."""
+"""From the text of a file to its tables.  What would cost a parser too much is refused before it is parsed."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from typing import Any
 from unicodedata import category
 
 from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, tasks
@@ -48,7 +49,8 @@ class Problem:
             keywords = {name: value for name, value in self.specification.items() if name in task.keywords}
             with errors:
                 results.append(task.function(self.plant, **keywords))
-        if errors.found:
+        if errors.found:  # else what is expected is read when it is held against the results
+            errors.found += unreadable(self.expect, self.plant.symbols.names, self.plant.variable)
             raise errors.together()
         return tuple(results)
 
@@ -97,15 +99,18 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
     plant = _plant(data, symbols, errors)
-    specification = _specification(data, {*asked, *wanted}, errors)
+    specification = _specification(data, (*asked, *wanted), errors)
     expect = _table(data, "expect", errors)
     if not errors.found and plant is not None:
         return Problem(title, source, ids, wanted, plant, specification, expect)
     if plant is not None and wanted:
         with errors:
-            Problem(title, source, ids, wanted, plant, specification).solve()
+            Problem(title, source, ids, wanted, plant, specification, expect).solve()
     else:
-        _read_alone(data, specification, symbols, errors)
+        given = data.get("plant")
+        variable = "z" if isinstance(given, Mapping) and given.get("dt", 0) not in (0, False) else "s"
+        _read_alone(specification, symbols, variable, errors)
+        errors.found += unreadable(expect, symbols.names, variable)
     raise errors.together()
 
 
@@ -224,7 +229,8 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> StateS
         errors.note("the state matrix is missing", "plant.A", f"write {_EXAMPLE} under [plant]")
     else:
         with errors:
-            return StateSpace(*(table.get(name) for name in "ABCD"), dt, symbols=symbols)
+            B, C, D = (table.get(name) for name in "BCD")
+            return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
     return None
 
 
@@ -234,7 +240,7 @@ def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _E
     kinds = {name: kind for task in wanted or tasks().values() for name, kind in task.keywords.items()}
     _report_unknown(table, kinds, "specification", errors)
     found: dict[str, Any] = {}
-    for name in kinds.keys() & table.keys():
+    for name in [name for name in table if name in kinds]:
         if kinds[name] == "Name" and (not isinstance(table[name], str) or isinstance(table[name], Decimal)):
             message = f"a name is expected, but {_came(table[name])} came"
             errors.note(message, f"specification.{name}", "write it in quotes")
@@ -243,17 +249,16 @@ def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _E
     return found
 
 
-def _read_alone(data: Mapping[str, Any], specification: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> None:
+def _read_alone(specification: Mapping[str, Any], symbols: Symbols, variable: str, errors: _Errors) -> None:
     """Note which values of a specification cannot be read even by themselves, where no plant or no task is at hand."""
-    plant = data.get("plant")
-    variable = "z" if isinstance(plant, Mapping) and plant.get("dt", 0) not in (0, False) else "s"
     kinds = {name: kind for task in tasks().values() for name, kind in task.keywords.items()}
     for name, value in specification.items():
         where = f"specification.{name}"
         with errors:
-            if kinds[name] == "Poles":
-                read_poles(value, symbols, where)
-            elif kinds[name] == "PolynomialText":
-                parse_polynomial(value, variable, symbols.names, where=where)
-            elif kinds[name] == "GainText":
-                read_matrix(value, symbols, where)
+            match kinds[name]:
+                case "Poles":
+                    read_poles(value, symbols, where)
+                case "PolynomialText":
+                    parse_polynomial(value, variable, symbols.names, where=where)
+                case "GainText":
+                    read_matrix(value, symbols, where)

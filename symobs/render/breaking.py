@@ -26,7 +26,7 @@ from symobs.formula import (
 )
 from symobs.render.glyphs import B, Level
 from symobs.render.printer import factors, signed_terms
-from symobs.render.scalars import is_leaf, spelled, spelled_matrix
+from symobs.render.scalars import decimal, is_leaf, spelled, spelled_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -188,10 +188,11 @@ class Breaker(Generic[B]):
             return self._opened(body, room)
         below = printer.typeset(body.denominator)
         if below.width > _WIDEST_DENOMINATOR * room:
-            above = printer.typeset(body.numerator)
-            if above.width > room - 2:
-                above = self._name(self.named, body.numerator)
-            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator)))]
+            name = self._name(self.named, body.denominator)
+            whole = printer.fraction(printer.typeset(body.numerator), name)
+            if whole.width > room - 2:
+                whole = printer.fraction(self._name(self.named, body.numerator), name)
+            pieces = [Piece(whole)]
         elif printer.slashes:
             pieces = self._operand(body.numerator, Level.PRODUCT, room - 2)
             slash = printer.slash()
@@ -206,7 +207,7 @@ class Breaker(Generic[B]):
         """A number in runs of digits; the next line begins with a sign that it goes on."""
         if not value.is_constant:
             return [Piece(self.printer.leaf(value))]
-        digits = str(value.fraction().numerator)
+        digits = decimal(value.fraction().numerator)
         runs = [digits[start : start + _DIGITS_TOGETHER] for start in range(0, len(digits), _DIGITS_TOGETHER)]
         first, *rest = [Piece(self.printer.digits(run)) for run in runs]
         return [first, *(replace(piece, at_start=self.printer.continued()) for piece in rest)]

@@ -14,6 +14,7 @@ from symobs.render import widths
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
 from symobs.render.printer import Printer
+from symobs.render.scalars import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +62,7 @@ class LatexPrinter(Printer[LatexBox]):
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
         running = copy(self)
-        running.running = True
+        running.running, running.known = True, {}
         return running.unbroken(item)
 
     def unbroken(self, item: Formula | Relation) -> str:
@@ -97,7 +98,7 @@ class LatexPrinter(Printer[LatexBox]):
     def leaf(self, value: Scalar) -> LatexBox:
         """A whole number or a symbol."""
         if value.is_constant:
-            digits = str(value.fraction().numerator)
+            digits = decimal(value.fraction().numerator)
             if self.running and len(digits) > _LONG_NUMBER:
                 runs = [digits[start : start + _DIGITS] for start in range(0, len(digits), _DIGITS)]
                 return LatexBox(_UNBREAKABLE, Level.ATOM, r"\allowbreak ".join(runs))
@@ -257,10 +258,9 @@ class LatexPrinter(Printer[LatexBox]):
         r"""Lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
-        body = "".join(
-            rf"\displaystyle {line.source}{_row_break([replace(line, height=2 * line.height)])}" for line in indented[:-1]
-        )
-        body += rf"\displaystyle {indented[-1].source}"
+        breaks = [_row_break([replace(line, height=2 * line.height)]) for line in lines[:-1]]
+        parts = (rf"\displaystyle {line.source}{after}" for line, after in zip(indented, [*breaks, ""], strict=True))
+        body = "".join(parts)
         width = max(line.width for line in indented)
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{@{{}}l@{{}}}}{body}\end{{array}}", 2)
 

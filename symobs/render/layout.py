@@ -95,7 +95,7 @@ class Layout(Generic[B]):
         framed = self.boxed and is_last
         left = printer.typeset(relation.members[0])
         head = left if left.width <= _WIDEST_HEAD else None
-        room = self.width - margin - (self._frame() if framed else 0.0)
+        room = self.width - margin - printer.punctuation(",").width - (self._frame() if framed else 0.0)
         links = list(zip(relation.operators, relation.members[1:], strict=True))
         if left.width <= margin:
             rights, has_frame = self._links(links, room, head, framed=framed)
@@ -168,7 +168,7 @@ class Layout(Generic[B]):
         added: list[B] = []
         for are_short, run in groupby(groups, key=lambda group: len(group) == 1):
             lines = [line for group in run for line in group]
-            added += self._packed(lines, room) if are_short else lines
+            added += self._packed(lines, room + self.printer.punctuation(",").width) if are_short else lines
         first = rows[-1] if is_framed else self._marked(rows[-1], ",")
         return [*rows[:-1], first, *(Row(None, line) for line in added)]
 
@@ -176,7 +176,7 @@ class Layout(Generic[B]):
         """The lines of name = entry."""
         printer, indent = self.printer, self.printer.indent()
         sign = printer.joined([name, printer.comparison("=")], Level.SUM)
-        space = room - max(sign.width, indent.width) - printer.punctuation(",").width
+        space = room - max(sign.width, indent.width)
         first, *rest = self.breaker.lines(self.breaker.pieces(entry, space), space, space)
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 

@@ -48,6 +48,7 @@ class Printer(Glyphs[B]):
         self.variable = variable
         self.symbols = dict(symbols or {})
         self.discrete = discrete
+        self.known: dict[Scalar, B] = {}
 
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
@@ -72,7 +73,7 @@ class Printer(Glyphs[B]):
             case Letter(name):
                 return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
             case Literal(Scalar() as value):
-                return self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+                return self.scalar(value)
             case Literal(Matrix() as value):
                 written = spelled_matrix(value, self.variable)
                 return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
@@ -95,6 +96,14 @@ class Printer(Glyphs[B]):
             case Derivative(operand):
                 return self.derivative(operand)
         raise TypeError(formula)
+
+    def scalar(self, value: Scalar) -> B:
+        """An exact scalar, spelled out once."""
+        box = self.known.get(value)
+        if box is None:
+            box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+            self.known[value] = box
+        return box
 
     def sum_parts(self, formula: Formula) -> list[B]:
         """The terms of a sum with their signs between them."""

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 #: Beyond this many terms a polynomial is not factored for the sake of its looks.
 FACTORED_UP_TO = 120
 
-#: A common denominator of more terms is not put in front of a matrix.
+#: A common denominator of more terms, or more bits, is not put in front of a matrix.
 FRONT_UP_TO = 40
+FRONT_BITS = 200
 
+_BITS_AT_ONCE = 10_000
 _CLEARLY = 0.85
 _PARENTHESES = 0.4
 
@@ -251,11 +253,20 @@ def _sum(terms: Sequence[Formula]) -> Formula:
     return terms[0] if len(terms) == 1 else Sum(tuple(terms))
 
 
+def decimal(number: int) -> str:
+    """Return the digits of a whole number; `str` refuses to write more than some thousands of them."""
+    if number.bit_length() < _BITS_AT_ONCE:
+        return str(number)
+    low = number.bit_length() * 3 // 20
+    front, back = divmod(number, 10**low)
+    return decimal(front) + decimal(back).zfill(low)
+
+
 def size(formula: Formula) -> float:
     """Return about how many glyphs a spelling takes."""
     match formula:
         case Literal(Scalar() as value):
-            return len(str(value)) if value.is_constant else 1.0
+            return len(decimal(value.fraction().numerator)) if value.is_constant else 1.0
         case Sum(terms):
             return sum(size(term) for term in terms) + (len(terms) - 1) / 2
         case Negative(Sum() as operand):
@@ -294,6 +305,7 @@ def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
     multiple = Scalar.of(1)
     for value in values:
         multiple = multiple * (value / multiple).numerator
-        if multiple.size > FRONT_UP_TO:
+        largest = max(abs(coefficient) for coefficient, _ in multiple.terms())
+        if multiple.size > FRONT_UP_TO or largest.bit_length() > FRONT_BITS:
             return None
     return multiple

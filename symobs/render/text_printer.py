@@ -11,6 +11,7 @@ from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_t
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
 from symobs.render.printer import Printer
+from symobs.render.scalars import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -91,7 +92,7 @@ class TextPrinter(Printer[TextBox]):
     def leaf(self, value: Scalar) -> TextBox:
         """A whole number or a symbol."""
         if value.is_constant:
-            return text_box(str(value.fraction().numerator))
+            return text_box(decimal(value.fraction().numerator))
         (name,) = value.names
         return text_box(symbol_text(name))
 

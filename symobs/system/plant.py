@@ -56,6 +56,9 @@ class StateSpace:
         self.symbols = known
         self.time = read_time(dt, known)
         self.origin = transfer_function
+        if self.variable in {*known.signs}.union(*(part.names for part in parts.values() if part is not None)):
+            message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
+            raise InputError(message, where="plant", repair="give the parameter another name")
 
     @classmethod
     def from_transfer_function(
@@ -122,16 +125,15 @@ class StateSpace:
         B = m.B.substitute(values) if m.has_input else None
         C = m.C.substitute(values) if m.has_output else None
         D = m.D.substitute(values) if m.has_input and m.has_output else None
-        replaced = StateSpace(m.A.substitute(values), B, C, D, symbols=self.symbols)
-        replaced.time = self.time
-        return replaced
+        return StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
 
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices a task uses are given."""
         missing = [n for n in names if (n == "B" and not self.inputs) or (n == "C" and not self.outputs)]
         if missing:
             message = f"{task} needs {' and '.join(missing)}"
-            raise InputError(message, where="plant", repair=f'give {missing[0]}, for example {missing[0]} = "[0; 1]"')
+            example = f'{missing[0]} = "{"[0; 1]" if missing[0] == "B" else "[1 0]"}"'
+            raise InputError(message, where=f"plant.{missing[0]}", repair=f"give it, for example {example}")
 
     # -- the face ----------------------------------------------------------------------------------------------------
 
@@ -222,7 +224,7 @@ def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
     def expect(name: str, wanted: str, came: Matrix) -> None:
         message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
         errors.append(
-            ShapeMismatch(message, where=f"plant.{name}", repair=f"give {name} with {wanted.split(',', maxsplit=1)[0]}")
+            ShapeMismatch(message, where=f"plant.{name}", repair=f"write {name} as {wanted.split(',', maxsplit=1)[0]}")
         )
 
     if A is None:
@@ -232,13 +234,13 @@ def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
         expect("A", "a square matrix", A)
         return errors
     if B is not None and (B.shape[0] != order or B.shape[1] == 0):
-        expect("B", f"{order} rows, one for each state", B)
+        expect("B", f"a matrix of {order} rows, one for each state", B)
     if C is not None and (C.shape[1] != order or C.shape[0] == 0):
-        expect("C", f"{order} columns, one for each state", C)
+        expect("C", f"a matrix of {order} columns, one for each state", C)
     if D is not None and not errors:
         rows, columns = (C.shape[0] if C is not None else 0), (B.shape[1] if B is not None else 0)
         if D.shape != (rows, columns):
-            expect("D", f"{rows}×{columns}, outputs by inputs", D)
+            expect("D", f"a {rows}×{columns} matrix, outputs by inputs", D)
     return errors
 
 

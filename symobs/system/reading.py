@@ -54,9 +54,7 @@ def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
         from symobs.exact.sympy_border import scalar_from_sympy  # noqa: PLC0415
 
         return scalar_from_sympy(value, where)
-    if isinstance(value, str):
-        return parse_scalar(value, symbols.names, where=where)
-    return parse_matrix([[value]], symbols.names, where=where)[0, 0]
+    return parse_scalar(value, symbols.names, where=where)
 
 
 def _from_numpy(value: Any, where: str) -> object:

@@ -1,0 +1,216 @@
+"""What the result of each task claims, checked in plain fractions at a point, from plant and specification there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Factored, Scalar
+from symobs.expression import parse_polynomial
+from symobs.specification import read_poles
+from tests.plain import (
+    Point,
+    Polynomial,
+    Rows,
+    assignable,
+    at_number,
+    characteristic,
+    coefficients_at,
+    faddeev_leverrier,
+    is_hurwitz,
+    is_schur,
+    matrix_at,
+    multiply,
+    observability_rows,
+    product,
+    rank_of,
+    subtract,
+    transposed,
+    value_at,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.exact import Complex
+    from symobs.method import Result
+    from symobs.system import StateSpace
+
+#: Values of s at which rational functions are compared.
+PROBES = (Fraction(7, 3), Fraction(-11, 5), Fraction(23))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A plant and desired polynomials in plain fractions, and the point they belong to."""
+
+    A: Rows
+    B: Rows
+    C: Rows
+    D: Rows
+    wanted: Mapping[str, Polynomial]
+    point: Point
+    discrete: bool
+
+    @staticmethod
+    def of(plant: StateSpace, specification: Mapping[str, Any], point: Point) -> Setting:
+        """Evaluate plant and specification; raises ZeroDivisionError where one of them does not exist."""
+        m = plant.matrices
+        A, B, C, D = (matrix_at(part, point) for part in (m.A, m.B, m.C, m.D))
+        return Setting(A, B, C, D, dict(wanted(plant, specification, point)), point, plant.is_discrete)
+
+    def is_stable(self, polynomial: Polynomial) -> bool:
+        return is_schur(polynomial) if self.discrete else is_hurwitz(polynomial)
+
+    def pair(self, *, dual: bool) -> tuple[Rows, Rows]:
+        """Return (A, C), or (Aᵀ, Bᵀ)."""
+        return (transposed(self.A), transposed(self.B)) if dual else (self.A, self.C)
+
+
+def wanted(plant: StateSpace, specification: Mapping[str, Any], point: Point) -> Iterator[tuple[str, Polynomial]]:
+    """Read the desired polynomials off a specification, under their keys' prefix; poles are multiplied out here."""
+    for key, value in specification.items():
+        prefix = key.removesuffix("poles").removesuffix("polynomial")
+        if key.endswith("poles"):
+            yield prefix, multiplied_out(read_poles(value, plant.symbols, key), point)
+        elif key.endswith("polynomial"):
+            polynomial = parse_polynomial(value, plant.variable, plant.symbols.names, where=key)
+            yield prefix, coefficients_at(polynomial, plant.variable, point)
+
+
+def multiplied_out(poles: tuple[Complex, ...], point: Point) -> Polynomial:
+    zero = (Fraction(0), Fraction(0))
+    found = [(Fraction(1), Fraction(0))]
+    for pole in poles:
+        x, y = value_at(pole.real, point), value_at(pole.imaginary, point)
+        times_pole = [zero, *((x * u - y * v, x * v + y * u) for u, v in found)]
+        found = [(u - p, v - q) for (u, v), (p, q) in zip([*found, zero], times_pole, strict=True)]
+    assert not any(imaginary for _, imaginary in found), "the poles asked for are closed under conjugation"
+    return [real for real, _ in found]
+
+
+def response(A: Rows, B: Rows, C: Rows, s: Fraction) -> Fraction:
+    """Return C (sI − A)⁻¹ B at a number s."""
+    chi, adjugates = faddeev_leverrier(A)
+    return at_number([multiply(multiply(C, part), B)[0][0] for part in adjugates], s) / at_number(chi, s)
+
+
+def rational_at(value: Scalar | Factored, variable: str, s: Fraction, point: Point) -> Fraction:
+    """Return the value of a rational function of s; a factored form is evaluated factor by factor."""
+    here = {**point, variable: s}
+    if isinstance(value, Scalar):
+        return value_at(value, here)
+    total = value_at(value.unit, here)
+    for factor, power in value.factors:
+        total *= value_at(factor, here) ** power
+    return total
+
+
+def gain_holds(result: Result, at: Setting, prefix: str, gain: Rows) -> None:
+    """Hold a gain against φ: that of the specification, or the polynomial reported for a given gain."""
+    moved = multiply(at.B, gain) if result.task == "state_feedback" else multiply(gain, at.C)
+    reported = coefficients_at(result.fields["polynomial"], result.plant.variable, at.point)
+    assert characteristic(subtract(at.A, moved)) == reported == at.wanted.get(prefix, reported)
+
+
+def design_holds(result: Result, at: Setting, prefix: str = "") -> None:
+    feedback = result.task == "state_feedback"
+    found = result.answer["K" if feedback else "L"]
+    if found is None:
+        assert not assignable(*at.pair(dual=feedback), at.wanted[prefix])
+        return
+    gain = matrix_at(found, at.point)
+    gain_holds(result, at, prefix, gain)
+    if feedback:
+        assert matrix_at(result.fields["closed_loop_matrix"], at.point) == subtract(at.A, multiply(at.B, gain))
+    else:
+        assert matrix_at(result.fields["A"], at.point) == subtract(at.A, multiply(gain, at.C))
+        assert matrix_at(result.fields["B_y"], at.point) == gain
+        if result.plant.matrices.has_input:
+            assert matrix_at(result.fields["B_u"], at.point) == subtract(at.B, multiply(gain, at.D))
+    family = result.fields["family"]
+    for shift in (Fraction(0), Fraction(5, 7)) if family else ():
+        free = {name: shift * (k + 1) for k, name in enumerate(family["parameters"])}
+        gain_holds(result, at, prefix, matrix_at(family["K" if feedback else "L"], {**at.point, **free}))
+    stability_holds(result, at)
+
+
+def stability_holds(result: Any, at: Setting) -> None:
+    """Hold `stable` and the polynomials that must be positive against Routh's scheme at the point."""
+    stable = at.is_stable(coefficients_at(result.fields["polynomial"], result.plant.variable, at.point))
+    if result.fields["stable"] == "conditional":
+        assert stable == all(value_at(value, at.point) > 0 for value in result.stability.positive)
+    else:
+        assert stable == (result.fields["stable"] == "yes")
+
+
+def compensator_holds(result: Any, at: Setting) -> None:
+    design_holds(result.feedback, at, "control_")
+    design_holds(result.estimator, at, "observer_")
+    if result.answer["F"] is None:
+        assert None in (result.answer["K"], result.answer["L"])
+        return
+    K, L = (matrix_at(result.answer[name], at.point) for name in "KL")
+    variable, F_s = result.plant.variable, result.fields["F"]
+    BK, LC, minus_LDK = (
+        multiply(at.B, K),
+        multiply(L, at.C),
+        multiply([[-x for x in row] for row in L], multiply(at.D, K)),
+    )
+    own = subtract(subtract(subtract(at.A, BK), LC), minus_LDK)
+    assert matrix_at(result.fields["compensator_matrix"], at.point) == own
+    whole = product([at.wanted["control_"], at.wanted["observer_"]])
+    for name in ("closed_loop_matrix", "closed_loop_matrix_estimate"):
+        assert characteristic(matrix_at(result.fields[name], at.point)) == whole
+    compared = 0
+    for s in PROBES:
+        assert rational_at(result.fields["closed_loop_polynomial"], variable, s, at.point) == at_number(whole, s)
+        if at_number(characteristic(own), s) and at_number(characteristic(at.A), s) and at_number(whole, s):
+            F, P = response(own, L, K, s), response(at.A, at.B, at.C, s) + at.D[0][0]
+            assert rational_at(F_s, variable, s, at.point) == F
+            assert rational_at(result.fields["closed_loop"], variable, s, at.point) == P / (1 + P * F)
+            compared += 1
+    assert compared >= len(PROBES) - 1
+    denominator = coefficients_at(F_s.denominator, variable, at.point)
+    if result.fields["F_stable"] != "conditional" and denominator[0]:
+        assert at.is_stable(denominator) == (result.fields["F_stable"] == "yes")
+
+
+def rank_holds(result: Result, at: Setting) -> None:
+    dual = result.task == "controllability"
+    A, C = at.pair(dual=dual)
+    rows = observability_rows(A, C)
+    found = matrix_at(result.fields["matrix"], at.point)
+    assert (transposed(found) if dual else found) == rows
+    assert rank_of(rows) == result.fields["rank"]
+    kernel = [[value_at(entry, at.point) for entry in vector] for vector in result.fields["kernel"]]
+    assert rank_of(kernel) == len(kernel) == len(A) - result.fields["rank"]
+    assert not kernel or not any(any(row) for row in multiply(rows, transposed(kernel)))
+
+
+def polynomial_holds(result: Any, at: Setting) -> None:
+    chi, variable = characteristic(at.A), result.plant.variable
+    assert coefficients_at(result.fields["polynomial"], variable, at.point) == chi
+    factors = [coefficients_at(f, variable, at.point) for f, power in result.fields["factors"] for _ in range(power)]
+    assert product(factors) == chi
+    if result.fields["stable"] != "conditional":
+        assert at.is_stable(chi) == (result.fields["stable"] == "yes")
+
+
+def transfer_holds(result: Result, at: Setting) -> None:
+    for s in PROBES:
+        if at_number(characteristic(at.A), s):
+            expected = response(at.A, at.B, at.C, s) + at.D[0][0]
+            assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
+
+
+HOLDS: dict[str, Callable[[Any, Setting], None]] = {
+    "observer": design_holds,
+    "state_feedback": design_holds,
+    "compensator": compensator_holds,
+    "observability": rank_holds,
+    "controllability": rank_holds,
+    "characteristic_polynomial": polynomial_holds,
+    "transfer_function": transfer_holds,
+}
