@@ -39,7 +39,7 @@ def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str
     known = sorted({name for result in results for name in _available(result)})
     found = applicable(results, expect)
     strange = [key for key in expect if key not in found]
-    errors += [_no_field(f"expect.{shown(key, 40)}", "no task of this file", known) for key in strange]
+    errors += [_no_field(f"expect.{shown(key, 40)}", "no task here has such a field", known) for key in strange]
     if errors:
         raise ProblemErrors(tuple(errors))
     return lines
@@ -62,7 +62,7 @@ def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], error
         chosen = _with_member(chosen, name, entry, where) if name in result.answer else chosen
     for name, (entry, where) in expected.items():
         if name not in _available(result):
-            errors.append(_no_field(where, f"the task {result.task}", _available(result)))
+            errors.append(_no_field(where, f"{result.task} has no such field", _available(result)))
             continue
         try:
             if not met(chosen, name, entry, where):
@@ -112,8 +112,8 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
 # -- one field ------------------------------------------------------------------------------------------------------
 
 
-def _no_field(where: str, who: str, known: Sequence[str]) -> InputError:
-    return InputError(f"{who} has such a field", where=where, repair=f"known fields are {', '.join(known)}")
+def _no_field(where: str, message: str, known: Sequence[str]) -> InputError:
+    return InputError(message, where=where, repair=f"known fields are {', '.join(known)}")
 
 
 def _available(result: Result) -> list[str]:

@@ -179,7 +179,7 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
     gain = read_matrix(value, plant.symbols.seen(value), where)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
-        raise ShapeMismatch(message, where=where, repair=f"give {name} with {shape[0]} rows and {shape[1]} columns")
+        raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
     return gain
 
 

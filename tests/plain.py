@@ -9,7 +9,8 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import lcm
+from functools import lru_cache
+from math import lcm, prod
 from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -23,25 +24,36 @@ Point: TypeAlias = Mapping[str, Fraction]
 # -- kernel values at a point ------------------------------------------------------------------------------------------
 
 
-def _polynomial_at(polynomial: Scalar, numerators: Mapping[str, int], denominator: int) -> Fraction:
-    """Evaluate by integers over one denominator: Σ c Π (xᵢ/q)^eᵢ = Σ c Π xᵢ^eᵢ q^(d − Σ eᵢ) / q^d."""
-    terms = polynomial.terms()
-    degree = max((sum(power for _, power in powers) for _, powers in terms), default=0)
-    total = 0
-    for coefficient, powers in terms:
-        value, used = coefficient, 0
-        for name, power in powers:
-            value *= numerators[name] ** power
-            used += power
-        total += value * denominator ** (degree - used)
-    return Fraction(total, denominator**degree)
+Term: TypeAlias = tuple[int, tuple[tuple[str, int], ...], int]
+
+
+@lru_cache(maxsize=4096)
+def _terms(scalar: Scalar) -> tuple[list[Term], list[Term], int]:
+    """Return the terms of numerator and denominator, each filled up to one degree, and that degree."""
+    parts = [part.terms() for part in (scalar.numerator, scalar.denominator)]
+    degree = max((sum(power for _, power in powers) for part in parts for _, powers in part), default=0)
+    above, below = ([(c, powers, degree - sum(power for _, power in powers)) for c, powers in part] for part in parts)
+    return above, below, degree
 
 
 def value_at(scalar: Scalar, point: Point) -> Fraction:
-    """Evaluate a kernel scalar term by term; raises ZeroDivisionError where its denominator vanishes."""
+    """Evaluate a kernel scalar term by term; raises ZeroDivisionError where its denominator vanishes.
+
+    In integers over one denominator q: Σ c Π (xᵢ/q)^eᵢ = Σ c Π xᵢ^eᵢ q^(d − Σ eᵢ) / q^d.
+    """
+    above, below, degree = _terms(scalar)
     common = lcm(*(value.denominator for value in point.values()))
-    numerators = {name: int(value * common) for name, value in point.items()}
-    return _polynomial_at(scalar.numerator, numerators, common) / _polynomial_at(scalar.denominator, numerators, common)
+    bases = {name: value.numerator * (common // value.denominator) for name, value in point.items()}
+    powers = {name: [base**k for k in range(degree + 1)] for name, base in bases.items()}
+    filling = [common**k for k in range(degree + 1)]
+    top, bottom = (
+        sum(
+            prod([powers[name][k] for name, k in names], start=coefficient * filling[rest])
+            for coefficient, names, rest in part
+        )
+        for part in (above, below)
+    )
+    return Fraction(top, bottom)
 
 
 def matrix_at(matrix: Matrix, point: Point) -> Rows:
@@ -66,6 +78,19 @@ def random_fraction(generator: random.Random, sign: str = "real") -> Fraction:
     if sign in {"positive", "nonnegative"}:
         return abs(value)
     return -abs(value) if sign in {"negative", "nonpositive"} else value
+
+
+def has_sign(value: Fraction, sign: str) -> bool:
+    """Tell whether a number has a declared sign."""
+    return {
+        "positive": value > 0,
+        "negative": value < 0,
+        "nonnegative": value >= 0,
+        "nonpositive": value <= 0,
+        "nonzero": value != 0,
+        "zero": value == 0,
+        "real": True,
+    }[sign]
 
 
 # -- plain arithmetic --------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given, settings
@@ -22,33 +22,24 @@ from symobs.conditions import (
     vanishing_factors,
 )
 from symobs.exact import Scalar
-from tests.plain import random_fraction, seeded, value_at
+from tests.plain import has_sign, random_fraction, seeded, value_at
 from tests.strategies import Twin, polynomials, rational_functions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Iterable, Mapping
 
 a, b, c = (Scalar.symbol(name) for name in "abc")
 
-HOLDS: dict[str, Callable[[Any], bool]] = {
-    "positive": lambda x: x > 0,
-    "negative": lambda x: x < 0,
-    "nonnegative": lambda x: x >= 0,
-    "nonpositive": lambda x: x <= 0,
-    "nonzero": lambda x: x != 0,
-    "zero": lambda x: x == 0,
-    "real": lambda _: True,
-}
-#: Values of each sign, enough to tell the signs apart in sums and products.
-VALUES = {sign: [x for x in (-3, -2, -1, 0, 1, 2, 3) if holds(x)] for sign, holds in HOLDS.items()}
 ALL = [*SIGNS, "zero"]
+#: Values of each sign, enough to tell the signs apart in sums and products.
+VALUES = {sign: [x for x in (-3, -2, -1, 0, 1, 2, 3) if has_sign(Fraction(x), sign)] for sign in ALL}
 
 
 def tightest(values: Iterable[int]) -> str:
     """Return the strongest sign that all values have."""
     found = list(values)
     order = ["zero", "positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"]
-    return next(sign for sign in order if all(HOLDS[sign](x) for x in found))
+    return next(sign for sign in order if all(has_sign(Fraction(x), sign) for x in found))
 
 
 class TestRules:
@@ -64,7 +55,7 @@ class TestRules:
     def test_a_power_has_the_strongest_sign_that_is_certain(self, sign: str, exponent: int) -> None:
         values = [Fraction(x) ** exponent for x in VALUES[sign] if x or exponent > 0]
         found = _power_sign(sign, exponent)
-        assert all(HOLDS[found](value) for value in values)
+        assert all(has_sign(Fraction(value), found) for value in values)
         if exponent > 0:
             assert found == tightest(int(value) for value in values)
 
@@ -79,7 +70,10 @@ signs_of_names = st.fixed_dictionaries({name: st.sampled_from(SIGNS) for name in
 def points(signs: Mapping[str, str], seed: object, count: int = 25) -> list[dict[str, Fraction]]:
     """Random points with the declared signs; the first has 0 and ±1 wherever the signs allow."""
     generator = seeded(seed)
-    simple = {name: Fraction(0 if HOLDS[sign](0) else 1 if HOLDS[sign](1) else -1) for name, sign in signs.items()}
+    simple = {
+        name: Fraction(0 if has_sign(Fraction(0), sign) else 1 if has_sign(Fraction(1), sign) else -1)
+        for name, sign in signs.items()
+    }
     return [simple, *({n: random_fraction(generator, sign) for n, sign in signs.items()} for _ in range(count))]
 
 
@@ -93,7 +87,7 @@ class TestValues:
     def test_what_is_certain_is_true_at_every_point(self, x: Twin, signs: dict[str, str]) -> None:
         found = sign_of(x.scalar, signs)
         for point, value in values_at(x.scalar, signs):
-            assert HOLDS[found](value), (x.scalar, signs, point)
+            assert has_sign(Fraction(value), found), (x.scalar, signs, point)
             assert not never_zero(x.scalar, signs) or value != 0
 
     @given(polynomials(degree=2, most=2), polynomials(degree=1, most=2), signs_of_names)
@@ -101,7 +95,7 @@ class TestValues:
         value = x.scalar**2 * y.scalar * (a - b)
         found = sign_of(value, signs)
         for point, number in values_at(value, signs):
-            assert HOLDS[found](number), (value, signs, point)
+            assert has_sign(Fraction(number), found), (value, signs, point)
 
     @given(polynomials(degree=1, most=2), polynomials(degree=2, most=2), signs_of_names)
     @settings(max_examples=60)

@@ -1,8 +1,8 @@
 """Conditions are right: results specialised at random rational points, judged by plain arithmetic of fractions.
 
 At points where the conditions of a result hold, its values meet the claim of the plant at that point.  Where a
-denominator of the plant vanishes there is no plant.  Where a factor of det 𝒪 or det 𝒞 vanishes the rank drops, and either
-no gain exists or a case of the result says why one survives, and that case is right on its stratum.
+denominator of the plant vanishes there is no plant.  Where a factor of det 𝒪 or det 𝒞 vanishes the rank drops, and
+either no gain exists or a case of the result says why one survives, and that case is right on its stratum.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from tests.claims import HOLDS, Setting
 from tests.plain import (
     assignable,
     at_number,
+    has_sign,
     matrix_at,
     observability_rows,
     random_fraction,
@@ -215,6 +216,8 @@ def on_stratum(problem: Problem, result: Any, *, dual: bool, point: dict[str, Fr
         return
     A, C = at.pair(dual=dual)
     assert rank_of(observability_rows(A, C)) < len(A)
+    if not all(has_sign(value, problem.plant.symbols.sign(name)) for name, value in point.items()):
+        return
     for case in result.cases:
         if holds(case.when, point):
             assert case.result is not None

@@ -192,7 +192,8 @@ def latex_tokens(source: str, names: dict[str, str]) -> list[Token]:
     written = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
     pattern = re.compile(
         r"(?P<table>(?:\\left\[)?\\begin\{(?P<kind>bmatrix|smallmatrix|array)\}(?:\{@\{\}\*\{\d+\}\{c\}@\{\}\})?)"
-        r"|(?P<list>\[)|(?P<function>\\det|\\operatorname\{adj\})|(?P<frac>\\d?frac)|\^(?P<power>\{(?:-?\d+|\\mathsf T)\}|\d)"
+        r"|(?P<list>\[)|(?P<function>\\det|\\operatorname\{adj\})|(?P<frac>\\d?frac)"
+        r"|\^(?P<power>\{(?:-?\d+|\\mathsf T)\}|\d)"
         r"|(?P<skip>\\(?:left|right|[bB]igg?[lr])(?=[()])|\\[,; ]|\\(?:allowbreak|displaystyle) ?|\{\}| )"
         r"|(?P<dot>\\cdot ?)|(?P<slash>/|\\big/)|(?P<sign>[+-])|(?P<open>[({])|(?P<close>[)}])"
         rf"|(?P<name>{written})|(?P<number>\d+)"
@@ -556,7 +557,8 @@ FORMULAS: list[tuple[Formula, str, str]] = [
     (Apply("det", RESOLVENT), r"\det(sI-A)", "det(sI - A)"),
     (Apply("det", O), r"\det\mathcal O", "det 𝒪"),
     (Product((Apply("det", A), B)), r"\det(A)B", "det(A)B"),
-    (Product((B, Apply("det", A))), r"B(\det A)", "B(det A)"),
+    (Product((B, Apply("det", A))), r"B\det A", "B det A"),
+    (Product((Apply("det", Sum((A, B))), Apply("det", Sum((A, C))))), r"\det(A+B)\det(A+C)", "det(A + B)det(A + C)"),
     (Apply("phi_at", A), r"\varphi(A)", "φ(A)"),
     (Apply("trace", A), r"\operatorname{trace}A", "trace A"),
     (Quotient(P, Sum((lit(1), Product((P, F))))), r"\frac{P(s)}{1+P(s)F(s)}", "P(s)/(1 + P(s)F(s))"),

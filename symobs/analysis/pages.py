@@ -88,8 +88,8 @@ def state_signs(page: Page) -> None:
 
 
 def factored_form(page: Page, value: Scalar) -> Term:
-    """Return a scalar written as a product or quotient of its monic factors in the variable."""
-    return page.term(formula_of_factored(factored(value, page.plant.variable)))
+    """Return a scalar written as a product or quotient of its factors in the variable."""
+    return page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
 
 
 def formula_of_factored(form: Factored) -> Formula:

@@ -189,9 +189,7 @@ class _Namer:
         self.page = page
         self.meanings: list[tuple[Scalar, Scalar]] = []
 
-    def polynomial(
-        self, stem: str, coefficients: Sequence[Scalar], variable: str, *, monic: bool = False
-    ) -> Scalar:
+    def polynomial(self, stem: str, coefficients: Sequence[Scalar], variable: str, *, monic: bool = False) -> Scalar:
         """Return the polynomial with a letter for each coefficient that is not a number."""
         order = len(coefficients) - 1
         named = [Scalar.of(1)] if monic else []

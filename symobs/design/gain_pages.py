@@ -176,7 +176,9 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
     V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
-    page.equal(relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant())))
+    page.equal(
+        relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
+    )
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
         page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")

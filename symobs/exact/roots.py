@@ -58,8 +58,11 @@ def _unwrapped(text: str) -> str:
     return text[1:-1] if text.startswith("(") and text.endswith(")") and text.count("(") == 1 else text
 
 
-def factored(value: Scalar, variable: str) -> Factored:
-    """Return a rational function with its factors in the variable, monic; the rest is the unit."""
+def factored(value: Scalar, variable: str, *, monic: bool = True) -> Factored:
+    """Return a rational function with its factors in the variable; the rest is the unit.
+
+    Factors are made monic; with `monic` False only where their leading coefficient is a number.
+    """
     unit, factors = value.factors()
     kept: list[tuple[Scalar, int]] = []
     for factor, power in factors:
@@ -67,6 +70,8 @@ def factored(value: Scalar, variable: str) -> Factored:
             unit = unit * factor**power
             continue
         lead = factor.coefficients(variable)[0]
+        if not (monic or lead.is_constant):
+            lead = Scalar.of(1)
         unit = unit * lead**power
         kept.append((factor / lead, power))
     kept.sort(key=lambda item: (item[0].degree(variable), item[0].size))

@@ -12,10 +12,10 @@ import numbers
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
+from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ProblemErrors, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.expression.budget import common_denominator_excess
-from symobs.expression.evaluation import Grid, read, unequal_row
+from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
 from symobs.expression.names import Names, Scope, declared_name
 from symobs.expression.source import shown
 from symobs.expression.tokens import MOST_DIGITS
@@ -70,7 +70,8 @@ def parse_poles(value: object, names: Names = None, *, where: str = "") -> tuple
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
-    return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
+    places = [(pole, f"{where}[{index}]") for index, pole in enumerate(listed)]
+    return tuple(Complex.of(pole) for pole in _entries(places, scope))
 
 
 def parse_polynomial(value: object, variable: str, names: Names = None, *, where: str = "") -> Scalar:
@@ -109,7 +110,8 @@ def _entry(value: object, scope: Scope, where: str) -> Number:
 def _single(entry: Number | Grid, where: str) -> Number:
     if isinstance(entry, Grid):
         rows, columns = entry.shape
-        raise ExpressionError(f"one number is expected, but a {rows}×{columns} matrix came", where=where)
+        repair = "write one expression without brackets around it"
+        raise ExpressionError(f"one number is expected, but a {rows}×{columns} matrix came", where=where, repair=repair)
     return entry
 
 
@@ -141,7 +143,8 @@ def _exact_text(value: numbers.Complex) -> str:
 
 def _real(value: Number, where: str) -> Scalar:
     if isinstance(value, Complex):
-        raise ExpressionError(f"a real value is expected, but {shown(str(value))} came", where=where)
+        repair = "write a real value; only poles may be complex"
+        raise ExpressionError(f"a real value is expected, but {shown(str(value))} came", where=where, repair=repair)
     return value
 
 
@@ -176,10 +179,26 @@ def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]
     cells = [row for row in rows if row is not None]
     unequal = unequal_row(cells)
     if unequal:
-        raise ShapeMismatch(unequal[0], where=where, row=unequal[1])
+        raise ShapeMismatch(unequal[0], where=where, repair=EQUAL_ROWS, row=unequal[1])
     if not cells or not cells[0]:
-        raise ShapeMismatch("the matrix has no entry", where=where)
-    return [[_entry(cell, scope, _cell(where, i, j)) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
+        raise ShapeMismatch("the matrix has no entry", where=where, repair="write for example [[0, 1], [0, -1]]")
+    places = [(cell, _cell(where, i, j)) for i, row in enumerate(cells) for j, cell in enumerate(row)]
+    entries, width = _entries(places, scope), len(cells[0])
+    return [entries[start : start + width] for start in range(0, len(entries), width)]
+
+
+def _entries(places: Sequence[tuple[object, str]], scope: Scope) -> list[Number]:
+    """Return the number at each place; raises all errors together."""
+    found: list[Number] = []
+    errors: list[InputError] = []
+    for value, where in places:
+        try:
+            found.append(_entry(value, scope, where))
+        except InputError as error:
+            errors.append(error)
+    if errors:
+        raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))
+    return found
 
 
 def _as_list(value: object) -> Sequence[object] | None:

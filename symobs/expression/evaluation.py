@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     Entry: TypeAlias = "Number | Grid"
 
 MOST_CHARACTERS = 10_000
+_SMALLER = "write something smaller, with a symbol in place of what is large"
+EQUAL_ROWS = "give every row the same number of entries"
 
 # A sign binds its power, -2^2 = -(2^2), and an exponent takes a sign, 2^-1; powers associate to the right.
 GRAMMAR = r"""
@@ -45,14 +47,14 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     source = Source(text, where)
     if len(text) > MOST_CHARACTERS:
         message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
-        raise source.error(message, 0, kind=BudgetExceeded)
+        raise source.error(message, 0, _SMALLER, kind=BudgetExceeded)
     try:
         return _Evaluator(source, scope.meter).transform(_parser().parse(Tokeniser(source, scope).run()))
     except UnexpectedToken as found:
         at_end = found.token.type == "$END"
         place = "at the end" if at_end else f'before "{shown(found.token)}"'
         position = len(text) if at_end else start(found.token)
-        raise source.error(f'a number, a name or "(" is expected {place}', position) from None
+        raise source.error(f'a number, a name or "(" is expected {place}', position, "write one there") from None
     except VisitError as wrapped:  # lark's wrapping of what the evaluator raised
         raise wrapped.orig_exc from None
 
@@ -126,7 +128,7 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
     def brackets(self, parts: tuple[Token, *tuple[list[Entry], ...]]) -> Entry:
         (left, *rows), unequal = parts, unequal_row(parts[1:])
         if unequal:
-            raise self.source.error(unequal[0], start(left), kind=ShapeMismatch, row=unequal[1])
+            raise self.source.error(unequal[0], start(left), EQUAL_ROWS, kind=ShapeMismatch, row=unequal[1])
         grid = Grid([[self._number(entry) for entry in row] for row in rows], start(left))
         return grid.rows[0][0] if grid.shape == (1, 1) else grid
 
@@ -173,7 +175,7 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
         exponent = int(value.fraction())
         if abs(exponent) > MOST_EXPONENT:
             message = f"the exponent is beyond {MOST_EXPONENT}"
-            raise self.source.error(message, start(token), kind=BudgetExceeded)
+            raise self.source.error(message, start(token), _SMALLER, kind=BudgetExceeded)
         return exponent
 
     def _combined(self, left: Number, sign: str, right: Number, token: Token) -> Number:
@@ -200,12 +202,12 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
 
     def _require_nonzero(self, value: Number, token: Token) -> None:
         if isinstance(value, Scalar) and value.is_zero:
-            raise self.source.error("division by zero", start(token))
+            raise self.source.error("division by zero", start(token), "write a denominator that is not 0")
 
     def _spend(self, sizes: Parts, token: Token, times: int = 1) -> None:
         excess = self.meter.charge(times * work(*sizes), sizes)
         if excess:
-            raise self.source.error(f"this would build {excess}", start(token), kind=BudgetExceeded)
+            raise self.source.error(f"this would build {excess}", start(token), _SMALLER, kind=BudgetExceeded)
 
 
 def start(token: Token) -> int:

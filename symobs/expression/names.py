@@ -47,7 +47,7 @@ def refusal(name: str) -> tuple[str, str] | None:
         another = f"{name}_" if keyword.iskeyword(name[:3]) else name[:3]
         return f'"{name}" is a word of Python and names no symbol', f'write another name, such as "{another}"'
     if name in {"oo", "inf", "nan"}:
-        return f'"{name}" is not a finite number', "write a finite exact value"
+        return f'"{name}" is reserved: it is not a finite number', "write a finite exact value"
     if name in RESERVED or name in FUNCTIONS:
         return f'"{name}" is reserved and names no symbol', "write another name"
     return None

@@ -34,6 +34,7 @@ _TOKEN = re.compile(
     r"|(?P<SPACE>[ \t\r\n]+)"
 )
 _NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT")
@@ -72,9 +73,12 @@ class Tokeniser:
             self._take(str(match.lastgroup), match.group(), position)
             position = match.end()
         if self.open:
-            raise self.source.error(f'this "{self.open[-1]}" is never closed', self.open[-1].start_pos or 0)
+            place, repair = self.open[-1].start_pos or 0, f'close it with "{_CLOSING[self.open[-1]]}"'
+            raise self.source.error(f'this "{self.open[-1]}" is never closed', place, repair)
         if not self.tokens:
-            raise self.source.error("an expression is expected, but the text is empty", 0)
+            raise self.source.error(
+                "an expression is expected, but the text is empty", 0, "write one between the quotes"
+            )
         return self.tokens
 
     def _take(self, kind: str, text: str, at: int) -> None:
@@ -134,14 +138,16 @@ class Tokeniser:
 
     def _open(self, text: str, at: int) -> None:
         if len(self.open) >= MOST_NESTING:
-            raise self.source.error(f"brackets are nested deeper than {MOST_NESTING}", at, kind=BudgetExceeded)
+            message, repair = f"brackets are nested deeper than {MOST_NESTING}", "write it with fewer brackets"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
         self.open.append(self._add("LEFT" if text == "[" else "_OPEN", text, at))
 
     def _close(self, text: str, at: int) -> None:
         if not self.open:
-            raise self.source.error(f'this "{text}" closes nothing', at)
+            raise self.source.error(f'this "{text}" closes nothing', at, "leave it out, or open it before")
         if self.open[-1] + text not in {"()", "[]"}:
-            raise self.source.error(f'this "{text}" stands where "{self.open[-1]}" has to be closed first', at)
+            repair = f'write "{_CLOSING[self.open[-1]]}" before it'
+            raise self.source.error(f'this "{text}" stands where "{self.open[-1]}" has to be closed first', at, repair)
         if self._after(("_END",)):
             self.tokens.pop()
         self._add("_RIGHT" if text == "]" else "_CLOSE", text, at)
@@ -161,9 +167,11 @@ class Tokeniser:
         mantissa, _, power = text.lower().partition("e")
         whole, _, decimals = mantissa.partition(".")
         if len(whole) + len(decimals) > MOST_DIGITS:
-            raise self.source.error(f"a number has more than {MOST_DIGITS} digits", at, kind=BudgetExceeded)
+            message, repair = f"a number has more than {MOST_DIGITS} digits", "write fewer digits"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
         if len(power.lstrip("+-0")) > 4 or abs(int(power or 0)) > MOST_POWER_OF_TEN:
-            raise self.source.error(f"a power of ten is beyond {MOST_POWER_OF_TEN}", at, kind=BudgetExceeded)
+            message, repair = f"a power of ten is beyond {MOST_POWER_OF_TEN}", "write a smaller power"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
         digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
         return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
 
@@ -187,7 +195,8 @@ class Tokeniser:
         if not self.scope.declares(name):
             self._require_admitted(name, at, called=called)
         if len(self.symbols) >= MOST_NAMES:
-            raise self.source.error(f"more than {MOST_NAMES} different names", at, kind=BudgetExceeded)
+            repair = "use fewer names in one matrix"
+            raise self.source.error(f"more than {MOST_NAMES} different names", at, repair, kind=BudgetExceeded)
         shared = name in self.field.position  # not the e of 2e3e, which follows a number
         return self.symbols.setdefault(name, Scalar.generator(self.field, name) if shared else Scalar.symbol(name))
 
@@ -201,7 +210,7 @@ class Tokeniser:
     def _unknown(self, name: str, at: int, *, called: bool) -> InputError:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
         question = f'did you mean "{nearest}"? ' if nearest else ""
-        listed = f"declared: {shown(', '.join(declared), 200)}" if declared else "no name is declared"
+        listed = f"declared: {shown(', '.join(declared), 200)}" if declared else "no name is declared, so declare it"
         message = f'the name "{name}" is not declared'
         facts = {"name": name, "nearest": nearest, "declared": tuple(declared)}
         return self.source.error(message, at, question + listed, UnknownName, **facts)

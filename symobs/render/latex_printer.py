@@ -189,8 +189,7 @@ class LatexPrinter(Printer[LatexBox]):
         if self.running and width > _WIDE:
             source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
             return LatexBox(width, Level.ATOM, f"[{source}]")
-        break_ = _row_break([entry for row in rows for entry in row])
-        body = break_.join("&".join(entry.source for entry in row) for row in rows)
+        body = _under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows))
         if self.running and len(rows) > 1:
             source = rf"\left[\begin{{smallmatrix}}{body}\end{{smallmatrix}}\right]"
         elif columns <= _MATRIX_COLUMNS:
@@ -258,9 +257,8 @@ class LatexPrinter(Printer[LatexBox]):
         r"""Lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
-        breaks = [_row_break([replace(line, height=2 * line.height)]) for line in lines[:-1]]
-        parts = (rf"\displaystyle {line.source}{after}" for line, after in zip(indented, [*breaks, ""], strict=True))
-        body = "".join(parts)
+        sources = [rf"\displaystyle {line.source}" for line in indented]
+        body = _under_one_another(sources, [2 * line.height for line in lines])
         width = max(line.width for line in indented)
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{@{{}}l@{{}}}}{body}\end{{array}}", 2)
 
@@ -279,9 +277,16 @@ def swallows(left: str, right: str) -> bool:
     return bool(command) and command.isascii() and command.isalpha() and right[:1].isalpha()
 
 
-def _row_break(row: Sequence[LatexBox]) -> str:
-    r"""`\\` with the depth a row needs below its strut: an array adds none by itself."""
-    return (r"\\", r"\\[4pt]", r"\\[12pt]")[min(2, max(box.height for box in row))]
+def _heights(rows: Sequence[Sequence[LatexBox]]) -> list[int]:
+    return [max(entry.height for entry in row) for row in rows]
+
+
+def _under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
+    r"""Rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
+    body = rows[0]
+    for row, above, below in zip(rows[1:], heights, heights[1:], strict=False):
+        body += (r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\") + row
+    return body
 
 
 def _opened(entry: LatexBox) -> LatexBox:

@@ -55,7 +55,16 @@ def narrate(document: Document) -> tuple[Block, ...]:
         derivation.check()
     page = _Page()
     page.blocks.append(_title(document))
-    page.tell([step for derivation in document.derivations for step in derivation.steps])
+    together, apart = _statements(document)
+    page.tell_given(together)
+    for index, derivation in enumerate(document.derivations):
+        if index in apart:
+            page.told.clear()
+            page.tell_given(apart[index])
+        for step in derivation.steps:
+            if not _is_statement(step):
+                page.tell_step(step)
+        page.told |= _inside(derivation.steps)
     page.blocks += _sources(document)
     return _punctuated(page.blocks)
 
@@ -71,7 +80,37 @@ def _sources(document: Document) -> list[Block]:
     if not keys:
         return []
     listed = "; ".join(f"{THEOREMS[key].name}: {THEOREMS[key].source}" for key in keys)
-    return [Paragraph((f"{LABELS['sources']} {listed}.",))]
+    return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",))]
+
+
+def _statements(document: Document) -> tuple[list[Step], dict[int, list[Step]]]:
+    """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
+    seen: dict[Formula, Relation] = {}
+    together: list[Step] = []
+    apart: dict[int, list[Step]] = {}
+    for index, derivation in enumerate(document.derivations):
+        statement = [step for step in derivation.steps if _is_statement(step)]
+        relations = [relation for step in statement for relation in _given_relations(step)]
+        if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
+            apart[index] = statement
+        else:
+            together += statement
+            seen.update((relation.members[0], relation) for relation in relations)
+    return together, apart
+
+
+def _given_relations(step: Step) -> Iterator[Relation]:
+    match step:
+        case Given(relations=relations, silent=False):
+            yield from relations
+        case Section(steps=steps):
+            for inner in steps:
+                yield from _given_relations(inner)
+
+
+def _inside(steps: Sequence[Step]) -> set[Step]:
+    """Return the steps of the sections, which later derivations need not repeat."""
+    return {inner for step in steps if isinstance(step, Section) for inner in step.steps}
 
 
 def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
@@ -98,6 +137,7 @@ class _Page:
         self.blocks: list[Block] = []
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
+        self.told: set[Step] = set()
         self.numbers = [0]
         self.numbered = numbered
 
@@ -171,7 +211,8 @@ class _Page:
         self.blocks.append(Heading(number, filled(title)))
         self.numbers.append(0)
         for step in steps:
-            self.tell_step(step)
+            if isinstance(step, Section) or step not in self.told:
+                self.tell_step(step)
         self.numbers.pop()
 
     def tell_case(self, when: Relation, steps: Sequence[Step], sentence: Sentence | None) -> None:

@@ -136,9 +136,11 @@ class Printer(Glyphs[B]):
 
     def factor(self, formula: Formula, *, last: bool) -> B:
         """One factor; a function's argument is closed off from the factors that follow."""
-        if isinstance(formula, Apply) and not last:
-            return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
-        return self.at_least(Level.FRACTION, self.typeset(formula))
+        if not isinstance(formula, Apply):
+            return self.at_least(Level.FRACTION, self.typeset(formula))
+        if last:
+            return self.typeset(formula)
+        return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
 
     def quotient(self, formula: Quotient) -> B:
         """A fraction; the minus of its numerator stands in front."""

@@ -285,19 +285,17 @@ def size(formula: Formula) -> float:
 
 @lru_cache(maxsize=1024)
 def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
-    """Return the matrix, or 1/d times one without fractions where several entries share a denominator."""
-    broken = [entry for entry in matrix.entries if not entry.denominator.is_one]
-    if len(broken) < 2:
+    """Return the matrix, or 1/d times one without fractions where d is the denominator of most of its entries."""
+    denominators = [entry.denominator for entry in matrix.entries if not entry.is_zero]
+    if len(denominators) < 2 or any(below.is_one for below in denominators):
         return Literal(matrix)
-    below = _least_common_multiple({entry.denominator: None for entry in broken})
-    if below is None:
+    common = _least_common_multiple(dict.fromkeys(denominators))
+    if common is None or 2 * denominators.count(common) < len(denominators):
         return Literal(matrix)
+    front, cleared = spelled(Scalar.of(1) / common, variable), matrix * common
+    inside = sum(size(spelled(entry, variable)) for entry in cleared.entries)
     kept = sum(size(spelled(entry, variable)) for entry in matrix.entries)
-    cleared = sum(size(spelled(entry * below, variable)) for entry in matrix.entries)
-    if cleared + size(spelled(below, variable)) >= kept:
-        return Literal(matrix)
-    front = spelled(Scalar.of(1) / below, variable)
-    return Product((front, Literal(matrix * below)))
+    return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
 
 
 def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:

@@ -56,8 +56,10 @@ def generic(order: int) -> Model:
 def rational(order: int) -> tuple[list[list[Fraction]], list[list[Fraction]], list[int]]:
     """Return the dense rational A and C of `pari/*.gp`, and the poles −1 … −n."""
     indices = range(1, order + 1)
-    A = [[Fraction((i**3 + 7 * i * j**2 + 5 * i * j + 11 * j) % 101 - 50, (3 * i + j**2) % 7 + 1) for j in indices]
-         for i in indices]
+    A = [
+        [Fraction((i**3 + 7 * i * j**2 + 5 * i * j + 11 * j) % 101 - 50, (3 * i + j**2) % 7 + 1) for j in indices]
+        for i in indices
+    ]
     C = [[Fraction((j**3 + 3 * j) % 101 - 50) for j in indices]]
     return A, C, [-k for k in indices]
 
