@@ -5,10 +5,12 @@ Standard output carries the result only; messages go to standard error.
 
 from __future__ import annotations
 
+import errno
 import inspect
 import os
 import re
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -77,13 +79,13 @@ TARGET_HELP = "Write to PATH; its suffix names the format where --format does no
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
 def solve(file: str, task_name: str | None, format_name: str | None, target: str | None) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
-    from symobs import problem  # noqa: PLC0415
     from symobs.method import tasks  # noqa: PLC0415
+    from symobs.problem import parse, validate  # noqa: PLC0415
 
     chosen = _format_of(format_name, target)
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
-    _run(problem.validate(problem.parse(_read(file), file), task_name), chosen, target, some=task_name is not None)
+    _run(validate(parse(_read(file), file), task_name), chosen, target, some=task_name is not None)
 
 
 def _run(found: Any, format_name: str, target: str | None, *, some: bool = False) -> None:
@@ -99,21 +101,27 @@ def _run(found: Any, format_name: str, target: str | None, *, some: bool = False
     unmet = mismatches(results, expect)
     _write(render(found.document(results), format_name), target)
     for line in unmet:
-        click.echo(line, err=True)
+        _say(line)
     if expect:
         sys.exit(EXIT_NO if unmet else 0)
     verdicts = {result.verdict for result in results}
     for result in results:
         if result.verdict in {"no", "undecided"}:
-            click.echo(f"{result.task}: {result.verdict}", err=True)
+            _say(f"{result.task}: {result.verdict}")
     sys.exit(EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0)
+
+
+def _say(text: str) -> None:
+    """Write to standard error; where nobody can read it, the exit code says enough."""
+    with suppress(OSError):
+        click.echo(text, err=True)
 
 
 def _progress(found: Any) -> Any:
     """Return a reporter of the task being run, on a terminal with several tasks only."""
     if not sys.stderr.isatty() or len(found.tasks) < 2:
         return None
-    return lambda name: click.echo(f"{name} …", err=True)
+    return lambda name: _say(f"{name} …")
 
 
 def _format_of(format_name: str | None, target: str | None) -> str:
@@ -147,7 +155,7 @@ def _read(file: str) -> str:
     where = shown(file)
     try:
         if file == "-":
-            raw = sys.stdin.buffer.read(MAX_BYTES + 1)
+            raw: bytes = _binary(sys.stdin).read(MAX_BYTES + 1)
         else:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
@@ -175,10 +183,11 @@ def _write(content: str | bytes, target: str | None = None) -> None:
         if target is not None and target != "-":
             _write_file(data, Path(os.path.realpath(target)))
             return
-        if isinstance(content, bytes) and sys.stdout.isatty():
+        stream = _binary(sys.stdout)
+        if isinstance(content, bytes) and stream.isatty():
             raise UsageError("this format is not text", repair="name a file with -o")
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
+        stream.write(data)
+        stream.flush()
     except BrokenPipeError:  # whoever read this has read enough; what is left in the buffer goes nowhere
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (OSError, ValueError) as error:
@@ -205,6 +214,13 @@ def _write_file(data: bytes, target: Path) -> None:
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+
+
+def _binary(stream: Any) -> Any:
+    """Return the bytes below a standard stream; it is None where it was closed before we began."""
+    if stream is None:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+    return stream.buffer
 
 
 def _umask() -> int:
@@ -245,7 +261,7 @@ def _task_command(task: Any) -> click.Command:
 
 def _run_task(task: Any, options: dict[str, Any]) -> None:
     """Put the options into a problem's tables and run it; undeclared names are real symbols."""
-    from symobs import problem  # noqa: PLC0415
+    from symobs.problem import OPEN, validate  # noqa: PLC0415
 
     def given(group: str) -> dict[str, Any]:
         chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
@@ -255,10 +271,10 @@ def _run_task(task: Any, options: dict[str, Any]) -> None:
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
-    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else problem.OPEN
+    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     try:
-        _run(problem.validate(data), chosen, options["target"])
+        _run(validate(data), chosen, options["target"])
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
@@ -347,7 +363,7 @@ def main() -> NoReturn:
     except SymobsError as error:
         lines = str(error).split("\n")
         more = [f"… and {len(lines) - _MOST_LINES} more"] if len(lines) > _MOST_LINES else []
-        click.echo("\n".join(lines[:_MOST_LINES] + more), err=True)
+        _say("\n".join(lines[:_MOST_LINES] + more))
         several = error.errors if isinstance(error, ProblemErrors) else (error,)
         code = max(found.exit_code for found in several)
     except click.exceptions.Exit as leaving:
@@ -356,9 +372,9 @@ def main() -> NoReturn:
         error.show()
         code = UsageError.exit_code
     except (KeyboardInterrupt, click.exceptions.Abort):
-        click.echo("interrupted", err=True)
+        _say("interrupted")
         code = EXIT_INTERRUPTED
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
-        click.echo(f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this", err=True)
+        _say(f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this")
         code = EXIT_BUG
     sys.exit(code)

@@ -49,6 +49,7 @@ class Result:
     certificates: tuple[Certificate, ...] = field(init=False)
 
     task: ClassVar[str]
+    page_method = "auto"
 
     def __post_init__(self) -> None:
         """Check every claim; raises `CertificateRejected`."""
@@ -103,7 +104,8 @@ class Result:
         """The exact conditions under which the answer holds, what the declared signs imply left out."""
         known = {condition.expression for condition in self.domain}
         factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
-        return (*self.domain, *(Condition("claim", factor) for factor in factors if factor not in known))
+        new = [factor for factor in factors if factor not in known and self.plant.variable not in factor.names]
+        return (*self.domain, *(Condition("claim", factor) for factor in new))
 
     @property
     def _binding_conditions(self) -> tuple[Condition, ...]:
@@ -114,9 +116,9 @@ class Result:
         """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""
         return replace(self, answer={**self.answer, name: value})
 
-    def renamed(self, requested: str) -> Self:
-        """Return this result under the method name that was asked for; `auto` writes the page it finds best."""
-        object.__setattr__(self, "method", requested)
+    def asked(self, method_name: str) -> Self:
+        """Keep the method name that was asked for; `auto` leaves the page free to be the most readable one."""
+        object.__setattr__(self, "page_method", method_name)
         return self
 
     # -- faces ---------------------------------------------------------------------------------------------------------
@@ -260,9 +262,13 @@ def _discover(package: str) -> None:
     if package in _DISCOVERED:
         return
     _DISCOVERED.add(package)
-    module = importlib.import_module(package)
-    for found in pkgutil.iter_modules(module.__path__):
+    for found in _modules(package):
         importlib.import_module(f"{package}.{found.name}")
+
+
+def _modules(package: str) -> Iterator[pkgutil.ModuleInfo]:
+    """Yield the modules of a package, without importing them."""
+    yield from pkgutil.iter_modules(importlib.import_module(package).__path__)
 
 
 _DISCOVERED: set[str] = set()
@@ -300,9 +306,18 @@ def formats() -> Mapping[str, Any]:
 
 def render(document: Document, format_name: str) -> str | bytes:
     """Return a document in a format; raises `UsageError` naming the formats that exist."""
-    known = formats()
-    if format_name not in known:
-        message = f"{format_name[:40]!r} is not an output format"
-        raise UsageError(message, repair=f"use one of {', '.join(sorted(known))}")
-    rendered: str | bytes = known[format_name].render(document)
+    rendered: str | bytes = format_named(format_name).render(document)
     return rendered
+
+
+def format_named(name: str) -> Any:
+    """Return a format; raises `UsageError` naming those that exist.
+
+    A module with the format's name is looked at first, so that a run which needs one format does not pay for all.
+    """
+    if name.isidentifier() and name in {found.name for found in _modules(symobs.FORMAT_PACKAGE)}:
+        importlib.import_module(f"{symobs.FORMAT_PACKAGE}.{name}")
+    if name not in _FORMATS and name not in formats():
+        message = f"{name[:40]!r} is not an output format"
+        raise UsageError(message, repair=f"use one of {', '.join(sorted(_FORMATS))}")
+    return _FORMATS[name]

@@ -40,10 +40,9 @@ def strata(
             when = (*when, *(Condition("route", f) for f in vanishing_factors([lead], signs)))
         substitution = {name: value}
         try:
-            restricted = plant.substitute(substitution)
-        except ZeroDivisionError:
+            found.append(Case(when, substitution, solve(plant.substitute(substitution), substitution)))
+        except ZeroDivisionError:  # there is no plant, or nothing is asked for
             continue
-        found.append(Case(when, substitution, solve(restricted, substitution)))
     return tuple(found)
 
 

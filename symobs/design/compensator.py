@@ -223,8 +223,8 @@ def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:
 @method("compensator/separation", source="S0, section 4.3: separation principle, (4.23)-(4.29)")
 def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
     """Design K as if x were known, design the observer, use x̂ for x."""
-    feedback = StateFeedbackDesign.of(plant, control, "auto")
-    estimator = ObserverDesign.of(plant, observer, "auto")
+    feedback = StateFeedbackDesign.of(plant, control, "ackermann")
+    estimator = ObserverDesign.of(plant, observer, "ackermann")
     return CompensatorDesign.of(feedback, estimator, "separation")
 
 
@@ -250,6 +250,7 @@ def compensator(
     closed_loop_matrix_estimate in (x, x̂).  Raises `InputError` for wrong poles or shapes.
     Source: S0, section 4.3, (4.23)-(4.29).
     """
+    plant = plant.knowing(control_poles, control_polynomial, observer_poles, observer_polynomial)
     plant.require("B", "C", task="compensator")
     require_single(plant.inputs, "input", "compensator")
     require_single(plant.outputs, "output", "compensator")
@@ -263,4 +264,4 @@ def compensator(
     estimate = desired_polynomial(
         plant, observer_poles, observer_polynomial, names=("observer_poles", "observer_polynomial")
     )
-    return chosen.solve(plant, control, estimate).renamed(method)
+    return chosen.solve(plant, control, estimate).asked(method)

@@ -70,7 +70,7 @@ class ObserverDesign(GainDesign):
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
         with page.section("observer"):
-            write_gain(page, self, OBSERVER, page_style(self.method, self.plant))
+            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant))
             if self.answer["L"] is not None:
                 write_observer(page)
 
@@ -147,6 +147,7 @@ def observer(
     gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
     Source: S0, (4.18)-(4.20) and Theorem 4.4.
     """
+    plant = plant.knowing(poles, polynomial, L)
     plant.require("C", task="observer")
     require_single(plant.outputs, "output", "observer")
     reject_both("L", L, poles, polynomial)
@@ -154,4 +155,4 @@ def observer(
         return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("observer", method, "ackermann").solve(plant, desired).renamed(method)
+    return choose("observer", method, "ackermann").solve(plant, desired).asked(method)

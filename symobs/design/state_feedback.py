@@ -69,7 +69,7 @@ class StateFeedbackDesign(GainDesign):
         """Write data and gain."""
         given(page, ("control", self.desired))
         with page.section("state_feedback"):
-            write_gain(page, self, FEEDBACK, page_style(self.method, self.plant))
+            write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant))
 
 
 @method("state_feedback/canonical_form", source="S0, Examples 4.1 and 4.2 (controllable canonical form)")
@@ -107,6 +107,7 @@ def state_feedback(
     gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
     Source: S0, Example 4.2 and the pole assignment theorem.
     """
+    plant = plant.knowing(poles, polynomial, K)
     plant.require("B", task="state_feedback")
     require_single(plant.inputs, "input", "state_feedback")
     reject_both("K", K, poles, polynomial)
@@ -114,4 +115,4 @@ def state_feedback(
         return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("state_feedback", method, "ackermann").solve(plant, desired).renamed(method)
+    return choose("state_feedback", method, "ackermann").solve(plant, desired).asked(method)

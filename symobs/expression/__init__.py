@@ -12,7 +12,7 @@ import numbers
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ProblemErrors, ShapeMismatch
+from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.expression.budget import common_denominator_excess
 from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
 
 _LONGEST_REPAIR = 30
-_KINDS = {bool: "true or false", dict: "a table", int: "a number", list: "a list", type(None): "nothing"}
+_KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
 
 
 def parse_scalar(value: object, names: Names = None, *, variable: str | None = None, where: str = "") -> Scalar:
@@ -70,8 +70,7 @@ def parse_poles(value: object, names: Names = None, *, where: str = "") -> tuple
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
-    places = [(pole, f"{where}[{index}]") for index, pole in enumerate(listed)]
-    return tuple(Complex.of(pole) for pole in _entries(places, scope))
+    return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
 
 
 def parse_polynomial(value: object, variable: str, names: Names = None, *, where: str = "") -> Scalar:
@@ -182,23 +181,7 @@ def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]
         raise ShapeMismatch(unequal[0], where=where, repair=EQUAL_ROWS, row=unequal[1])
     if not cells or not cells[0]:
         raise ShapeMismatch("the matrix has no entry", where=where, repair="write for example [[0, 1], [0, -1]]")
-    places = [(cell, _cell(where, i, j)) for i, row in enumerate(cells) for j, cell in enumerate(row)]
-    entries, width = _entries(places, scope), len(cells[0])
-    return [entries[start : start + width] for start in range(0, len(entries), width)]
-
-
-def _entries(places: Sequence[tuple[object, str]], scope: Scope) -> list[Number]:
-    """Return the number at each place; raises all errors together."""
-    found: list[Number] = []
-    errors: list[InputError] = []
-    for value, where in places:
-        try:
-            found.append(_entry(value, scope, where))
-        except InputError as error:
-            errors.append(error)
-    if errors:
-        raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))
-    return found
+    return [[_entry(cell, scope, _cell(where, i, j)) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
 
 
 def _as_list(value: object) -> Sequence[object] | None:

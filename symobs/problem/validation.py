@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 from unicodedata import category
 
@@ -15,13 +16,13 @@ from symobs.method import Document, Result, Task, tasks
 from symobs.problem.keys import PLANT, TOP
 from symobs.problem.tables import Decimal
 from symobs.specification import read_poles
-from symobs.system import StateSpace, Symbols, read_matrix
+from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time
 
 _MAX_SYMBOLS = 400
 _MAX_TEXT = 2000
 _MAX_UNKNOWN = 20
-_EXAMPLE = 'A = "[0 1; 0 -1]"'
+_MAX_CELLS = 1000
 
 #: In place of a table of symbols: every well-formed name is a real symbol, as on the command line without a file.
 OPEN = object()
@@ -49,8 +50,8 @@ class Problem:
             keywords = {name: value for name, value in self.specification.items() if name in task.keywords}
             with errors:
                 results.append(task.function(self.plant, **keywords))
-        if errors.found:  # else what is expected is read when it is held against the results
-            errors.found += unreadable(self.expect, self.plant.symbols.names, self.plant.variable)
+        if errors.found:
+            _read_alone(self.specification, self.expect, self.plant.symbols, self.plant.variable, errors)
             raise errors.together()
         return tuple(results)
 
@@ -77,6 +78,11 @@ class _Errors:
         if isinstance(error, SymobsError) and not isinstance(error, ProblemErrors):
             self.found.append(error)
         return isinstance(error, SymobsError)
+
+    def add_elsewhere(self, others: _Errors) -> None:
+        """Add those of the others that stand at a place nothing was said of yet."""
+        taken = {error.where for error in self.found}
+        self.found += [error for error in others.found if error.where not in taken]
 
     def together(self) -> ProblemErrors:
         """Return all of them, each once."""
@@ -109,8 +115,7 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
     else:
         given = data.get("plant")
         variable = "z" if isinstance(given, Mapping) and given.get("dt", 0) not in (0, False) else "s"
-        _read_alone(specification, symbols, variable, errors)
-        errors.found += unreadable(expect, symbols.names, variable)
+        _read_alone(specification, expect, symbols, variable, errors)
     raise errors.together()
 
 
@@ -226,11 +231,15 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> StateS
         with errors:
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
     elif "A" not in table:
-        errors.note("the state matrix is missing", "plant.A", f"write {_EXAMPLE} under [plant]")
+        errors.note("the state matrix is missing", "plant.A", 'give it, for example A = "[0 1; 0 -1]"')
     else:
         with errors:
             B, C, D = (table.get(name) for name in "BCD")
             return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
+        others = _Errors()
+        for name in given:
+            _read_cells(table[name], symbols, f"plant.{name}", others)
+        errors.add_elsewhere(others)
     return None
 
 
@@ -249,16 +258,34 @@ def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _E
     return found
 
 
-def _read_alone(specification: Mapping[str, Any], symbols: Symbols, variable: str, errors: _Errors) -> None:
-    """Note which values of a specification cannot be read even by themselves, where no plant or no task is at hand."""
+def _read_cells(value: object, symbols: Symbols, where: str, errors: _Errors) -> None:
+    """Note every cell of a matrix in lists that cannot be read; whoever reads the whole matrix stops at the first."""
+    rows = value if isinstance(value, list) else []
+    cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
+    for i, j, cell in islice(cells, _MAX_CELLS):
+        with errors:
+            read_scalar(cell, symbols, f"{where}[{i}][{j}]")
+
+
+def _read_alone(
+    specification: Mapping[str, Any], expect: Mapping[str, Any], symbols: Symbols, variable: str, errors: _Errors
+) -> None:
+    """Note what cannot be read even by itself: where there is an error already, the tasks do not come to read it."""
     kinds = {name: kind for task in tasks().values() for name, kind in task.keywords.items()}
+    others = _Errors()
     for name, value in specification.items():
         where = f"specification.{name}"
-        with errors:
+        with others:
             match kinds[name]:
                 case "Poles":
+                    for i, pole in enumerate(value[:_MAX_CELLS] if isinstance(value, list) else ()):
+                        with others:
+                            (read_poles if isinstance(pole, str) else read_scalar)(pole, symbols, f"{where}[{i}]")
                     read_poles(value, symbols, where)
                 case "PolynomialText":
                     parse_polynomial(value, variable, symbols.names, where=where)
                 case "GainText":
+                    _read_cells(value, symbols, where, others)
                     read_matrix(value, symbols, where)
+    others.found += unreadable(expect, symbols.names, variable)
+    errors.add_elsewhere(others)

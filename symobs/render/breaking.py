@@ -16,6 +16,7 @@ from symobs.formula import (
     Block,
     Derivative,
     Formula,
+    Letter,
     Literal,
     Negative,
     Power,
@@ -25,7 +26,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.render.glyphs import B, Level
-from symobs.render.printer import factors, signed_terms
+from symobs.render.printer import factors, shifted, signed_terms
 from symobs.render.scalars import decimal, is_leaf, spelled, spelled_matrix
 
 if TYPE_CHECKING:
@@ -94,8 +95,8 @@ class Breaker(Generic[B]):
                 return self._product(written, room)
             case Quotient() as written:
                 return self._quotient(written, room)
-            case Literal() | Block():
-                return self._matrix(formula, room)
+            case Literal() | Block() as written:
+                return self._matrix(written, room)
             case Power(base, exponent) if exponent != 1:
                 *body, last = self._operand(base, Level.ATOM, room - 1)
                 return [*body, replace(last, box=self.printer.raised(last.box, exponent))]
@@ -103,9 +104,10 @@ class Breaker(Generic[B]):
                 *body, last = self._operand(operand, Level.ATOM, room - 1)
                 return [*body, replace(last, box=self.printer.transposed(last.box))]
             case Apply(function, argument):
-                first, *body = self._argument(argument, room - self.printer.applied(function, self.printer.dot()).width)
+                name = self.printer.applied(function, self.printer.identity())
+                first, *body = self._argument(argument, room - name.width)
                 return [replace(first, box=self.printer.applied(function, first.box)), *body]
-            case Derivative(operand) if not self.printer.discrete:
+            case Derivative(operand):
                 first, *body = self._operand(operand, Level.FRACTION, room - 2)
                 return [replace(first, box=self.printer.rate(first.box)), *body]
         return [Piece(self.printer.typeset(formula))]
@@ -115,6 +117,8 @@ class Breaker(Generic[B]):
         match formula:
             case Power(base, 1):
                 return self._written(base)
+            case Derivative(operand) if self.printer.discrete and not isinstance(operand, Letter):
+                return self._written(shifted(operand))
             case Literal(Scalar() as value):
                 return formula if is_leaf(value) else spelled(value, self.printer.variable)
             case Literal(Matrix() as table):
@@ -164,8 +168,11 @@ class Breaker(Generic[B]):
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
         pieces: list[Piece[B]] = []
         is_after_fraction = False
-        for factor in factors(body, self.printer.variable):
-            first, *rest = self._operand(factor, Level.FRACTION, room - 2)
+        parts = factors(body, self.printer.variable)
+        for index, factor in enumerate(parts):
+            whole = self.printer.factor(factor, last=index + 1 == len(parts))
+            fits = whole.width <= room - 2
+            first, *rest = [Piece(whole)] if fits else self._operand(factor, Level.FRACTION, room - 2)
             first = self._following(pieces, first)
             joined = self._together(pieces[-1], first) if is_after_fraction else None
             if joined is not None and joined.box.width <= room - 2:

@@ -84,7 +84,7 @@ def _tikz_loop(labels: Labels, printer: LatexPrinter) -> str:
     beyond = overhang(labels)
     marks = {"before": f"{_BEFORE + beyond:.3g}", "after": f"{_AFTER + beyond:.3g}"}
     formulas = {**labels, "u": Letter("u"), "y": Letter("y")}
-    marks |= {place: printer.inline(formula) for place, formula in formulas.items()}
+    marks |= {place: printer.unbroken(formula) for place, formula in formulas.items()}
     picture = _TIKZ_LOOP
     for place, mark in marks.items():
         picture = picture.replace(f"@{place}@", mark)

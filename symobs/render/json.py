@@ -45,6 +45,9 @@ def result_object(result: Result) -> dict[str, Any]:
 def _symbols(result: Result) -> dict[str, str]:
     """Return every symbol of the result with its sign."""
     names = set(result.plant.symbols.signs) | set(result.plant.field.names)
+    for value in result.answer.values():
+        names |= getattr(value, "names", frozenset())
+    names.discard(result.plant.variable)
     return {name: result.plant.symbols.sign(name) for name in sorted(names)}
 
 

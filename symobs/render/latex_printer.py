@@ -53,10 +53,12 @@ class LatexPrinter(Printer[LatexBox]):
         *,
         discrete: bool = False,
         width: float = widths.TEXT_WIDTH,
+        paged: bool = True,
     ) -> None:
-        """Print as `Printer` does, in lines of `width` em."""
+        """Print as `Printer` does, in lines of `width` em; `paged` lets TeX break long displays over pages."""
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
+        self.paged = paged
         self.running = False
 
     def inline(self, item: Formula | Relation) -> str:
@@ -81,18 +83,18 @@ class LatexPrinter(Printer[LatexBox]):
         breaks = [r"\\[3pt]" if max(a.right.height, b.right.height) else r"\\" for a, b in pairwise(rows)]
         body = "\n".join(line + after for line, after in zip(lines, [*breaks, ""], strict=True))
         written = f"\\begin{{{environment}}}\n{body}\n\\end{{{environment}}}"
-        return f"{{\\allowdisplaybreaks\n{written}}}" if len(rows) > _PAGE_OF_ROWS else written
+        return f"{{\\allowdisplaybreaks\n{written}}}" if self.paged and len(rows) > _PAGE_OF_ROWS else written
 
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
     def letter(self, name: str, mark: str) -> LatexBox:
-        r"""A letter; `\dot x`, `x_{k}`, `x_{k+1}`."""
+        r"""A letter; `\dot x`, `x_k`, `x_{k+1}`."""
         known = name in LETTERS
         source = letter_latex(name, self.variable) if known else symbol_latex(name, self.symbols.get(name))
         if mark == "dot":
             source = rf"\dot {source}" if re.fullmatch(r"\w", source) else rf"\dot{{{source}}}"
         elif mark:
-            source = f"{source}_{{{mark}}}"
+            source = f"{source}_{mark}" if len(mark) == 1 else f"{source}_{{{mark}}}"
         return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def leaf(self, value: Scalar) -> LatexBox:
@@ -153,8 +155,7 @@ class LatexPrinter(Printer[LatexBox]):
         r"""`\frac`; in running text a slash where one part is long."""
         width = max(above.width, below.width)
         if self.running and (width > _NARROW or min(above.level, below.level) < Level.PRODUCT):
-            slash = LatexBox(0.5, Level.SUM, "/")
-            parts = [self.at_least(Level.PRODUCT, above), slash, self.at_least(Level.POWER, below)]
+            parts = [self.at_least(Level.PRODUCT, above), self.slash(), self.at_least(Level.POWER, below)]
             return self.joined(parts, Level.PRODUCT)
         source = rf"\frac{{{above.source}}}{{{below.source}}}"
         return LatexBox(width + widths.FRACTION_BAR, Level.FRACTION, source, 1)
@@ -195,7 +196,8 @@ class LatexPrinter(Printer[LatexBox]):
         elif columns <= _MATRIX_COLUMNS:
             source = rf"\begin{{bmatrix}}{body}\end{{bmatrix}}"
         else:
-            source = rf"\left[\begin{{array}}{{@{{}}*{{{columns}}}{{c}}@{{}}}}{body}\end{{array}}\right]"
+            source = rf"\left[\begin{{array}}{{{'c' * columns}}}{body}\end{{array}}\right]"
+            width += widths.COLUMN_GAP
         return LatexBox(width, Level.ATOM, source, max(2, len(rows)))
 
     def rate(self, box: LatexBox) -> LatexBox:
@@ -222,8 +224,8 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(0.9, Level.SUM, r"{}\cdot ")
 
     def slash(self) -> LatexBox:
-        r"""`\big/`."""
-        return LatexBox(0.6, Level.SUM, r"\big/")
+        """A slash."""
+        return LatexBox(0.5, Level.SUM, "/")
 
     def digits(self, run: str) -> LatexBox:
         """A part of a number."""
@@ -259,8 +261,8 @@ class LatexPrinter(Printer[LatexBox]):
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         sources = [rf"\displaystyle {line.source}" for line in indented]
         body = _under_one_another(sources, [2 * line.height for line in lines])
-        width = max(line.width for line in indented)
-        return LatexBox(width, Level.SUM, rf"\begin{{array}}{{@{{}}l@{{}}}}{body}\end{{array}}", 2)
+        width = max(line.width for line in indented) + widths.COLUMN_GAP
+        return LatexBox(width, Level.SUM, rf"\begin{{array}}{{l}}{body}\end{{array}}", 2)
 
     def punctuation(self, mark: str) -> LatexBox:
         """A comma or full stop."""

@@ -143,7 +143,8 @@ class Layout(Generic[B]):
     def _broken(self, sign: B, member: Formula, room: float, head: B | None, *, framed: bool) -> list[B]:
         """The lines of one link; a frame makes one box of them while they are few."""
         printer, indent = self.printer, self.printer.indent()
-        space = room - max(sign.width, indent.width) - (self._frame() + indent.width if framed else 0.0)
+        around = printer.framed(printer.stacked([indent])).width if framed else 0.0
+        space = room - max(sign.width, indent.width) - around
         lines = self.breaker.lines(self.breaker.pieces(member, space, head), space, space)
         if framed and len(lines) <= _LONGEST_FRAME:
             answer = lines[0] if len(lines) == 1 else printer.stacked(lines)

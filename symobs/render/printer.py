@@ -132,7 +132,7 @@ class Printer(Glyphs[B]):
     def factor_boxes(self, formula: Formula) -> list[B]:
         """The factors of a product, each parenthesised where it must be."""
         parts = factors(formula, self.variable)
-        return [self.factor(part, last=part is parts[-1]) for part in parts]
+        return [self.factor(part, last=index + 1 == len(parts)) for index, part in enumerate(parts)]
 
     def factor(self, formula: Formula, *, last: bool) -> B:
         """One factor; a function's argument is closed off from the factors that follow."""
@@ -170,7 +170,7 @@ class Printer(Glyphs[B]):
         if self.discrete:
             if isinstance(operand, Letter):
                 return self.letter(operand.name, "k+1")
-            return self.typeset(with_children(operand, tuple(Derivative(part) for part in children(operand))))
+            return self.typeset(shifted(operand))
         if isinstance(operand, Letter):
             return self.letter(operand.name, "dot")
         return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)))
@@ -190,6 +190,11 @@ class Printer(Glyphs[B]):
     def at_least(self, level: Level, box: B) -> B:
         """Parenthesise a box that binds less tightly."""
         return box if box.level >= level else self.grouped(box)
+
+
+def shifted(formula: Formula) -> Formula:
+    """Return the formula of the next instant, the shift carried one level inwards."""
+    return with_children(formula, tuple(Derivative(part) for part in children(formula)))
 
 
 def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[tuple[bool, Formula]]:

@@ -48,8 +48,8 @@ class StateSpace:
                 parts[name] = None if value is None else read_matrix(value, known, f"plant.{name}")
             except SymobsError as error:
                 errors.append(error)
-        if not errors:
-            errors = _shape_errors(parts)
+        if "A" in parts:
+            errors += _shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         if errors:
             _raise_all(errors)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
@@ -126,6 +126,16 @@ class StateSpace:
         C = m.C.substitute(values) if m.has_output else None
         D = m.D.substitute(values) if m.has_input and m.has_output else None
         return StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+
+    def knowing(self, *values: object) -> StateSpace:
+        """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
+        symbols = self.symbols.seen(list(values))
+        if symbols is self.symbols:
+            return self
+        m = self.matrices
+        told = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=symbols)
+        told.matrices, told.time, told.origin = m, self.time, self.origin
+        return told
 
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices a task uses are given."""

@@ -1,7 +1,7 @@
 """A second opinion on derivations: plain SymPy matrices, and of symobs nothing but the shape of its formula tree.
 
-`Reader` walks the steps of a derivation, gives every letter a value of its own making, and compares all members of every
-line.  It works with symbols, or at one rational point where the expressions are too large for SymPy.
+`Reader` walks the steps of a derivation, gives every letter a value of its own making, and compares all members of
+every line.  It works with symbols, or at one rational point where the expressions are too large for SymPy.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from symobs.formula import (
     Together,
     Transpose,
 )
+from tests.problems_by_hand import compare, inverse, is_stable, is_zero, polynomial_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -46,64 +47,7 @@ if TYPE_CHECKING:
 Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free signal -> its coefficient matrix
 
 
-# -- plain linear algebra ------------------------------------------------------------------------------------------------
-
-
-def is_zero(expression: Any) -> bool:
-    """Whether a rational expression is 0."""
-    numerator = sympy.together(expression).as_numer_denom()[0]
-    return bool(sympy.expand(numerator) == 0)
-
-
-def observability_matrix(A: Value, C: Value) -> Value:
-    return sympy.Matrix.vstack(*[C * A**k for k in range(A.rows)])
-
-
-def polynomial_at(polynomial: Any, variable: sympy.Symbol, A: Value) -> Value:
-    total = sympy.zeros(A.rows, A.rows)
-    for coefficient in sympy.Poly(polynomial, variable).all_coeffs():
-        total = total * A + coefficient * sympy.eye(A.rows)
-    return total
-
-
-def inverse(matrix: Value) -> Value:
-    """Return adj / det: no pivot has to be known not to vanish."""
-    return (matrix.adjugate() / matrix.det(method="berkowitz")).applyfunc(sympy.cancel)
-
-
-def ackermann(A: Value, C: Value, polynomial: Any, variable: sympy.Symbol) -> Value:
-    """Return φ(A) 𝒪⁻¹ eₙ."""
-    last = sympy.eye(A.rows)[:, -1]
-    return (polynomial_at(polynomial, variable, A) * (inverse(observability_matrix(A, C)) * last)).applyfunc(
-        sympy.cancel
-    )
-
-
-def characteristic(A: Value, s: Any) -> Any:
-    return sympy.expand((s * sympy.eye(A.rows) - A).det(method="berkowitz"))
-
-
-def response(A: Value, B: Value, C: Value, s: Any) -> Any:
-    """Return C (sI − A)⁻¹ B of one input and one output."""
-    pencil = s * sympy.eye(A.rows) - A
-    return sympy.cancel((C * pencil.adjugate() * B)[0] / pencil.det(method="berkowitz"))
-
-
-def canonical_transformation(A: Value, test: Value, s: Any) -> Value:
-    """Return the controllability matrix times the Hankel matrix of χ, constant coefficient excluded."""
-    order = A.rows
-    ascending = sympy.Poly(characteristic(A, s), s).all_coeffs()[::-1]
-    hankel = sympy.Matrix(order, order, lambda i, j: ascending[i + j + 1] if i + j < order else 0)
-    return test * hankel
-
-
-def is_stable(polynomial: Any, variable: sympy.Symbol, *, discrete: bool) -> bool:
-    """Whether all roots of a polynomial with numbers for coefficients are stable, by numeric roots."""
-    roots = sympy.Poly(polynomial, variable).nroots(n=30, maxsteps=500)
-    return all(abs(r) < 1 if discrete else sympy.re(r) < 0 for r in roots)
-
-
-# -- reading what symobs wrote -------------------------------------------------------------------------------------------
+# -- reading what symobs wrote -----------------------------------------------------------------------------------------
 
 
 def facts_in(item: object) -> Iterator[Fact]:
@@ -148,17 +92,17 @@ def sympy_root(root: Root, names: Mapping[str, Any]) -> Any:
 
 @dataclass
 class Tally:
-    """How many values were compared, and what was only introduced or spoken of, so that there was nothing to compare."""
+    """How many values were compared; letters without an independent value; formulas that sentences only mention."""
 
     compared: int = 0
-    introduced: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
     spoken: list[tuple[str, Value]] = field(default_factory=list)
 
 
 class Reader:
     """A walk through one derivation.
 
-    known     what letters must be worth, found without symobs: letter -> one value, or several of which one must fit
+    known     what letters must be worth, found without symobs; φ at a matrix is known as `phi_at`
     names     generators replaced on sight: nothing, or the coordinates of a rational point
     samples   parameter points allowed by the declared signs, for what no equation states
     """
@@ -166,7 +110,7 @@ class Reader:
     def __init__(
         self,
         derivation: Derivation,
-        known: Mapping[str, tuple[Value, ...]],
+        known: Mapping[str, Value],
         samples: Callable[[], Iterable[Mapping[str, Any]]],
         names: Mapping[str, Any] | None = None,
     ) -> None:
@@ -191,7 +135,7 @@ class Reader:
         """Yield the sample points where everything assumed so far holds."""
         return (point for point in self._samples() if all(value.subs(point) != 0 for value in self.assumed))
 
-    # -- steps -----------------------------------------------------------------------------------------------------------
+    # -- steps ---------------------------------------------------------------------------------------------------------
 
     def step(self, step: Step) -> None:
         match step:
@@ -260,7 +204,7 @@ class Reader:
                 self.settle(f"{name}'", values[0])
                 self.rates[name] = rest[0]
             case Literal(symbol):
-                (name,) = symbol.names  # type: ignore[union-attr]
+                (name,) = symbol.names
                 self.settle(name, values[0])
                 self.names[name] = values[0]
             case Letter(name):
@@ -273,14 +217,14 @@ class Reader:
                 raise AssertionError(relation)
 
     def settle(self, name: str, value: Value) -> None:
-        """Hold a new letter against its independent value; one that has none is a definition."""
+        """Hold a new letter against its independent value."""
         if name in self.known:
-            assert any(self.agree(value, wanted) for wanted in self.known[name]), (name, value)
+            assert self.agree(value, self.known[name]), (name, value)
             self.tally.compared += 1
         else:
-            self.tally.introduced.append(name)
+            self.tally.unknown.append(name)
 
-    # -- facts -----------------------------------------------------------------------------------------------------------
+    # -- facts ---------------------------------------------------------------------------------------------------------
 
     def fact(self, fact: Fact) -> None:
         match fact:
@@ -347,7 +291,7 @@ class Reader:
         difference = left - right
         return all(map(is_zero, difference)) if shape(difference) else is_zero(difference)
 
-    # -- formulas --------------------------------------------------------------------------------------------------------
+    # -- formulas ------------------------------------------------------------------------------------------------------
 
     def value(self, formula: Formula) -> Value:
         match formula:
@@ -396,7 +340,7 @@ class Reader:
             case "rank":
                 point = next(iter(self.samples()))
                 return sympy.Integer(value.subs(point).rank())
-        return polynomial_at(self.known[name][0], self.symbol, value)
+        return polynomial_at(self.known[name], self.symbol, value)
 
     def rate(self, signal: dict[str, Value]) -> Value:
         return reduce(plus, (times(part, self.value(self.rates[name])) for name, part in signal.items()))
@@ -443,16 +387,3 @@ def stacked(rows: list[list[Value]]) -> Value:
         }
     blocks = [[part if shape(part) else sympy.Matrix([[part]]) for part in row] for row in rows]
     return sympy.Matrix.vstack(*[sympy.Matrix.hstack(*row) for row in blocks])
-
-
-def compare(difference: Any, operator: str) -> bool:
-    """Tell whether difference operator 0 holds for a number."""
-    return bool(
-        {
-            "!=": difference != 0,
-            "<": difference < 0,
-            ">": difference > 0,
-            "<=": difference <= 0,
-            ">=": difference >= 0,
-        }[operator]
-    )

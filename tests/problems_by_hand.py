@@ -1,0 +1,234 @@
+"""The worked examples written out a second time, by hand, with their answers by textbook formulas in plain SymPy.
+
+Nothing in this file asks symobs for anything.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import sympy
+from sympy import Matrix, Rational, symbols
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+# -- linear algebra ----------------------------------------------------------------------------------------------------
+
+
+def is_zero(expression: Any) -> bool:
+    """Whether a rational expression is 0."""
+    numerator = sympy.together(expression).as_numer_denom()[0]
+    return bool(sympy.expand(numerator) == 0)
+
+
+def observability_matrix(A: Any, C: Any) -> Any:
+    return sympy.Matrix.vstack(*[C * A**k for k in range(A.rows)])
+
+
+def polynomial_at(polynomial: Any, variable: sympy.Symbol, A: Any) -> Any:
+    total = sympy.zeros(A.rows, A.rows)
+    for coefficient in sympy.Poly(polynomial, variable).all_coeffs():
+        total = total * A + coefficient * sympy.eye(A.rows)
+    return total
+
+
+def inverse(matrix: Any) -> Any:
+    """Return adj / det: no pivot has to be known not to vanish."""
+    return (matrix.adjugate() / matrix.det(method="berkowitz")).applyfunc(sympy.cancel)
+
+
+def ackermann(A: Any, C: Any, polynomial: Any, variable: sympy.Symbol) -> Any:
+    """Return φ(A) 𝒪⁻¹ eₙ."""
+    last = sympy.eye(A.rows)[:, -1]
+    return (polynomial_at(polynomial, variable, A) * (inverse(observability_matrix(A, C)) * last)).applyfunc(
+        sympy.cancel
+    )
+
+
+def characteristic(A: Any, s: Any) -> Any:
+    return sympy.expand((s * sympy.eye(A.rows) - A).det(method="berkowitz"))
+
+
+def response(A: Any, B: Any, C: Any, s: Any) -> Any:
+    """Return C (sI − A)⁻¹ B of one input and one output."""
+    pencil = s * sympy.eye(A.rows) - A
+    return sympy.cancel((C * pencil.adjugate() * B)[0] / pencil.det(method="berkowitz"))
+
+
+def canonical_transformation(A: Any, test: Any, s: Any) -> Any:
+    """Return the controllability matrix times the Hankel matrix of χ, constant coefficient excluded."""
+    order = A.rows
+    ascending = sympy.Poly(characteristic(A, s), s).all_coeffs()[::-1]
+    hankel = sympy.Matrix(order, order, lambda i, j: ascending[i + j + 1] if i + j < order else 0)
+    return test * hankel
+
+
+def is_stable(polynomial: Any, variable: sympy.Symbol, *, discrete: bool) -> bool:
+    """Whether all roots of a polynomial with numbers for coefficients are stable, by numeric roots."""
+    roots = sympy.Poly(polynomial, variable).nroots(n=30, maxsteps=500)
+    return all(abs(r) < 1 if discrete else sympy.re(r) < 0 for r in roots)
+
+
+def compare(difference: Any, operator: str) -> bool:
+    """Tell whether difference operator 0 holds for a number."""
+    match operator:
+        case "!=":
+            return bool(difference != 0)
+        case "<":
+            return bool(difference < 0)
+        case ">":
+            return bool(difference > 0)
+        case "<=":
+            return bool(difference <= 0)
+        case ">=":
+            return bool(difference >= 0)
+    raise AssertionError(operator)
+
+
+# -- problems ----------------------------------------------------------------------------------------------------------
+
+s, z = symbols("s z")
+omega, b, p, q, h1, h2, k1, k2, c, d = symbols("omega b p q h1 h2 k1 k2 c d")
+M, m, l, g = symbols("M m l g")
+p1, p2, p3, p4, q1, q2, q3, q4 = symbols("p1:5 q1:5")
+
+
+@dataclass(frozen=True)
+class Hand:
+    """One worked example by hand: the plant, and the polynomials or gains its specification asks for."""
+
+    A: Any
+    C: Any = None
+    B: Any = None
+    D: Any = None
+    control: Any = None
+    observer: Any = None
+    K: Any = None
+    L: Any = None
+    signs: Mapping[str, str] = field(default_factory=dict)
+    variable: Any = s
+    large: bool = False
+
+    @property
+    def discrete(self) -> bool:
+        return bool(self.variable == z)
+
+    def at(self, point: Mapping[Any, Any]) -> Hand:
+        """Return the problem at one point of its parameters."""
+
+        def moved(value: Any) -> Any:
+            return None if value is None else value.subs(point)
+
+        return Hand(
+            A=moved(self.A),
+            B=moved(self.B),
+            C=moved(self.C),
+            D=moved(self.D),
+            control=moved(self.control),
+            observer=moved(self.observer),
+            K=moved(self.K),
+            L=moved(self.L),
+            signs=self.signs,
+            variable=self.variable,
+        )
+
+    # -- answers, found by textbook formulas ---------------------------------------------------------------------------
+
+    @cached_property
+    def feedthrough(self) -> Any:
+        return sympy.zeros(1, 1) if self.D is None else self.D
+
+    @cached_property
+    def feedback_gain(self) -> Any:
+        return ackermann(self.A.T, self.B.T, self.control, self.variable).T if self.K is None else self.K
+
+    @cached_property
+    def observer_gain(self) -> Any:
+        return ackermann(self.A, self.C, self.observer, self.variable) if self.L is None else self.L
+
+    @cached_property
+    def plant_transfer(self) -> Any:
+        return response(self.A, self.B, self.C, self.variable) + self.feedthrough[0]
+
+    @cached_property
+    def compensator_matrix(self) -> Any:
+        K, L = self.feedback_gain, self.observer_gain
+        return self.A - self.B * K - L * self.C + L * self.feedthrough * K
+
+    @cached_property
+    def compensator(self) -> Any:
+        return response(self.compensator_matrix, self.observer_gain, self.feedback_gain, self.variable)
+
+    @cached_property
+    def loop(self) -> Any:
+        return sympy.cancel(self.plant_transfer / (1 + self.plant_transfer * self.compensator))
+
+    @cached_property
+    def loop_matrix(self) -> Any:
+        BK, LC = self.B * self.feedback_gain, self.observer_gain * self.C
+        return Matrix([[self.A - BK, BK], [sympy.zeros(*self.A.shape), self.A - LC]])
+
+    @cached_property
+    def loop_matrix_estimate(self) -> Any:
+        BK, LC = self.B * self.feedback_gain, self.observer_gain * self.C
+        return Matrix([[self.A, -BK], [LC, self.A - BK - LC]])
+
+
+third_order = {"A": Matrix([[-7, 1, 15], [-2, 0, 5], [-2, 0, 4]]), "B": Matrix([65, -5, 30]), "C": Matrix([[1, 0, -2]])}
+servo = {"A": Matrix([[0, 1], [0, -1]]), "B": Matrix([0, 1]), "C": Matrix([[1, 0]])}
+mass = {"A": Matrix([[0, 1], [0, 0]]), "B": Matrix([0, 1]), "C": Matrix([[1, 0]])}
+hanging = {"A": Matrix([[0, 1], [-(omega**2), -b]]), "B": Matrix([0, 1]), "C": Matrix([[0, 1]])}
+upright = {"A": Matrix([[0, 1], [omega**2, -b]]), "B": Matrix([0, 1]), "C": Matrix([[0, 1]])}
+pendulum = {"omega": "positive", "b": "positive"}
+hidden = {"A": Matrix([[0, 1], [-2, -3]]), "C": Matrix([[1, c]]), "signs": {"c": "real"}}
+cart_pole = {
+    "A": Matrix([[0, 1, 0, 0], [0, -b / M, -m * g / M, 0], [0, 0, 0, 1], [0, b / (M * l), (M + m) * g / (M * l), 0]]),
+    "B": Matrix([0, 1 / M, 0, -1 / (M * l)]),
+    "C": Matrix([[1, 0, 0, 0]]),
+    "signs": dict.fromkeys(["M", "m", "l", "g", "b", *(f"{x}{k}" for x in "pq" for k in range(1, 5))], "positive"),
+}
+
+PROBLEMS = {
+    "servo_observer": Hand(**servo, observer=(s + 10) ** 2),
+    "output_feedback_servo": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2),
+    "servo_feedthrough": Hand(**servo, D=Matrix([[1]]), control=(s + 2) ** 2, observer=(s + 10) ** 2),
+    "servo_feedthrough_parametric": Hand(
+        **servo, D=Matrix([[d]]), control=(s + 2) ** 2, observer=(s + 10) ** 2, signs={"d": "real"}
+    ),
+    "double_integrator_observer": Hand(**mass, observer=(s + 1) * (s + 2)),
+    "double_integrator_output_feedback": Hand(**mass, control=s**2 + 2 * s + 2, observer=(s + 1) * (s + 2)),
+    "third_order_observer": Hand(**third_order, observer=(s + 5) * (s + 6) * (s + 7)),
+    "third_order_plant": Hand(**third_order, control=(s + 3) * (s + 4) * (s + 5)),
+    "pendulum_hanging": Hand(**hanging, observer=s**2 + p * s + q, signs=pendulum | {"p": "real", "q": "real"}),
+    "pendulum_hanging_given_gain": Hand(**hanging, L=Matrix([h1, h2]), signs=pendulum | {"h1": "real", "h2": "real"}),
+    "pendulum_upright": Hand(**upright, observer=s**2 + p * s + q, signs=pendulum | {"p": "real", "q": "real"}),
+    "pendulum_upright_given_gain": Hand(**upright, L=Matrix([h1, h2]), signs=pendulum | {"h1": "real", "h2": "real"}),
+    "pendulum_state_feedback": Hand(
+        A=hanging["A"], B=hanging["B"], K=Matrix([[-k1, -k2]]), signs=pendulum | {"k1": "real", "k2": "real"}
+    ),
+    "fixed_mode_wanted": Hand(**hidden, observer=(s + 1) * (s + 5)),
+    "fixed_modes_all_wanted": Hand(**hidden, observer=(s + 1) * (s + 2)),
+    "deadbeat_observer": Hand(A=Matrix([[1, 1], [0, 1]]), C=Matrix([[1, 0]]), observer=z**2, variable=z),
+    "cart_pole": Hand(
+        **cart_pole,
+        control=(s + p1) * (s + p2) * (s + p3) * (s + p4),
+        observer=(s + q1) * (s + q2) * (s + q3) * (s + q4),
+        large=True,
+    ),
+}
+
+
+def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
+    """Yield points that the declared signs allow and that lose no observability, the same in every run."""
+    chance = random.Random(name)  # noqa: S311 - points that repeat
+    for _ in range(count if PROBLEMS[name].signs else 1):
+        point = {}
+        for parameter, sign in PROBLEMS[name].signs.items():
+            size = Rational(chance.randint(1, 40), chance.randint(1, 9))
+            point[sympy.Symbol(parameter)] = size if sign == "positive" or chance.random() < 0.5 else -size
+        if point.get(c) not in {Rational(1, 2), 1}:
+            yield point

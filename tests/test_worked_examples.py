@@ -1,0 +1,243 @@
+"""The worked examples: each file is a test of itself, and a value spoiled in it is noticed."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+from click.testing import CliRunner
+
+from symobs import problem
+from symobs.cli import cli
+from symobs.exact import Matrix
+from symobs.expect import mismatches
+from symobs.expression import parse_matrix
+from symobs.formula import Literal
+from symobs.method import formats, render
+from tests.second_reader import sympy_scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.method import Result
+    from symobs.problem import Problem
+
+FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
+#: Rows of the catalogue of sources that the examples must cover.
+ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP"}
+every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+
+
+@cache
+def solved(path: Path) -> tuple[Problem, tuple[Result, ...]]:
+    found = problem.read(path.read_text(encoding="utf-8"), path.name)
+    return found, found.solve()
+
+
+def test_all_rows_are_covered() -> None:
+    assert {row for path in FILES for row in solved(path)[0].ids} >= ROWS
+
+
+@every_file
+def test_says_what_it_is(path: Path) -> None:
+    found, _ = solved(path)
+    assert found.title
+    assert found.source
+    assert found.expect
+    assert all(re.fullmatch(r"S[0-4]-[A-Z][\w.-]+", row) for row in found.ids)
+    assert bool(found.ids) == bool(re.match(r"S[0-4]\b", found.source))
+
+
+@every_file
+def test_meets_its_expectations(path: Path) -> None:
+    found, results = solved(path)
+    assert [result.task for result in results] == [task.name for task in found.tasks]
+    assert mismatches(results, found.expect) == []
+
+
+@every_file
+def test_the_command_line_exits_with_success(path: Path, tmp_path: Path) -> None:
+    ran = CliRunner().invoke(cli, ["solve", str(path), "--format", "json", "-o", str(tmp_path / "answers.json")])
+    assert ran.exit_code == 0, ran.output
+    assert ran.output == ""
+    answers = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
+    assert [answer["task"] for answer in answers["results"]] == [task.name for task in solved(path)[0].tasks]
+
+
+def test_the_command_itself() -> None:
+    path = next(path for path in FILES if path.stem == "output_feedback_servo")
+    ran = subprocess.run([sys.executable, "-m", "symobs", "solve", str(path)], capture_output=True, check=True)
+    assert ran.stdout.decode().startswith(r"\documentclass")
+    assert ran.stderr == b""
+
+
+@every_file
+@pytest.mark.parametrize("name", ["latex", "fragment", "text", "json"])
+def test_renders(path: Path, name: str) -> None:
+    found, results = solved(path)
+    page = render(found.document(results), name)
+    assert isinstance(page, str)
+    if name == "json":
+        whole = json.loads(page)
+        assert (whole["schema"], whole["title"]) == ("symobs/1", found.title)
+        return
+    assert name == "fragment" or found.title.split()[0] in page
+    assert not re.search(r"\bNone\b|Scalar\(|Matrix\(|<symobs" + (r"|[{}]" if name == "text" else ""), page)
+    for result in results:
+        assert result.derivation.check() is not None
+    assert page == render(found.document(found.solve()), name) or path.stem == "cart_pole"
+
+
+# -- a spoiled expectation is noticed ----------------------------------------------------------------------------------
+
+
+def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
+    """Yield a value of `[expect]` with each of its entries changed in turn."""
+    if isinstance(value, int):
+        yield value + 1
+    elif isinstance(value, list) and (not value or not isinstance(value[0], list)):
+        yield from spoiled_list(value, key, names)
+    elif value in ("yes", "no", "conditional"):
+        yield from (other for other in ("yes", "no", "conditional") if other != value)
+    elif isinstance(value, list) or value.startswith("["):
+        rows = [[str(entry) for entry in row] for row in parse_matrix(value, names).rows]
+        for i, row in enumerate(rows):
+            for j, entry in enumerate(row):
+                yield [*rows[:i], [*row[:j], f"{entry} + 1", *row[j + 1 :]], *rows[i + 1 :]]
+    else:
+        yield f"{value} + 1"
+
+
+def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:
+    """Yield a list of roots, relations or vectors with one entry changed, left out or added."""
+    other = {"!=": "==", ">": "<", "<": ">"}
+    relations = key in {"conditions", "stable_if"}
+    if not relations:
+        yield [*value, [1, 0, 0] if key == "kernel" else -1234]
+    elif names:
+        yield [*value, f"{next(iter(names))} != 1234"]
+    for i, entry in enumerate(value):
+        changes: list[Any] = [-1234]
+        if relations:
+            left, operator, right = re.split(r"\s(!=|<|>)\s", entry)
+            changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]
+        for change in changes:
+            yield [*value[:i], change, *value[i + 1 :]]
+        yield [*value[:i], *value[i + 1 :]]
+
+
+def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the file's expectations, each with one change, and the place of the change."""
+    assert found.plant is not None
+    names, whole = found.plant.symbols.signs, dict(found.expect)
+    tasks = {task.name for task in found.tasks}
+    for key, entry in whole.items():
+        table = entry if key in tasks else {key: entry}
+        for name, value in table.items():
+            for change in spoiled(value, name, names):
+                changed = {**table, name: change}
+                yield (f"{key}.{name}", whole | {key: changed}) if key in tasks else (name, whole | changed)
+
+
+@every_file
+def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[str, object], None]) -> None:
+    found, results = solved(path)
+    count = 0
+    for place, expect in every_spoiled(found):
+        lines = mismatches(results, expect)
+        assert len(lines) == 1, (place, expect)
+        assert f"expect.{place}" in lines[0]
+        count += 1
+    record_property("spoiled values", count)
+    print(f"{path.stem}: {count} spoiled values, all noticed")  # noqa: T201 - shown by pytest -s
+    assert count > len(found.expect) / 2
+
+
+def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:
+    path = next(path for path in FILES if path.stem == "servo_observer")
+    text = path.read_text(encoding="utf-8")
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(text.replace('L = "[19; 81]"', 'L = "[19; 82]"'), encoding="utf-8")
+    ran = CliRunner().invoke(cli, ["solve", str(wrong), "--format", "text"])
+    assert ran.exit_code == 4
+    assert "expect.L: expected [19; 82], found [19; 81]" in ran.stderr
+
+
+def test_each_format_is_rendered_here() -> None:
+    assert set(formats()) >= {"latex", "fragment", "text", "json"}
+
+
+# -- the pages of the source's examples --------------------------------------------------------------------------------
+
+s = sympy.Symbol("s")
+
+
+def values_in_order(item: object) -> Iterator[Any]:
+    """Yield every value written out in a derivation, in reading order, as SymPy objects."""
+    if isinstance(item, Literal):
+        value = item.value
+        if isinstance(value, Matrix):
+            yield sympy.ImmutableMatrix(*value.shape, [sympy_scalar(entry, {}) for entry in value.entries])
+        else:
+            yield sympy.together(sympy_scalar(value, {}))
+    elif isinstance(item, (tuple, list)):
+        for part in item:
+            yield from values_in_order(part)
+    elif hasattr(item, "__dataclass_fields__"):
+        # A sentence stands before the display it belongs to.
+        for name in sorted(item.__dataclass_fields__, key=lambda name: name not in {"sentence", "title"}):
+            yield from values_in_order(getattr(item, name))
+
+
+def rows(*entries: list[Any]) -> Any:
+    return sympy.ImmutableMatrix(list(entries))
+
+
+EXAMPLE_4_1 = [
+    rows([1, 0], [0, 1]),  # 𝒞 of (Aᵀ, Cᵀ)
+    s**2 + 20 * s + 100,
+    s**2 + s,
+    rows([1, 1], [1, 0]),
+    rows([0, 1], [1, -1]),
+    rows([100, 19]),
+    rows([19, 81]),
+    rows([19], [81]),
+    rows([-19, 1], [-81, -1]),
+    rows([0], [1]),
+    rows([19], [81]),
+]
+EXAMPLE_4_2 = [
+    s**2 + 4 * s + 4,
+    rows([4, 3]),
+    rows([19], [81]),
+    rows([-19, 1], [-85, -4]),
+    rows([s + 19, -1], [85, s + 4]),
+    s**2 + 23 * s + 161,
+    rows([s + 4, 1], [-85, s + 19]),
+    rows([19 * s + 157], [81 * s - 76]),
+    (319 * s + 400) / (s**2 + 23 * s + 161),
+    rows([0, 1, 0, 0], [-4, -4, 4, 3], [0, 0, -19, 1], [0, 0, -81, -1]),
+    rows([0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]),
+    s**2 + 23 * s + 161,
+    s**4 + 24 * s**3 + 184 * s**2 + 480 * s + 400,
+]
+
+
+@pytest.mark.parametrize(("stem", "wanted"), [("servo_observer", EXAMPLE_4_1), ("output_feedback_servo", EXAMPLE_4_2)])
+def test_values_stand_on_the_page_in_the_order_of_the_source(stem: str, wanted: list[Any]) -> None:
+    path = next(path for path in FILES if path.stem == stem)
+    (result,) = solved(path)[1]
+    shown = values_in_order(result.derivation.steps)
+    for value in wanted:
+        assert any(other == value or sympy.expand(other - value) == 0 for other in shown if alike(other, value)), value
+
+
+def alike(left: Any, right: Any) -> bool:
+    return getattr(left, "shape", None) == getattr(right, "shape", None)
