@@ -152,7 +152,7 @@ def _read(file: str) -> str:
     from symobs.expression.source import shown  # noqa: PLC0415
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
-    where = shown(file)
+    where = shown(file, 200)
     try:
         if file == "-":
             raw: bytes = _binary(sys.stdin).read(MAX_BYTES + 1)

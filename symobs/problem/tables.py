@@ -30,7 +30,7 @@ def parse(text: str, where: str = "problem") -> dict[str, Any]:
         _guard(text)
         return _parse_json(text) if text.lstrip().startswith("{") else _parse_toml(text)
     except InputError as error:
-        error.where = f"{shown(where)}, {error.where}" if error.where else shown(where)
+        error.where = f"{shown(where, 200)}, {error.where}" if error.where else shown(where, 200)
         raise ProblemErrors((error,)) from None
 
 

@@ -104,7 +104,8 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
-    plant = _plant(data, symbols, errors)
+    dt = _period(data, symbols, errors)
+    plant = _plant(data, symbols, dt, errors)
     specification = _specification(data, (*asked, *wanted), errors)
     expect = _table(data, "expect", errors)
     if not errors.found and plant is not None:
@@ -113,9 +114,7 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect).solve()
     else:
-        given = data.get("plant")
-        variable = "z" if isinstance(given, Mapping) and given.get("dt", 0) not in (0, False) else "s"
-        _read_alone(specification, expect, symbols, variable, errors)
+        _read_alone(specification, expect, symbols, read_time(dt, symbols).variable, errors)
     raise errors.together()
 
 
@@ -135,12 +134,12 @@ def _report_unknown(table: Mapping[str, Any], known: Collection[str], where: str
     for key in unknown[:_MAX_UNKNOWN]:
         near = get_close_matches(key[:64], known, 1)
         of = [task.name for task in tasks().values() if key in task.keywords]
-        if near:
-            repair = f"did you mean {near[0]}?"
-        elif key in PLANT:
+        if key in PLANT:
             repair = "it belongs to [plant]"
         elif of:
             repair = f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
+        elif near:
+            repair = f"did you mean {near[0]}?"
         else:
             repair = f"known keys are {', '.join(known)}"
         errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair)
@@ -214,16 +213,22 @@ def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
     return Symbols.of(kept)
 
 
-def _plant(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> StateSpace | None:
+def _period(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> object:
+    """Return dt, 0 where it is none."""
+    table = data.get("plant")
+    with errors:
+        dt: object = table.get("dt", 0) if isinstance(table, Mapping) else 0
+        read_time(dt, symbols)
+        return dt
+    return 0
+
+
+def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors) -> StateSpace | None:
     """Return the plant, None where it cannot be had."""
     table = _table(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
     _report_unknown(table, PLANT, "plant", errors)
-    dt: object = 0
-    with errors:
-        read_time(table.get("dt", 0), symbols)
-        dt = table.get("dt", 0)
     given = [name for name in "ABCD" if name in table]
     if "transfer_function" in table and given:
         errors.note(f"both transfer_function and {given[0]} are given", "plant", "keep one of them")

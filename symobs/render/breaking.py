@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 _DIGITS_TOGETHER = 30
 _ROWS_TOGETHER = 30
+#: Lines evened out where the last would be shorter than this part of the width.
+_FEW_LINES = (2, 3, 4)
+_SHORT_END = 0.3
 #: A denominator that takes more of the line than this is not set under a fraction bar.
 _WIDEST_DENOMINATOR = 0.7
 
@@ -58,7 +61,15 @@ class Breaker(Generic[B]):
         self.named: dict[Formula, B] = {}
 
     def lines(self, pieces: Sequence[Piece[B]], first: float, rest: float) -> list[B]:
-        """Fill lines: the first of width `first`, all others of width `rest`."""
+        """Fill lines, the first of width `first`, all others of width `rest`, so that no short end is left over."""
+        filled = self._filled(pieces, first, rest)
+        for part in (1.0, 0.9, 0.8, 0.7, 0.6) if len(filled) in _FEW_LINES else ():
+            narrower = self._filled(pieces, part * first, part * rest)
+            if len(narrower) == len(filled) and narrower[-1].width > _SHORT_END * rest:
+                return narrower
+        return filled
+
+    def _filled(self, pieces: Sequence[Piece[B]], first: float, rest: float) -> list[B]:
         finished: list[list[B]] = []
         line: list[B] = []
         for piece in pieces:
@@ -195,11 +206,10 @@ class Breaker(Generic[B]):
             return self._opened(body, room)
         below = printer.typeset(body.denominator)
         if below.width > _WIDEST_DENOMINATOR * room:
-            name = self._name(self.named, body.denominator)
-            whole = printer.fraction(printer.typeset(body.numerator), name)
-            if whole.width > room - 2:
-                whole = printer.fraction(self._name(self.named, body.numerator), name)
-            pieces = [Piece(whole)]
+            above = printer.typeset(body.numerator)
+            if printer.fraction(above, printer.star(1)).width > room - 2:
+                above = self._name(self.named, body.numerator)
+            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator)))]
         elif printer.slashes:
             pieces = self._operand(body.numerator, Level.PRODUCT, room - 2)
             slash = printer.slash()
