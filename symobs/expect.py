@@ -124,7 +124,7 @@ def _found(result: Result, name: str) -> Any:
     if name == "verdict":
         return result.verdict
     if name == "conditions":
-        return result.conditions
+        return result.holds_where
     return result.fields[name]
 
 

@@ -47,6 +47,8 @@ def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
         return sympy_border.complex_to_sympy(value, objects)
     if isinstance(value, Root):
         return sympy_border.root_to_sympy(value, objects)
+    if isinstance(value, Condition):
+        return sympy_border.relation_to_sympy(value.expression, value.operator, objects)
     if isinstance(value, (list, tuple)):
         return tuple(to_sympy(entry, objects) for entry in value)
     if isinstance(value, dict):

@@ -13,7 +13,8 @@ import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import symobs
 from symobs.certificate import Certificate, Claim, check_all
@@ -39,6 +40,13 @@ class Case:
     result: Result | None
 
 
+class Stratum(NamedTuple):
+    """A case as a Python user meets it: SymPy relations, and the result where they hold (None: undecided)."""
+
+    when: tuple[Any, ...]
+    result: Result | None
+
+
 @dataclass(frozen=True, eq=False)
 class Result:
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
@@ -53,6 +61,7 @@ class Result:
 
     def __post_init__(self) -> None:
         """Check every claim; raises `CertificateRejected`."""
+        object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
         object.__setattr__(self, "certificates", check_all(self.claims()))
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
@@ -86,7 +95,7 @@ class Result:
         return self.certificates
 
     @cached_property
-    def cases(self) -> tuple[Case, ...]:
+    def case_tree(self) -> tuple[Case, ...]:
         """What is true where a condition of existence fails."""
         return ()
 
@@ -100,7 +109,7 @@ class Result:
         return tuple(Condition("domain", factor) for factor in factors)
 
     @cached_property
-    def conditions(self) -> tuple[Condition, ...]:
+    def holds_where(self) -> tuple[Condition, ...]:
         """The exact conditions under which the answer holds, what the declared signs imply left out."""
         known = {condition.expression for condition in self.domain}
         factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
@@ -110,7 +119,7 @@ class Result:
     @property
     def _binding_conditions(self) -> tuple[Condition, ...]:
         """The conditions that make a verdict conditional: all but those of the domain."""
-        return tuple(condition for condition in self.conditions if condition.kind != "domain")
+        return tuple(condition for condition in self.holds_where if condition.kind != "domain")
 
     def with_answer(self, name: str, value: object) -> Self:
         """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""
@@ -144,15 +153,20 @@ class Result:
 
     def __getattr__(self, name: str) -> Any:
         """Return an answer as SymPy objects."""
+        from symobs.face import to_sympy  # noqa: PLC0415 - SymPy is the face only
+
+        objects = {} if name.startswith("_") else self.plant.symbols.objects
+        if name == "conditions":
+            return to_sympy(self.holds_where, objects)
+        if name == "cases":
+            return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
         if name.startswith("_") or name not in self.fields:
             message = f"{type(self).__name__} has no attribute {name!r}"
             raise AttributeError(message)
-        from symobs.face import to_sympy  # noqa: PLC0415 - SymPy is the face only
-
-        return to_sympy(self.fields[name], self.plant.symbols.objects)
+        return to_sympy(self.fields[name], objects)
 
     def __dir__(self) -> Iterable[str]:
-        return [*super().__dir__(), *self.fields]
+        return [*super().__dir__(), "conditions", "cases", *self.fields]
 
     def to(self, format_name: str) -> str | bytes:
         """Return the result in a format: latex, fragment, text, json or pdf."""

@@ -54,6 +54,11 @@ RANK: dict[str, str] = {
     "yes_controllability": "It has full rank, so the pair ($A$, $B$) is controllable.",
     "full_rank_observability": "Since {rank}, the pair ($C$, $A$) is observable.",
     "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
+    "generic_rank_observability": "In general {rank}, and the pair ($C$, $A$) is observable; the exceptions follow.",
+    "generic_rank_controllability": "In general {rank}, and the pair ($A$, $B$) is controllable; the exceptions follow.",
+    "case_rank": "There {rank}.",
+    "undecided_case": "What is true where {when} vanishes is not decided here.",
+    "undecided_together": "What is true where {when} and {other} vanish together is not decided here.",
     "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
     "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero. From here on we assume {condition}.",
     "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
@@ -109,8 +114,6 @@ GAINS: dict[str, str] = {
     "places them.",
     "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed mode {modes} is not among the poles asked for: no "
     "gain places them.",
-    "undecided_observer": "What is true where {when} vanishes is not decided here.",
-    "undecided_state_feedback": "What is true where {when} vanishes is not decided here.",
 }
 
 COMPENSATION: dict[str, str] = {
@@ -145,6 +148,7 @@ PHRASES: dict[str, str] = TITLES | DATA | POLYNOMIALS | RANK | GAINS | COMPENSAT
 RESTS_ON: dict[str, str] = {
     "yes_observability": "observability_rank",
     "full_rank_observability": "observability_rank",
+    "generic_rank_observability": "observability_rank",
     "provided_observability": "observability_rank",
     "no_observability": "observability_rank",
     "yes_controllability": "duality",

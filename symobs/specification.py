@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import parse_poles, parse_polynomial
-from symobs.system import StateSpace, Symbols, read_complex, read_matrix, read_scalar
+from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema.
 Poles: TypeAlias = Any
@@ -146,10 +146,10 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
-    if isinstance(value, str):
-        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where)
-    else:
+    if is_sympy(value):
         polynomial = read_scalar(value, plant.symbols, where)
+    else:
+        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where)
     found = polynomial.degree(variable)
     if not polynomial.is_polynomial_in(variable) or found < 1:
         message = f"{polynomial} is not a polynomial in {variable}"

@@ -177,7 +177,7 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
     for part in ("feedback", "estimator"):
         if hasattr(type(result), "__dataclass_fields__") and part in type(result).__dataclass_fields__:
             yield from parts_of(getattr(result, part), f"{name}/")
-    for case in result.cases:
+    for case in result.case_tree:
         if case.result is not None:
             yield from parts_of(case.result, f"{name} at {', '.join(map(str, case.when))}/")
 

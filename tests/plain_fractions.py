@@ -160,7 +160,7 @@ class World:
             collected[degree] = collected.get(degree, Fraction(0)) + term
         return [collected.get(degree, Fraction(0)) for degree in range(max(collected, default=0) + 1)]
 
-    def value(self, item: Any) -> Any:  # noqa: C901, PLR0911, PLR0912 - one case a kind of node
+    def value(self, item: Any) -> Any:
         """Return a fraction, a table, or a signal: free signal → table of coefficients."""
         match item:
             case Scalar():
@@ -433,7 +433,7 @@ def _agrees(kind: str, new: list[Any], old: list[Any]) -> bool:
         if any(b == 0 for _, b in values) or any(a == 0 for a, _ in values):
             return False
         constant = {a for a, _ in values}
-        return len(constant) == 1 and kind == "!=" or len({a / b for a, b in values}) == 1
+        return (len(constant) == 1 and kind == "!=") or len({a / b for a, b in values}) == 1
     if kind in {"<", ">", "<=", ">="}:
         return (
             len({single(a) / single(b) for a, b in zip(new, old, strict=True)}) == 1

@@ -137,7 +137,7 @@ def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
         wanted = POINTS if names else 1
         for point in islice(points(problem, names, name), 4 * wanted):
             at = setting(problem, point)
-            if at is None or not holds(result.conditions, point):
+            if at is None or not holds(result.holds_where, point):
                 continue
             HOLDS[result.task](result, at)
             assert Matrix.of(at.A) == result.plant.substitute(scalars(point)).matrices.A
@@ -153,7 +153,7 @@ def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
     problem, results = solved(name)
     signs = problem.plant.symbols.signs
     for result in results:
-        listed = {condition.expression for condition in result.conditions}
+        listed = {condition.expression for condition in result.holds_where}
         for value in result.answer.values():
             for entry in value.entries if isinstance(value, Matrix) else [value] if isinstance(value, Scalar) else []:
                 factors = {factor for factor, _ in entry.denominator.factors()[1]}
@@ -177,7 +177,7 @@ def test_where_a_domain_condition_fails_there_is_no_plant(name: str) -> None:
     names, m = names_of(problem, results), problem.plant.matrices
     entries = [entry for part in (m.A, m.B, m.C, m.D) for entry in part.entries]
     factors = {factor for entry in entries for factor, _ in entry.denominator.factors()[1]}
-    domain = {c.expression for result in results for c in result.conditions if c.kind == "domain"}
+    domain = {c.expression for result in results for c in result.holds_where if c.kind == "domain"}
     assert domain == {factor for factor in factors if not never_zero(factor, problem.plant.symbols.signs)}
     for factor in factors:
         found = list(zeros(problem, names, factor, name))
@@ -211,7 +211,7 @@ def test_where_an_existence_factor_vanishes_the_rank_drops_and_the_case_is_right
             for determinant in part.existence:
                 for factor, _ in determinant.numerator.factors()[1]:
                     possible = not never_zero(factor, sign.signs)
-                    stratum = [case for case in result.cases if factor in {c.expression for c in case.when}]
+                    stratum = [case for case in result.case_tree if factor in {c.expression for c in case.when}]
                     assert bool(stratum) == possible
                     for point in zeros(problem, names, factor, name):
                         on_stratum(problem, result, dual=dual, point=point)
@@ -225,17 +225,17 @@ def on_stratum(problem: Problem, result: Any, *, dual: bool, point: dict[str, Fr
     assert rank_of(observability_rows(A, C)) < len(A)
     if not all(has_sign(value, problem.plant.symbols.sign(name)) for name, value in point.items()):
         return
-    for case in result.cases:
+    for case in result.case_tree:
         if holds(case.when, point):
             assert case.result is not None
-            if holds(case.result.conditions, point):
+            if holds(case.result.holds_where, point):
                 assert Setting.of(case.result.plant, {}, point).A == at.A
                 HOLDS[result.task](case.result, at)
 
 
 def test_there_are_strata_among_the_examples() -> None:
     """The test above is not empty: gains that survive, gains that do not, and rank drops were all met."""
-    verdicts = {(r.task, c.result.verdict) for name in NAMES for r in solved(name)[1] for c in r.cases if c.result}
+    verdicts = {(r.task, c.result.verdict) for name in NAMES for r in solved(name)[1] for c in r.case_tree if c.result}
     tasks = {"observer", "compensator"}
     assert verdicts >= {*((task, verdict) for task in tasks for verdict in ("yes", "no")), ("observability", "no")}
     assert sum(bool(names_of(*solved(name))) for name in FILES) >= 8
@@ -248,7 +248,7 @@ def test_there_are_strata_among_the_examples() -> None:
 def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivors: set[Fraction]) -> None:
     plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
     result = symobs.observer(plant, poles=poles)
-    cases = {case.substitution["c"].fraction(): case.result for case in result.cases}
+    cases = {case.substitution["c"].fraction(): case.result for case in result.case_tree}
     assert set(cases) == {1, Fraction(1, 2)}
     for c, mode in ((Fraction(1), -1), (Fraction(1, 2), -2)):
         at, found = Setting.of(plant, {"poles": poles}, {"c": c}), cases[c]
@@ -281,7 +281,7 @@ def test_a_gain_that_exists_at_a_point_is_not_denied_without_a_condition() -> No
     result = symobs.observer(plant, poles=[-2, -3])
     at = Setting.of(plant, {"poles": [-2, -3]}, {"a": Fraction(-2)})
     assert assignable(at.A, at.C, at.wanted[""])
-    assert result.verdict != "no" or not holds(result.conditions, dict(at.point))
+    assert result.verdict != "no" or not holds(result.holds_where, dict(at.point))
 
 
 @pytest.mark.xfail(strict=True, reason="where det 𝒪 is 0 everywhere, rank and kernel are generic without a condition")
@@ -292,12 +292,12 @@ def test_a_rank_below_n_says_where_it_drops_further() -> None:
     at = Setting.of(plant, {}, {"c": Fraction(0)})
     assert result.fields["rank"] == 2
     assert rank_of(observability_rows(at.A, at.C)) == 1
-    assert not holds(result.conditions, dict(at.point))
+    assert not holds(result.holds_where, dict(at.point))
 
 
 @pytest.mark.parametrize("pole", ["-1/(c - 1)", "-1/(2*c - 1)"])
 def test_a_stratum_on_which_nothing_is_asked_for_is_no_case(pole: str) -> None:
     plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
     result = symobs.observer(plant, poles=[pole, -5])
-    assert len(result.cases) == 1
+    assert len(result.case_tree) == 1
     assert result.to("text")

@@ -234,7 +234,7 @@ def test_a_result_pickles_whole(name: str) -> None:
         assert type(back) is type(result)
         assert back.to("json") == used.to("json")
         assert back.to("text") == used.to("text")
-        assert [case.when for case in back.cases] == [case.when for case in result.cases]
+        assert [case.when for case in back.case_tree] == [case.when for case in result.case_tree]
         key, value = next((k, v) for k, v in back.answer.items() if isinstance(v, Matrix | Scalar))
         with pytest.raises(CertificateRejected):
             back.with_answer(key, next(mutants(value)))
@@ -301,14 +301,14 @@ def test_all_methods_of_a_task_agree_and_meet_the_claim(task: str, sample: Sampl
     point = {name: random_fraction(seeded((sample, name)), "nonzero") for name in names}
     for result in results:
         assert result.verdict == first.verdict
-        assert {c.expression for c in result.conditions} == {c.expression for c in first.conditions}
+        assert {c.expression for c in result.holds_where} == {c.expression for c in first.holds_where}
         if unique(first):
             assert {key: str(value) for key, value in result.fields.items()} == {
                 k: str(v) for k, v in first.fields.items()
             }
         for letter in letters(result):
             assert first.with_answer(letter, result.answer[letter]).answer[letter] == result.answer[letter]
-        if all(value_at(c.expression, point) for c in result.conditions):
+        if all(value_at(c.expression, point) for c in result.holds_where):
             try:
                 at = Setting.of(plant, keywords(task, sample.poles), point)
             except ZeroDivisionError:
@@ -343,7 +343,7 @@ def test_a_result_survives_the_specialisation_of_its_parameters(name: str, sampl
     special = symobs.StateSpace(*([[str(e) for e in row] for row in rows] for rows in (at.A, at.B, at.C)))
     poles = [pole.replace("p", f"({point['p']})") for pole in sample.poles]
     found = solve(name, special, poles)
-    assume(all(value_at(c.expression, point) for c in result.conditions))
+    assume(all(value_at(c.expression, point) for c in result.holds_where))
     assume(all(value_at(value, point) for value in result.existence))
     HOLDS[result.task](result, at)
     for letter in letters(result):
@@ -390,8 +390,8 @@ def test_an_observer_is_the_transpose_of_state_feedback_of_the_dual_pair(sample:
         assert observer.verdict == feedback.verdict
         L, K = observer.answer["L"], feedback.answer["K"]
         assert (None if L is None else L.T) == K
-        assert {str(c) for c in observer.conditions} == {str(c) for c in feedback.conditions}
-        assert [c.when for c in observer.cases] == [c.when for c in feedback.cases]
+        assert {str(c) for c in observer.holds_where} == {str(c) for c in feedback.holds_where}
+        assert [c.when for c in observer.case_tree] == [c.when for c in feedback.case_tree]
     seen, reached = solve("observability/auto", plant, None), solve("controllability/auto", dual, None)
     assert seen.answer["matrix"] == reached.fields["matrix"].T
     assert (seen.fields["rank"], seen.fields["kernel"]) == (reached.fields["rank"], reached.fields["kernel"])

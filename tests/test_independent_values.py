@@ -230,7 +230,6 @@ def same(field_name: str, found: Any, wanted: Any, variable: Any, point: Mapping
     return bool(found == wanted)
 
 
-@pytest.mark.xfail(strict=True, reason="properties of the result classes hide the SymPy face of some fields")
 def test_attributes_are_never_of_the_kernel() -> None:
     for name in PROBLEMS:
         for result in results(name):

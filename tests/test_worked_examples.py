@@ -90,9 +90,18 @@ def test_renders(path: Path, name: str) -> None:
         return
     assert name == "fragment" or found.title.split()[0] in page
     assert not re.search(r"\bNone\b|Scalar\(|Matrix\(|<symobs" + (r"|[{}]" if name == "text" else ""), page)
+    assert "│ =" not in page, "a left side is not an answer"
     for result in results:
         assert result.derivation.check() is not None
     assert page == render(found.document(found.solve()), name) or path.stem == "cart_pole"
+
+
+def test_boxes_of_a_drawing_hold_fractions() -> None:
+    """The widths of the boxes are those of fractions, so written as quotients in a line they would overlap."""
+    found, results = solved(next(path for path in FILES if path.stem == "output_feedback_servo"))
+    page = str(render(found.document(results), "fragment"))
+    assert r"(P) {$\displaystyle \frac{1}{s(s+1)}$}" in page
+    assert r"(F) {$\displaystyle \frac{319s+400}{s^2+23s+161}$}" in page
 
 
 # -- a spoiled expectation is noticed ----------------------------------------------------------------------------------

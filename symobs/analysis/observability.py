@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.pages import given, square_test
+from symobs.analysis.pages import given, rank_cases, square_test
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
@@ -99,42 +99,53 @@ class RankResult(Result):
             yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
 
     @cached_property
-    def determinant(self) -> Scalar | None:
+    def test_determinant(self) -> Scalar | None:
         """The determinant of a square test matrix, None otherwise."""
         matrix: Matrix = self.answer["matrix"]
         return matrix.determinant() if matrix.shape[0] == matrix.shape[1] else None
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """The determinant, where there is one and it is not zero."""
-        return (self.determinant,) if self.determinant else ()
+        """What vanishes wherever the rank is below the generic one: the determinant, or a minor of that order."""
+        if self.test_determinant:
+            return (self.test_determinant,)
+        minor = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"])
+        return (minor.determinant(),) if minor.shape[0] else ()
 
     @property
     def verdict(self) -> str:
         """`no` where the rank is below n everywhere, else whether it can drop."""
         if self.answer["rank"] < self.plant.order:
             return "no"
-        if self.determinant is None and self._minor_can_vanish:
-            return "undecided"
+        if self.test_determinant is None:
+            return self._verdict_of_strata
         return "conditional" if self._binding_conditions else "yes"
 
     @property
-    def _minor_can_vanish(self) -> bool:
-        minor = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"]).determinant()
-        return bool(vanishing_factors([minor], self.plant.symbols.signs))
+    def _verdict_of_strata(self) -> str:
+        """Whether a matrix that is not square loses its rank somewhere: asked stratum by stratum of one minor."""
+        verdicts = {"undecided" if case.result is None else case.result.verdict for case in self.case_tree}
+        if verdicts <= {"yes"}:
+            return "yes"
+        return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"
 
     @cached_property
-    def conditions(self) -> tuple[Condition, ...]:
-        """The plant's domain, and the factors of the determinant that must not vanish."""
-        domain = self.domain
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The plant's domain, and the factors on whose vanishing the rank falls below n."""
         factors = vanishing_factors(self.existence, self.plant.symbols.signs)
-        listed = {c.expression for c in domain}
-        return (*domain, *(Condition("existence", f) for f in factors if f not in listed))
+        if self.answer["rank"] < self.plant.order:
+            factors = ()
+        elif self.test_determinant is None:
+            lost = [c.when[0].expression for c in self.case_tree if c.result is not None and c.result.verdict == "no"]
+            factors = tuple(f for f in factors if f in lost)
+        listed = {c.expression for c in self.domain}
+        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
 
     @cached_property
-    def cases(self) -> tuple[Case, ...]:
-        """Rank and kernel on every stratum where a factor of the determinant vanishes."""
-        return strata(self.plant, self.existence, lambda plant, _: type(self).of(plant, self.method))
+    def case_tree(self) -> tuple[Case, ...]:
+        """Rank and kernel on every stratum where they are not the generic ones."""
+        found = strata(self.plant, self.existence, lambda plant, _: type(self).of(plant, self.method))
+        return tuple(case for case in found if case.result is None or _other(case.result, self))
 
     @cached_property
     def modes(self) -> tuple[Root, ...]:
@@ -169,7 +180,7 @@ class Observability(RankResult):
             "rank": self.answer["rank"],
             "kernel": [list(v.entries) for v in self.kernel_vectors],
             "unobservable_modes": self.modes,
-            "determinant": self.determinant,
+            "determinant": self.test_determinant,
         }
 
     def write(self, page: Page) -> None:
@@ -180,6 +191,7 @@ class Observability(RankResult):
             rows += [[C @ A**k] for k in range(1, self.plant.order)]
             page.define("O", block(rows), say="observability_matrix")
             square_test(page, "O", self, "observability")
+            rank_cases(page, "O", self, "observability")
 
 
 class Controllability(RankResult):
@@ -200,7 +212,7 @@ class Controllability(RankResult):
             "rank": self.answer["rank"],
             "kernel": [list(v.entries) for v in self.kernel_vectors],
             "uncontrollable_modes": self.modes,
-            "determinant": self.determinant,
+            "determinant": self.test_determinant,
         }
 
     def write(self, page: Page) -> None:
@@ -211,6 +223,12 @@ class Controllability(RankResult):
             columns += [A**k @ B for k in range(1, self.plant.order)]
             page.define("Ctr", block([columns]), say="controllability_matrix")
             square_test(page, "Ctr", self, "controllability")
+            rank_cases(page, "Ctr", self, "controllability")
+
+
+def _other(found: Result, generic: RankResult) -> bool:
+    """Whether a stratum's rank differs from the generic one, there or further down."""
+    return found.answer["rank"] != generic.answer["rank"] or bool(found.case_tree)
 
 
 def _det(matrix: Matrix, environment: Environment) -> Term:

@@ -5,15 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.conditions import never_zero, vanishing_factors
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude, Equal, Note, Step
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
 from symobs.formula import Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
-from symobs.page import Page, predicate, relation
+from symobs.page import Page, predicate, relation, sentence
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
     from symobs.analysis.observability import RankResult
     from symobs.formula import Formula
     from symobs.formula.term import Term
+    from symobs.method import Case
     from symobs.specification import DesiredPolynomial
 
 
@@ -127,12 +130,13 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
 
     Factors of the determinant that can vanish become conditions from here on.
     """
-    determinant, order = result.determinant, page.plant.order
+    determinant, order = result.test_determinant, page.plant.order
     if result.answer["rank"] < order:
         _deficient(page, letter, result, kind)
         return
     if determinant is None:
-        page.conclude(f"full_rank_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
+        key = "full_rank" if result.verdict == "yes" else "generic_rank"
+        page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
         return
     signs = page.plant.symbols.signs
     det = page[letter].apply("det")
@@ -145,6 +149,32 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
         return
     page.equal(relation(det, shown))
     page.assume(f"provided_{kind}", *open_factors)
+
+
+def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    """Say what rank and kernel are on every stratum where they are not the generic ones."""
+    page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
+
+
+def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
+    if case.result is None:
+        return undecided(page, case)
+    rank = relation(page[letter].apply("rank"), case.result.answer["rank"])
+    steps: list[Step] = [Conclude(sentence("case_rank", {"rank": rank}))]
+    matrix = page[letter] if kind == "observability" else page[letter].T
+    for vector in case.result.kernel_vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], 1)
+        steps.append(Equal((relation(matrix @ page.value(vector), zero),), sentence(f"kernel_{kind}", {})))
+    steps += [_rank_case(page, letter, inner, kind) for inner in case.result.case_tree]
+    return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), tuple(steps))
+
+
+def undecided(page: Page, case: Case) -> Step:
+    """Return the remark that names a part of the parameters that the page does not decide."""
+    first, *others = (page.value(condition.expression) for condition in case.when)
+    if others:
+        return Note(sentence("undecided_together", {"when": first, "other": others[0]}))
+    return Note(sentence("undecided_case", {"when": first}))
 
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:

@@ -25,7 +25,8 @@ def strata(
 ) -> tuple[Case, ...]:
     """Return one case for each factor of `existence` that can vanish; `solve` answers on the plant of the stratum.
 
-    Where a factor is not linear in any parameter the case is undecided (its result is None).
+    Where a factor is not linear in any parameter the case is undecided (its result is None); so is the part of a
+    stratum where the coefficient of the parameter it was solved for vanishes.
     """
     signs = plant.symbols.signs
     found = []
@@ -37,7 +38,9 @@ def strata(
             continue
         name, value, lead = solution
         if not never_zero(lead, signs):
-            when = (*when, *(Condition("route", f) for f in vanishing_factors([lead], signs)))
+            zeros = vanishing_factors([lead], signs)
+            found += [Case((*when, Condition("route", f, "==")), {}, None) for f in zeros]
+            when = (*when, *(Condition("route", f) for f in zeros))
         substitution = {name: value}
         try:
             found.append(Case(when, substitution, solve(plant.substitute(substitution), substitution)))

@@ -88,17 +88,17 @@ class CompensatorDesign(Result):
         return super().verdict
 
     @cached_property
-    def conditions(self) -> tuple[Condition, ...]:
+    def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of both gains."""
-        both = [*self.feedback.conditions, *self.estimator.conditions]
+        both = [*self.feedback.holds_where, *self.estimator.holds_where]
         return tuple({c.expression: c for c in both}.values())
 
     @cached_property
-    def cases(self) -> tuple[Case, ...]:
+    def case_tree(self) -> tuple[Case, ...]:
         """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
         found = []
         for design in (self.feedback, self.estimator):
-            for case in design.cases:
+            for case in design.case_tree:
                 if case.result is None:
                     found.append(case)
                     continue
@@ -117,7 +117,7 @@ class CompensatorDesign(Result):
         return CompensatorDesign.of(feedback, estimator, self.method)
 
     @cached_property
-    def compensator_matrix(self) -> Matrix:
+    def own_matrix(self) -> Matrix:
         """A − BK − LC + LDK."""
         return compensator_matrix(self.plant, self.answer["K"], self.answer["L"]).normal()
 
@@ -128,12 +128,12 @@ class CompensatorDesign(Result):
         return transfer(m.A, m.B, m.C, m.D[0, 0], self.plant.variable)
 
     @cached_property
-    def closed_loop(self) -> Factored:
+    def loop(self) -> Factored:
         """P/(1 + PF): the plant with F in the return path, checked against its definition."""
         numerator, characteristic = self.plant_transfer
         P, F = numerator / characteristic, self.answer["F"]
-        own = self.compensator_matrix.characteristic_polynomial(self.plant.variable)
-        polynomial = self.closed_loop_polynomial
+        own = self.own_matrix.characteristic_polynomial(self.plant.variable)
+        polynomial = self.loop_polynomial
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
         form = _over(numerator * own, polynomial) if kept else factored(value, self.plant.variable)
@@ -143,7 +143,7 @@ class CompensatorDesign(Result):
         return form
 
     @cached_property
-    def closed_loop_polynomial(self) -> Factored:
+    def loop_polynomial(self) -> Factored:
         """φ_c φ_o, with the factors that were asked for."""
         factors: dict[Scalar, int] = {}
         for design in (self.feedback, self.estimator):
@@ -152,20 +152,20 @@ class CompensatorDesign(Result):
         return Factored(Scalar.of(1), tuple(factors.items()))
 
     @cached_property
-    def closed_loop_matrix(self) -> Matrix:
+    def error_coordinates(self) -> Matrix:
         """[A − BK, BK; 0, A − LC] in (x, e)."""
         m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
         zero = Matrix.zeros(self.plant.order, self.plant.order)
         return Matrix.block([[m.A - m.B @ K, m.B @ K], [zero, m.A - L @ m.C]])
 
     @cached_property
-    def closed_loop_matrix_estimate(self) -> Matrix:
+    def estimate_coordinates(self) -> Matrix:
         """[A, −BK; LC, A − BK − LC] in (x, x̂)."""
         m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
 
     @property
-    def F_stable(self) -> str:
+    def own_stability(self) -> str:
         """Whether the compensator itself is stable."""
         plant = self.plant
         denominator = self.answer["F"].denominator
@@ -176,22 +176,22 @@ class CompensatorDesign(Result):
         """The fields of the contract."""
         names = ("K", "L", "F")
         if not self._exists:
-            modes = {"fixed_modes": self.feedback.fixed_modes + self.estimator.fixed_modes}
+            modes = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
             return {name: self.answer[name] for name in names} | modes
         return {
             **{name: self.answer[name] for name in names},
-            "F_stable": self.F_stable,
-            "compensator_matrix": self.compensator_matrix,
-            "closed_loop_polynomial": self.closed_loop_polynomial,
-            "closed_loop": self.closed_loop,
-            "closed_loop_matrix": self.closed_loop_matrix,
-            "closed_loop_matrix_estimate": self.closed_loop_matrix_estimate,
+            "F_stable": self.own_stability,
+            "compensator_matrix": self.own_matrix,
+            "closed_loop_polynomial": self.loop_polynomial,
+            "closed_loop": self.loop,
+            "closed_loop_matrix": self.error_coordinates,
+            "closed_loop_matrix_estimate": self.estimate_coordinates,
             "family": self._families,
         }
 
     @property
     def _families(self) -> Mapping[str, Any] | None:
-        found = {d.letter: d.family for d in (self.feedback, self.estimator) if d.family is not None}
+        found = {d.letter: d.gain_family for d in (self.feedback, self.estimator) if d.gain_family is not None}
         return found or None
 
     def write(self, page: Page) -> None:

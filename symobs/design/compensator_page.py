@@ -82,7 +82,7 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     K, L, F = page["K"], page["L"], design.answer["F"]
     order = design.plant.order
     pencil = (page.s @ page.identity(order) - page["A_c"]).value
-    characteristic = design.compensator_matrix.characteristic_polynomial(design.plant.variable)
+    characteristic = design.own_matrix.characteristic_polynomial(design.plant.variable)
     adjugate = pencil.adjugate()
     one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
     resolvent = page.value(pencil)
@@ -94,7 +94,7 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
         page.value(F),
     ]
     page.define("F", *stages, say="transfer_function_of_compensator", answer=True)
-    found = design.F_stable
+    found = design.own_stability
     properness = predicate("strictly_proper", F)
     key = {"yes": "compensator_stable", "no": "compensator_unstable"}.get(found)
     if key is None:
@@ -132,7 +132,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = error_determinant(page, FEEDBACK) @ error_determinant(page, OBSERVER)
-    product = page.term(formula_of_factored(design.closed_loop_polynomial))
+    product = page.term(formula_of_factored(design.loop_polynomial))
     page.equal(relation(determinant, parts, product), say="polynomial_splits")
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
     states = block([[x], [page["x_hat"]]])
@@ -146,14 +146,14 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
     """P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
     page.diagram("loop", plant=plant_form, compensator=page.value(design.answer["F"]))
-    form = design.closed_loop
+    form = design.loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     factors = page.term(formula_of_factored(form))
     page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
-    polynomial = design.closed_loop_polynomial.value
-    if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.closed_loop_polynomial.factors):
+    polynomial = design.loop_polynomial.value
+    if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):
         page.conclude("loop_poles", poles=Roots(Literal(polynomial), _poles(design, polynomial)))
     else:
         page.conclude("loop_polynomial")

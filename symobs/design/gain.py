@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
+from symobs.conditions import Condition, vanishing_factors
 from symobs.design.assignment import Pair, remainder
 from symobs.errors import InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
@@ -91,8 +92,8 @@ class GainDesign(Result):
             yield from self._impossible()
             return
         yield self._assigned(gain)
-        if self.family is not None:
-            yield self._assigned(self.family[self.letter])
+        if self.gain_family is not None:
+            yield self._assigned(self.gain_family[self.letter])
 
     def _assigned(self, gain: Matrix) -> Claim:
         phi = self.answer["polynomial"]
@@ -132,10 +133,19 @@ class GainDesign(Result):
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """Det 𝒪 (det 𝒞) of a design with a desired polynomial."""
-        if self.desired is None or not self._pair.is_observable:
+        """What decides where a gain exists: det 𝒪 (det 𝒞), or what the fixed modes leave of φ where that is 0."""
+        if self.desired is None:
             return ()
-        return (self._pair.determinant,)
+        if self._pair.is_observable:
+            return (self._pair.determinant,)
+        return self._obstacles if self.answer[self.letter] is None else ()
+
+    @cached_property
+    def _obstacles(self) -> tuple[Scalar, ...]:
+        """The coefficients of φ modulo the fixed polynomial, as far as parameters can make them vanish."""
+        rest = remainder(self.answer["polynomial"], self.fixed_polynomial, self.plant.variable)[1]
+        found = [c.numerator for c in rest.coefficients(self.plant.variable) if not c.is_zero]
+        return () if any(c.is_constant for c in found) else tuple(found)
 
     @cached_property
     def fixed_polynomial(self) -> Scalar:
@@ -143,14 +153,14 @@ class GainDesign(Result):
         return Scalar.of(1) if self._pair.is_observable else self._pair.fixed_polynomial
 
     @cached_property
-    def fixed_modes(self) -> tuple[Root, ...]:
+    def unmoved_modes(self) -> tuple[Root, ...]:
         """The modes that no gain moves."""
         if self.fixed_polynomial.is_one:
             return ()
         return roots_of(self.fixed_polynomial, self.plant.variable)
 
     @cached_property
-    def family(self) -> dict[str, Any] | None:
+    def gain_family(self) -> dict[str, Any] | None:
         """The general gain where it is not unique: `parameters` and the gain with them; None where it is unique."""
         gain = self.answer[self.letter]
         if gain is None or self.desired is None or self._pair.is_observable:
@@ -162,16 +172,21 @@ class GainDesign(Result):
         return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal()}
 
     @cached_property
-    def cases(self) -> tuple[Case, ...]:
+    def case_tree(self) -> tuple[Case, ...]:
         """What is true where det 𝒪 (det 𝒞) vanishes: a gain that survives there, or none."""
         desired = self.desired
         if desired is None:
             return ()
-        return strata(
-            self.plant,
-            self.existence,
-            lambda plant, values: type(self).of(plant, desired.substitute(values), self.method),
-        )
+
+        def solve(plant: StateSpace, values: dict[str, Scalar]) -> Self:
+            return type(self).of(plant, desired.substitute(values), self.method)
+
+        obstacles = self.existence
+        if len(obstacles) <= 1 or self._pair.is_observable:
+            return strata(self.plant, obstacles, solve)
+        shared = set.intersection(*(set(vanishing_factors([c], self.plant.symbols.signs)) for c in obstacles))
+        elsewhere = Case(tuple(Condition("existence", c, "==") for c in obstacles), {}, None)
+        return (*strata(self.plant, shared, solve), elsewhere)
 
     @cached_property
     def stability(self) -> Stability:
@@ -191,8 +206,8 @@ class GainDesign(Result):
             "poles": self.roots,
             "stable": self.stability.verdict,
             "stable_if": self.stability.inequalities(self.plant.symbols.signs),
-            "fixed_modes": self.fixed_modes,
-            "family": self.family,
+            "fixed_modes": self.unmoved_modes,
+            "family": self.gain_family,
         }
 
 

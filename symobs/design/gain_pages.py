@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.observability import Controllability, Observability, RankResult
-from symobs.analysis.pages import determinant_form, factored_form, formula_of_factored, say_stability, square_test
+from symobs.analysis.pages import (
+    determinant_form,
+    factored_form,
+    formula_of_factored,
+    say_stability,
+    square_test,
+    undecided,
+)
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Step
 from symobs.design.gain import GainDesign, fresh_names
@@ -53,6 +60,8 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
     _test(page, design, side, style)
     if design.answer[side.gain] is None:
         _impossible(page, design, side)
+        for case in design.case_tree:
+            _case(page, case, side)
         return
     if not design.fixed_polynomial.is_one:
         _with_fixed_modes(page, design, side)
@@ -64,7 +73,7 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
     _verified(page, design, side)
-    for case in design.cases:
+    for case in design.case_tree:
         _case(page, case, side)
 
 
@@ -229,12 +238,12 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
     variable = page.plant.variable
     polynomial, desired = design.fixed_polynomial, design.desired
-    assert desired is not None and design.family is not None  # noqa: S101, PT018 - fixed modes come with a family
+    assert desired is not None and design.gain_family is not None  # noqa: S101, PT018 - fixed modes come with a family
     roots = Roots(Literal(polynomial), roots_of(polynomial, variable))
     page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
     page.remark(f"fixed_but_wanted_{side.kind}", roots=roots)
     page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
-    page.remark(f"family_{side.kind}", gain=page.value(design.family[side.gain]))
+    page.remark(f"family_{side.kind}", gain=page.value(design.gain_family[side.gain]))
 
 
 def _impossible(page: Page, design: GainDesign, side: Side) -> None:
@@ -274,7 +283,7 @@ def _case(page: Page, case: Case, side: Side) -> None:
     """Say what is true on a stratum."""
     when = relation(case.when[0].expression, 0)
     if not isinstance(case.result, GainDesign):
-        page.remark(f"undecided_{side.kind}", when=page.value(case.when[0].expression))
+        page.steps.append(undecided(page, case))
         return
     result = case.result
     fixed = result.fixed_polynomial
@@ -298,7 +307,9 @@ def _case(page: Page, case: Case, side: Side) -> None:
 
 
 def design_gain_on(case: Case, page: Page, side: Side) -> bool:
-    """Whether the gain of the main line is still finite on the stratum."""
+    """Whether there is a gain in the main line that is still finite on the stratum."""
+    if not page.knows(side.gain):
+        return False
     try:
         page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
     except ZeroDivisionError:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from flint import fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
-from symobs.exact.matrix import Matrix, build, common_multiple
+from symobs.exact.matrix import Matrix, build
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,7 +48,7 @@ def _kernel_vector(
     bound = [(row, pivot) for row, pivot in zip(reduced, pivots, strict=True) if not vanishes(row[free])]
     common = field.one
     for row, pivot in bound:
-        common = common_multiple(common, row[pivot])
+        common = ring.common_multiple(common, row[pivot])
     vector = [field.zero] * columns
     vector[free] = common
     for row, pivot in bound:

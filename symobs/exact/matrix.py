@@ -50,7 +50,7 @@ class Matrix:
         denominator = field.one
         for row in lifted:
             for entry in row:
-                denominator = common_multiple(denominator, entry.denominator_part)
+                denominator = ring.common_multiple(denominator, entry.denominator_part)
         table = tuple(
             tuple(entry.numerator_part * (denominator / entry.denominator_part) for entry in row) for row in lifted
         )
@@ -188,7 +188,7 @@ class Matrix:
         field = self.field
         common = field.one
         for entry in self.entries:
-            common = common_multiple(common, entry.within(field).denominator_part)
+            common = ring.common_multiple(common, entry.within(field).denominator_part)
         return Scalar(field, common, field.one)
 
     @property
@@ -214,7 +214,7 @@ class Matrix:
             message = f"cannot add {self.shape} and {other.shape}"
             raise ValueError(message)
         a, b, field = self._fit(other)
-        denominator, left, right = _align(a.denominator, b.denominator)
+        denominator, left, right = ring.align(a.denominator, b.denominator)
         a, b = a.scaled(left), b.scaled(right)
         if isinstance(a.table, fmpz_mat) and isinstance(b.table, fmpz_mat):
             return Matrix(field, a.table + b.table, denominator, self.shape)
@@ -360,22 +360,6 @@ class Matrix:
             for i, row in enumerate(lifted.polynomials)
         )
         return Scalar.reduced(field, ring.determinant(rows, field), lifted.denominator**order)
-
-
-def common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
-    """Return a common multiple as small as FLINT's gcd makes it."""
-    if right.is_one() or left == right:
-        return left
-    if left.is_one():
-        return right
-    multiple = left * (right / left.gcd(right))
-    return -multiple if multiple.leading_coefficient() < 0 else multiple
-
-
-def _align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, fmpz_mpoly]:
-    """Return (common denominator, factor for the left, factor for the right)."""
-    common = common_multiple(left, right)
-    return common, common / left, common / right
 
 
 def build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]) -> Matrix:

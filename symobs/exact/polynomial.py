@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import ring
 from symobs.exact.field import Field
-from symobs.exact.matrix import Matrix, common_multiple
+from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
     column = [row[0] for row in vector.polynomials]
     common = field.one
     for coefficient in coefficients:
-        common = common_multiple(common, coefficient.denominator_part)
+        common = ring.common_multiple(common, coefficient.denominator_part)
     whole = [c.numerator_part * (common / c.denominator_part) for c in coefficients]
     image = [entry * whole[0] for entry in column] if not whole[0].is_one() else column
     power = field.one

@@ -167,3 +167,19 @@ def rows_of(table: fmpz_mat, field: Field) -> Rows:
     """Return a numeric table as rows of polynomials of `field`."""
     constant = field.context.constant
     return tuple(tuple(constant(entry) for entry in row) for row in table.tolist())
+
+
+def common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
+    """Return a common multiple as small as FLINT's gcd makes it."""
+    if right.is_one() or left == right:
+        return left
+    if left.is_one():
+        return right
+    multiple = left * (right / left.gcd(right))
+    return -multiple if multiple.leading_coefficient() < 0 else multiple
+
+
+def align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, fmpz_mpoly]:
+    """Return (common denominator, factor for the left, factor for the right)."""
+    common = common_multiple(left, right)
+    return common, common / left, common / right

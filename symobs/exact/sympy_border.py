@@ -62,6 +62,12 @@ def root_to_sympy(root: Root, objects: Mapping[str, Any]) -> sympy.Expr:
     return scalar_to_sympy(root.centre, objects) + offset
 
 
+def relation_to_sympy(left: Scalar, operator: str, objects: Mapping[str, Any]) -> Any:
+    """Return `left operator 0` as a SymPy relation, not evaluated away."""
+    kinds = {"!=": sympy.Ne, "==": sympy.Eq, ">": sympy.Gt, ">=": sympy.Ge, "<": sympy.Lt, "<=": sympy.Le}
+    return kinds[operator](scalar_to_sympy(left, objects), 0, evaluate=False)
+
+
 def complex_from_sympy(expression: Any, where: str) -> Complex:
     """Return the exact value of a SymPy expression built from numbers, symbols, i and the four operations."""
     if isinstance(expression, (int, Fraction)):

@@ -62,10 +62,11 @@ class Verified:
 
 @dataclass(frozen=True, slots=True)
 class Caution:
-    """A warning, after its label."""
+    """A warning, or with `warns` False another note in small print, after its label."""
 
     label: str
     inlines: Inlines
+    warns: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,7 +135,7 @@ class Layout(Generic[B]):
                 line += [sign, box]
             else:
                 lines = self._broken(sign, member, room, head, framed=is_answer)
-                has_frame = framed and len(lines) == 1
+                has_frame = len(lines) == 1 if is_answer else has_frame
                 finished += lines[:-1]
                 line = [lines[-1]]
         return [*finished, printer.joined(line, Level.SUM)], has_frame

@@ -80,7 +80,7 @@ def _sources(document: Document) -> list[Block]:
     if not keys:
         return []
     listed = "; ".join(f"{THEOREMS[key].name}: {THEOREMS[key].source}" for key in keys)
-    return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",))]
+    return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",), warns=False)]
 
 
 def _statements(document: Document) -> tuple[list[Step], dict[int, list[Step]]]:

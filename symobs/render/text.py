@@ -72,8 +72,8 @@ class TextWriter:
                 return indented(self.printer.display(relations, boxed=boxed))
             case Verified(inlines):
                 return wrapped(self.sentence(inlines), width, first="✓ ")
-            case Caution(label, inlines):
-                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! ")
+            case Caution(label, inlines, warns):
+                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
             case CaseBlock(label, blocks):

@@ -2,7 +2,7 @@
 
 from symobs.system.plant import Matrices, StateSpace, realise
 from symobs.system.reading import read_complex, read_matrix, read_scalar
-from symobs.system.symbols import Symbols
+from symobs.system.symbols import Symbols, is_sympy
 from symobs.system.time import Continuous, Discrete, TimeDomain
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "StateSpace",
     "Symbols",
     "TimeDomain",
+    "is_sympy",
     "read_complex",
     "read_matrix",
     "read_scalar",

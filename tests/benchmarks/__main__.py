@@ -107,7 +107,7 @@ def ours(make: Callable[[], Model]) -> Callable[[], float]:
 
 def conditions(make: Callable[[], Model]) -> float:
     """Return the processor time of the conditions of a result, made when first asked for."""
-    return processor_time(lambda result: result.conditions, solve(make()))
+    return processor_time(lambda result: result.holds_where, solve(make()))
 
 
 # -- giac ---------------------------------------------------------------------------------------------------------
