@@ -26,7 +26,6 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
-from symobs.method import Result
 from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
 
     from symobs.derivation import Step
     from symobs.formula import Environment
+    from symobs.method import Result
 
 #: A formula node that may stand negated or doubled in its place.
 NODES = (Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative)

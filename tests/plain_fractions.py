@@ -260,7 +260,7 @@ class World:
                 case Case(when, substitution, inside):
                     yield "condition", single(self.difference(when))
                     stratum = self.copy()
-                    stratum.meanings |= {name: value for name, value in substitution}
+                    stratum.meanings |= dict(substitution)
                     yield "zero", single(stratum.difference(when))
                     yield from stratum.read(inside)
             sentence = getattr(step, "sentence", None)

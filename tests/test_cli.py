@@ -390,9 +390,7 @@ def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
         {"expect": []},
     ):
         assert list(validator.iter_errors({**tables, **change})), change
-    assert {name for name in tasks()["compensator"].keywords} <= set(
-        schema["properties"]["specification"]["properties"]
-    )
+    assert set(tasks()["compensator"].keywords) <= set(schema["properties"]["specification"]["properties"])
 
 
 def test_templates_are_listed_and_copied_once(tmp_path: Path) -> None:

@@ -39,10 +39,10 @@ FLOORS = {
     "design": 9,
     "render": 9,
     "expect": 10,
-    "problem": 10,
-    "cli": 11,
-    "teaching": 11,
-    "__main__": 12,
+    "problem": 11,
+    "cli": 12,
+    "teaching": 12,
+    "__main__": 13,
 }
 # The package itself (`__init__.py`) stands above all floors. It lists the modules in which methods and formats
 # register, and two modules may look at it or load by name: the registry (the only way up) and the command line.

@@ -178,7 +178,7 @@ class GainDesign(Result):
         if desired is None:
             return ()
 
-        def solve(plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
             return type(self).of(plant, desired.substitute(values), self.method)
 
         obstacles = self.existence

@@ -82,9 +82,10 @@ class Route:
     def __init__(self, target: Field, source: Field) -> None:
         """Find where each generator goes."""
         self.target = target.context
-        self.mapping = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
-        self.missing = [i for i in range(len(source.names)) if i not in self.mapping]
-        generators = {i: target.context.gen(k) for i, k in self.mapping.items()}
+        found = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
+        self.mapping: dict[str | int, str | int] = {**found}
+        self.missing = [i for i in range(len(source.names)) if i not in found]
+        generators = {i: target.context.gen(k) for i, k in found.items()}
         self.images = [generators.get(i, target.zero) for i in range(len(source.names))]
 
     def carry(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:

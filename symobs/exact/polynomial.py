@@ -55,9 +55,9 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
     whole = [c.numerator_part * (common / c.denominator_part) for c in coefficients]
     image = [entry * whole[0] for entry in column] if not whole[0].is_one() else column
     power = field.one
-    for coefficient in whole[1:]:
+    for numerator in whole[1:]:
         power = power * scale
-        factor = coefficient * power
+        factor = numerator * power
         image = [ring.dot(row, image, field.zero) for row in rows]
         if factor:
             image = [entry + factor * old for entry, old in zip(image, column, strict=True)]

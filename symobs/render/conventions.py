@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Sum, letters
+from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Sum, Together, letters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -71,11 +71,13 @@ def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
                 yield subject
             case Exactly(property=Predicate(subject=subject), where=where):
                 yield from (subject, *_in_facts(where))
+            case Together(relations=relations):
+                yield from _in_facts(relations)
 
 
 def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
-        if isinstance(value, Relation | Predicate | Roots | Exactly):
+        if isinstance(value, Relation | Predicate | Roots | Exactly | Together):
             yield from _in_facts((value,))
         elif not isinstance(value, str):
             yield value
