@@ -194,6 +194,7 @@ class TestDeterminants:
     def test_determinants_on_both_sides_of_the_change_of_algorithm(self, order: int) -> None:
         generator = seeded(order)
         numbers = [[generator.randint(-3, 3) for _ in range(order)] for _ in range(order)]
+        numbers[0][0] = numbers[1][0] = 0  # the first pivot is found two rows below
         X = sympy.Matrix(numbers)
         x = Matrix.of(numbers)
         marked = Matrix.of(

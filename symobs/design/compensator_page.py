@@ -240,7 +240,9 @@ def _cautions(page: Page, design: CompensatorDesign) -> None:
     for factor, power in desired.grouped():
         if power > 1 and factor.degree(plant.variable) == 1:
             pole = -factor.coefficients(plant.variable)[1]
-            offset = closed_loop_matrix(page, FEEDBACK) - page.value(pole) @ page.identity(plant.order)
+            closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
+            is_negative = pole.fraction() < 0
+            offset = closed + page.value(-pole) @ size if is_negative else closed - page.value(pole) @ size
             zero = Matrix.zeros(plant.order, plant.order)
             facts = relation(offset, "!==", zero)
             page.caution("defective", facts, pole=page.value(pole), matrix=relation(offset, offset.shown))

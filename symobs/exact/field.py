@@ -8,7 +8,7 @@ in which the value was computed.  Fields are joined by `|`; values follow.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
@@ -83,7 +83,7 @@ class Route:
         """Find where each generator goes."""
         self.target = target.context
         found = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
-        self.mapping: dict[str | int, str | int] = {**found}
+        self.mapping = cast("dict[str | int, str | int]", found)  # the key type of the binding's signature
         self.missing = [i for i in range(len(source.names)) if i not in found]
         generators = {i: target.context.gen(k) for i, k in found.items()}
         self.images = [generators.get(i, target.zero) for i in range(len(source.names))]
