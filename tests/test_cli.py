@@ -64,7 +64,8 @@ def test_one_task_of_a_file_can_be_run() -> None:
     run = inside("solve", str(SERVO), "--task", "controllability", "--format", "json")
     assert [result["task"] for result in results(run.out)] == ["controllability"]
     assert run.code == 0
-    two = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"\n[expect]\nrank = 2\nL = [[9], [9]]'
+    two = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"\n'
+    two += "[expect]\nrank = 2\nL = [[9], [9]]"
     assert inside("solve", "-", stdin=two.encode()).code == 4
     assert inside("solve", "-", "--task", "observability", stdin=two.encode()).code == 0
     unknown = inside("solve", "-", "--task", "observe", stdin=two.encode())
@@ -158,7 +159,7 @@ def test_files_that_cannot_be_read_are_3(tmp_path: Path) -> None:
     wide.write_text(OBSERVER, encoding="utf-16")
     empty.touch()
     for name, words in {
-        ".": f"{tmp_path.name if False else '.'}: Is a directory",
+        ".": ".: Is a directory",
         "missing.toml": "missing.toml: No such file or directory; give the path",
         "a\0b": "null",
         "binary": "binary: byte 128 is not UTF-8; save the file as UTF-8 text",
@@ -278,9 +279,17 @@ def test_a_reader_may_stop_reading(arguments: list[str]) -> None:
     assert (run.returncode, run.stderr) == (0, "")
 
 
+INTERRUPTIBLE = """
+import runpy, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs begin with it ignored
+sys.argv[0] = "symobs"
+runpy.run_module("symobs", run_name="__main__", alter_sys=True)
+"""
+
+
 def test_ctrl_c_is_130() -> None:
     with subprocess.Popen(
-        [sys.executable, "-m", "symobs", "solve", "-"],
+        [sys.executable, "-c", INTERRUPTIBLE, "solve", "-"],
         env=environment(),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -290,9 +299,11 @@ def test_ctrl_c_is_130() -> None:
         process.stdin.write(b"#" * 200_000)  # more than a pipe holds: returns once the file is being read
         process.stdin.flush()
         process.send_signal(signal.SIGINT)
-        out, err = process.stdout.read(), process.stderr.read()  # type: ignore[union-attr]
-        process.stdin.close()
-        assert process.wait(SAFETY) == 130
+        try:
+            assert process.wait(SAFETY) == 130
+        finally:
+            process.kill()
+        out, err = process.communicate()
     assert (out, err) == (b"", b"interrupted\n")
 
 
@@ -374,7 +385,7 @@ def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
     for path in EXAMPLES:
         assert list(validator.iter_errors(tomllib.loads(path.read_text(encoding="utf-8")))) == []
     tables = tomllib.loads(OBSERVER)
-    for change in (
+    changes: tuple[dict[str, Any], ...] = (
         {"titel": "x"},
         {"task": "observe"},
         {"tasks": ["observer"]},
@@ -388,7 +399,8 @@ def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
         {"symbols": {"b": {"sgn": "real"}}},
         {"convention": "S9"},
         {"expect": []},
-    ):
+    )
+    for change in changes:
         assert list(validator.iter_errors({**tables, **change})), change
     assert set(tasks()["compensator"].keywords) <= set(schema["properties"]["specification"]["properties"])
 
