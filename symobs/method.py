@@ -12,6 +12,7 @@ import inspect
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from dataclasses import fields as parts_of
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
@@ -63,6 +64,11 @@ class Result:
         """Check every claim; raises `CertificateRejected`."""
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
         object.__setattr__(self, "certificates", check_all(self.claims()))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle what the result was made of: whoever reads it back checks the claims again."""
+        made = [dict(self.answer) if f.name == "answer" else getattr(self, f.name) for f in parts_of(self) if f.init]
+        return (type(self), tuple(made), {"page_method": self.page_method})
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 

@@ -32,8 +32,9 @@ from tests.plain import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
+    from symobs.conditions import Condition
     from symobs.exact import Complex
     from symobs.method import Result
     from symobs.system import StateSpace
@@ -205,6 +206,23 @@ def transfer_holds(result: Result, at: Setting) -> None:
         if at_number(characteristic(at.A), s):
             expected = response(at.A, at.B, at.C, s) + at.D[0][0]
             assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
+
+
+def conditions_hold(conditions: Iterable[Condition], point: Point) -> bool:
+    return all((value_at(c.expression, point) == 0) == (c.operator == "==") for c in conditions)
+
+
+def applicable(result: Result, point: Point) -> Iterator[Result]:
+    """Yield what a result says of a point: its cases there, their cases in turn; itself where the point is in none.
+
+    A case without a result is undecided and says nothing.
+    """
+    found = [case.result for case in result.case_tree if conditions_hold(case.when, point)]
+    for inner in found:
+        if inner is not None:
+            yield from applicable(inner, point)
+    if not found and conditions_hold(result.holds_where, point):
+        yield result
 
 
 HOLDS: dict[str, Callable[[Any, Setting], None]] = {

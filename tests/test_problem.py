@@ -241,7 +241,7 @@ def test_expected_answers_are_compared_as_mathematics(line: str) -> None:
         ("poles = [-10]", "expect.poles: expected [-10], found [-10, -10]"),
         ("poles = []", "expect.poles: expected [], found [-10, -10]"),
         ('verdict = "no"', "expect.verdict: expected no, found yes"),
-        ('conditions = ["2 != 0"]', "expect.holds_where: expected [2 != 0], found []"),
+        ('conditions = ["2 != 0"]', "expect.conditions: expected [2 != 0], found []"),
         ('observer.verdict = "no"', "expect.observer.verdict: expected no, found yes"),
         ("verdict = 1", "expect.verdict: expected 1, found yes"),
     ],

@@ -58,4 +58,5 @@ def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
         return {"when": when, "verdict": "undecided"}
     inner = {name: to_json(value) for name, value in case.result.fields.items()}
     differing = {name: value for name, value in inner.items() if outer.get(name) != value}
-    return {"when": when, "verdict": case.result.verdict, **differing}
+    nested = [_case_object(deeper, inner) for deeper in case.result.case_tree]
+    return {"when": when, "verdict": case.result.verdict, **differing, **({"cases": nested} if nested else {})}

@@ -70,8 +70,8 @@ class StateSpace:
         C the coefficients of b, constant first.  Raises `InputError` where the function is not proper or constant.
         """
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
-        known = known.seen(transfer_function)
         time = read_time(dt, known)
+        known = known.seen(transfer_function, time.variable)
         where, variable = "plant.transfer_function", time.variable
         if isinstance(transfer_function, str):
             value = parse_scalar(transfer_function, known.names, variable=variable, where=where)
@@ -129,7 +129,7 @@ class StateSpace:
 
     def knowing(self, *values: object) -> StateSpace:
         """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
-        symbols = self.symbols.seen(list(values))
+        symbols = self.symbols.seen(list(values), self.variable)
         if symbols is self.symbols:
             return self
         m = self.matrices

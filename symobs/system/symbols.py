@@ -59,9 +59,12 @@ class Symbols:
                 latex[name] = _latex(details["latex"], f"{place}.latex")
         return Symbols(signs, latex, objects, closed=True)
 
-    def seen(self, values: object) -> Symbols:
-        """Return these symbols with those of SymPy objects in `values` added, their assumptions read as signs."""
-        found = sympy_symbols(values)
+    def seen(self, values: object, variable: str = "") -> Symbols:
+        """Return these symbols with those of SymPy objects in `values` added, the variable of polynomials left out.
+
+        Their assumptions are read as signs.
+        """
+        found = {name: symbol for name, symbol in sympy_symbols(values).items() if name != variable}
         if not found:
             return self
         from symobs.exact.sympy_border import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in

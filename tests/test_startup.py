@@ -1,0 +1,105 @@
+"""What a run imports: SymPy and its kin only where their objects are asked for, nothing that a command does not need."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
+
+HEAVY = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+KERNEL = {"flint", "jinja2", "lark"}
+_COMMAND = """
+import sys
+from symobs.cli import main
+sys.argv = ["symobs", *sys.argv[1:]]
+try:
+    main()
+finally:
+    print(*sys.modules, sep="\\n", file=sys.stderr)
+"""
+
+
+def imported(code: str, *arguments: str, exit_code: int = 0) -> set[str]:
+    """The modules that stand in memory after a program, as it prints them on standard error."""
+    run = subprocess.run(
+        [sys.executable, "-c", code, *arguments],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=SAFETY,
+        check=False,
+    )
+    assert run.returncode == exit_code, run.stderr
+    return set(run.stderr.splitlines())
+
+
+def after(*arguments: str) -> set[str]:
+    """The modules in memory after a command of symobs."""
+    return imported(_COMMAND, *arguments)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--help"],
+        ["methods"],
+        ["schema"],
+        ["templates"],
+        ["observer", "--help"],
+        ["solve", str(SERVO)],
+        ["solve", str(SERVO), "--format", "text"],
+        ["solve", str(SERVO), "--format", "json"],
+        ["observer", "--A", "[0 1; 0 -b]", "--C", "[1 0]", "--poles", "-p, -q"],
+    ],
+    ids=" ".join,
+)
+def test_no_command_imports_what_is_heavy(arguments: list[str]) -> None:
+    found = after(*arguments)
+    assert "symobs.cli" in found
+    assert found & HEAVY == set()
+
+
+def test_no_worked_example_imports_what_is_heavy() -> None:
+    several = f"""
+import sys
+from symobs.cli import main
+for file in {[str(path) for path in EXAMPLES if path.stem != "cart_pole"]!r}:
+    sys.argv = ["symobs", "solve", file, "--format", "json"]
+    try:
+        main()
+    except SystemExit as end:
+        assert end.code == 0, file
+print(*sys.modules, sep="\\n", file=sys.stderr)
+"""
+    assert imported(several) & HEAVY == set()
+
+
+def test_the_version_needs_neither_kernel_nor_tasks() -> None:
+    found = after("--version")
+    assert found & (HEAVY | KERNEL) == set()
+    assert {name for name in found if name.startswith("symobs")} == {"symobs", "symobs.cli", "symobs.errors"}
+
+
+def test_importing_symobs_imports_nothing_else_of_it() -> None:
+    found = imported("import sys, symobs; print(*sys.modules, sep='\\n', file=sys.stderr)")
+    assert found & (HEAVY | KERNEL) == set()
+    assert {name for name in found if name.startswith("symobs")} == {"symobs"}
+
+
+def test_a_design_from_python_imports_sympy_when_its_objects_are_asked_for() -> None:
+    design = """
+import sys, symobs
+design = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"), poles=[-10, -10])
+design.to_latex(), design.to_json(), design.verdict, repr(design)
+"""
+    shown = "print(*sys.modules, sep='\\n', file=sys.stderr)"
+    assert imported(design + shown) & HEAVY == set()
+    assert "sympy" in imported(f"{design}design.L\n{shown}")
+
+
+def test_json_needs_no_templates_and_text_neither() -> None:
+    for form in ("json", "text"):
+        assert "jinja2" not in after("solve", str(SERVO), "--format", form)
