@@ -126,19 +126,16 @@ def _progress(found: Any) -> Any:
 
 def _format_of(format_name: str | None, target: str | None) -> str:
     """Return the format asked for, or the one the target's suffix names, or LaTeX."""
-    from symobs.method import formats  # noqa: PLC0415
+    from symobs.method import format_named, formats  # noqa: PLC0415
 
-    known = formats()
-    repair = f"give --format one of {', '.join(sorted(known))}"
     suffix = Path(target).suffix if target is not None else ""
     if format_name is None and suffix:
-        named = [name for name, found in known.items() if found.suffix == suffix]
+        named = [name for name, found in formats().items() if found.suffix == suffix]
         if not named:
+            repair = f"give --format one of {', '.join(sorted(formats()))}"
             raise UsageError(f"the suffix {_quoted(suffix)} names no output format", where="-o", repair=repair)
-        return "latex" if "latex" in named else named[0]
-    if format_name is not None and format_name not in known:
-        raise UsageError(f"{_quoted(format_name)} is not an output format", repair=repair)
-    return format_name or "latex"
+        format_name = "latex" if "latex" in named else named[0]
+    return str(format_named(format_name or "latex").name)
 
 
 def _quoted(text: str) -> str:

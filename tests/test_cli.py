@@ -220,8 +220,15 @@ def test_links_and_devices_stay_what_they_are(tmp_path: Path) -> None:
     assert inside("solve", str(SERVO), "-o", str(link)).code == 0
     assert link.is_symlink()
     assert target.stat().st_size > 0
-    assert inside("solve", str(SERVO), "--format", "json", "-o", os.devnull).code == 0
-    assert not Path(os.devnull).is_file()
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        assert inside("solve", "-", "--format", "json", "-o", str(pipe), stdin=OBSERVER.encode()).code == 0
+        assert results(os.read(reading, 65536).decode())
+    finally:
+        os.close(reading)
+    assert pipe.is_fifo()
 
 
 @pytest.mark.parametrize("target", ["missing/page.tex", "."])

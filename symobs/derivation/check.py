@@ -101,8 +101,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             for fact in facts:
                 _fact(fact, environment, discrete)
         case Diagram(_, labels):
-            for _, label in labels:
-                _established(label, environment)
+            for place, label in labels:
+                _fact(Relation((Letter(DRAWN[place]), label), ("=",)), environment, discrete)
         case Case(when, substitution, inside):
             _walk(inside, _on_stratum(when, dict(substitution), environment), discrete)
         case Section(title, inside):
@@ -239,6 +239,9 @@ def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  #
 def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
     return value.degree(environment.variable), value.denominator.degree(environment.variable)
 
+
+#: The letter whose value each box of a diagram shows.
+DRAWN = {"plant": "P", "compensator": "F"}
 
 PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",

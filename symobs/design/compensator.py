@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+#: The stability of a compensator with more terms than this is left undecided: its Hurwitz determinants take seconds.
+_DECIDABLE_TERMS = 400
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class CompensatorDesign(Result):
     """Both gains and F: det(sI − A + BK) = φ_c, det(sI − A + LC) = φ_o, F(s) = K (sI − A + BK + LC − LDK)⁻¹ L.
@@ -136,7 +140,7 @@ class CompensatorDesign(Result):
         polynomial = self.loop_polynomial
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
-        form = _over(numerator * own, polynomial) if kept else factored(value, self.plant.variable)
+        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e))
@@ -164,12 +168,13 @@ class CompensatorDesign(Result):
         m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
 
-    @property
+    @cached_property
     def own_stability(self) -> str:
-        """Whether the compensator itself is stable."""
-        plant = self.plant
-        denominator = self.answer["F"].denominator
-        return stability(denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
+        """Whether the compensator itself is stable; `undecided` where its polynomial is too long to be decided in time."""
+        plant, F = self.plant, self.answer["F"]
+        if F.size > _DECIDABLE_TERMS:
+            return "undecided"
+        return stability(F.denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -207,10 +212,11 @@ def _factors_of(design: GainDesign) -> tuple[tuple[Scalar, int], ...]:
     return factored(design.answer["polynomial"], design.plant.variable).factors
 
 
-def _over(numerator: Scalar, polynomial: Factored) -> Factored:
-    """Return numerator / Π factors with the denominator's factors kept as they were asked for."""
+def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
+    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    unit, above = numerator.factors()
     below = tuple((factor, -power) for factor, power in polynomial.factors)
-    return Factored(Scalar.of(1), ((numerator, 1), *below))
+    return Factored(unit, (*above, (own, 1), *below))
 
 
 def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:

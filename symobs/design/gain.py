@@ -179,7 +179,14 @@ class GainDesign(Result):
             return ()
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-            return type(self).of(plant, desired.substitute(values), self.method)
+            found = type(self).of(plant, desired.substitute(values), self.method)
+            own = self.answer[self.letter]
+            if own is None or found.answer[self.letter] is None:
+                return found
+            try:  # the gain of the main line, where it is still there
+                return found.with_answer(self.letter, own.substitute(values))
+            except ZeroDivisionError:
+                return found
 
         obstacles = self.existence
         if len(obstacles) <= 1 or self._pair.is_observable:
