@@ -88,7 +88,7 @@ def inverse(table: Table) -> Table:
 def adjugate(table: Table) -> Table:
     def cofactor(i: int, j: int) -> Fraction:
         minor = [[x for b, x in enumerate(row) if b != i] for a, row in enumerate(table) if a != j]
-        return (-1) ** (i + j) * determinant(minor)
+        return determinant(minor) * (-1 if (i + j) % 2 else 1)
 
     return [[cofactor(i, j) for j in range(len(table))] for i in range(len(table))]
 

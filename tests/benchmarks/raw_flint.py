@@ -69,15 +69,14 @@ def _dot(left: Sequence[fmpz_mpoly], right: Sequence[fmpz_mpoly]) -> fmpz_mpoly:
 def _minors(rows: Sequence[Sequence[fmpz_mpoly]]) -> Mapping[tuple[int, ...], fmpz_mpoly]:
     """Return the minors of all these rows by their columns, each row expanded in the minors of those above."""
     width = len(rows[0])
-    minors = {(j,): rows[0][j] for j in range(width)}
+    minors: dict[tuple[int, ...], fmpz_mpoly] = {(j,): rows[0][j] for j in range(width)}
     for height, row in enumerate(rows[1:], start=1):
-        larger = {}
+        larger: dict[tuple[int, ...], fmpz_mpoly] = {}
         for columns in itertools.combinations(range(width), height + 1):
-            total = None
-            for k, column in enumerate(columns):
-                term = row[column] * minors[columns[:k] + columns[k + 1 :]]
-                signed = -term if (height + k) % 2 else term
-                total = signed if total is None else total + signed
+            terms = [row[column] * minors[columns[:k] + columns[k + 1 :]] for k, column in enumerate(columns)]
+            total = -terms[0] if height % 2 else terms[0]
+            for k, term in enumerate(terms[1:], start=1):
+                total = total - term if (height + k) % 2 else total + term
             larger[columns] = total
         minors = larger
     return minors
