@@ -21,6 +21,7 @@ from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import POINT_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
+    Apply,
     Environment,
     Exact,
     Formula,
@@ -43,6 +44,8 @@ EXACT_UP_TO = 60
 #: The error bound every certificate at random points stays below.
 ERROR_GOAL = 2.0**-50
 _DRAWS = 20
+#: What evaluation raises where a formula makes no sense: shapes that do not fit, division by zero, a missing letter.
+SENSELESS = (ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
 #: What a random point can decide: equal, and not identically equal.  `!=` is more: different at every point.
 _AT_POINTS = {"=", "!=="}
 
@@ -211,15 +214,22 @@ def check_all(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
 
 
 def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
-    """Return how a relation was found true and the bound of the error; ("", 0) where it is false.
+    """Return how a relation was found true and the bound of the error; ("", 0) where it is false or makes no sense.
 
-    What holds with the named coefficients free holds whatever they stand for, so that is tried first.
+    An equation that holds with the named coefficients free holds whatever they stand for, so that is tried first.
     """
+    try:
+        return _verified(relation, environment)
+    except SENSELESS:
+        return "", 0.0
+
+
+def _verified(relation: Relation, environment: Environment) -> tuple[str, float]:
     free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
     leaves = _distinct(relation, environment)
     exactly = pointwise or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
-    if exactly and _holds_exactly(relation, free):
+    if exactly and (free is environment or "!==" not in relation.operators) and _holds_exactly(relation, free):
         return "exact", 0.0
     if exactly and (pointwise or not environment.coefficients):
         return "", 0.0
@@ -240,10 +250,11 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         return agree(left, right, arithmetic)
     if operator == "!==":
         return differ(left, right, arithmetic)
-    difference = _as_scalar(left) - _as_scalar(right)
     if operator == "!=":
-        return _excluded_from_zero(difference, environment)
-    sign = sign_of(difference, environment.signs)
+        difference = left - right
+        entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
+        return any(_excluded_from_zero(entry, environment) for entry in entries)
+    sign = sign_of(as_scalar(left) - as_scalar(right), environment.signs)
     return (
         sign
         in {
@@ -255,8 +266,14 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     )
 
 
-def _as_scalar(value: Any) -> Scalar:
-    return value[0, 0] if isinstance(value, Matrix) else value
+def as_scalar(value: Any) -> Scalar:
+    """Read a 1×1 matrix as its entry; raises TypeError for what is not a scalar."""
+    if isinstance(value, Matrix) and value.shape == (1, 1):
+        return value[0, 0]
+    if not isinstance(value, Scalar):
+        message = f"{type(value).__name__} is not a scalar"
+        raise TypeError(message)
+    return value
 
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
@@ -276,8 +293,8 @@ def _holds_at_points(
     error, points = 1.0, 0
     names = {environment.variable}.union(*(leaf.field.names for leaf in [*leaves, *environment.coefficients.values()]))
     for _ in range(_DRAWS):
-        arithmetic = Modular(environment, Point(names, generator))
         try:
+            arithmetic = Modular(environment, Point(names, generator))
             if not _holds_at(relation, environment, arithmetic):
                 return "", 0.0
         except (VanishingDenominator, ZeroDivisionError):
@@ -332,6 +349,8 @@ def _leaves(formula: Formula, environment: Environment, seen: set[str]) -> Itera
         case Literal(value):
             yield value
         case _:
+            if isinstance(formula, Apply) and formula.function.endswith("_at"):
+                yield environment.values[formula.function.removesuffix("_at")]
             for part in children(formula):
                 yield from _leaves(part, environment, seen)
 

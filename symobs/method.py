@@ -18,9 +18,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import symobs
-from symobs.certificate import Certificate, Claim, check_all
+from symobs.certificate import SENSELESS, Certificate, Claim, check_all
 from symobs.conditions import Condition, vanishing_factors
-from symobs.errors import DerivationRejected, InputError, UsageError
+from symobs.errors import CertificateRejected, DerivationRejected, InputError, UsageError
 from symobs.page import Page
 
 if TYPE_CHECKING:
@@ -63,7 +63,11 @@ class Result:
     def __post_init__(self) -> None:
         """Check every claim; raises `CertificateRejected`."""
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
-        object.__setattr__(self, "certificates", check_all(self.claims()))
+        try:
+            object.__setattr__(self, "certificates", check_all(self.claims()))
+        except SENSELESS as error:
+            message = f"the answer of {self.task} is no answer: {error}"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle what the result was made of: whoever reads it back checks the claims again."""

@@ -35,6 +35,8 @@ LETTERS: dict[str, LetterForm] = {
     "q_o": LetterForm(r"q_{\mathrm o}", "q_o", "last column of the inverse observability matrix"),
     "q_c": LetterForm(r"q_{\mathrm c}", "q_c", "last row of the inverse controllability matrix"),
     "v": LetterForm("v", "v", "vector"),
+    "N": LetterForm("N", "N", "basis of the hidden subspace"),
+    "X": LetterForm("X", "X", "plant on the hidden subspace"),
     "x": LetterForm("x", "x", "state"),
     "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
     "e": LetterForm("e", "e", "estimation error"),

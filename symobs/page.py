@@ -31,6 +31,7 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
+    Shown,
     Together,
 )
 from symobs.formula.term import Term
@@ -73,7 +74,10 @@ def predicate(name: str, subject: Member) -> Predicate:
 def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     """Return a phrase with its slots filled."""
     filled = tuple(
-        (name, slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly, Together)) else formula_of(slot))
+        (
+            name,
+            slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly, Together, Shown)) else formula_of(slot),
+        )
         for name, slot in slots.items()
     )
     return Sentence(key, filled)

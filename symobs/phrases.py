@@ -107,9 +107,9 @@ GAINS: dict[str, str] = {
     "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for, "
     "so this $K$ still works; it is no longer the only one.",
     "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for. A gain that "
-    "works there is {gain}.",
+    "works there is",
     "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for. "
-    "A gain that works there is {gain}.",
+    "A gain that works there is",
     "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed mode {modes} is not among the poles asked for: no gain "
     "places them.",
     "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed mode {modes} is not among the poles asked for: no "
@@ -143,6 +143,31 @@ COMPENSATION: dict[str, str] = {
 }
 
 PHRASES: dict[str, str] = TITLES | DATA | POLYNOMIALS | RANK | GAINS | COMPENSATION
+
+#: The properties that a phrase asserts: a step that says it must have them among its facts, and so have been checked.
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "stable_continuous": ("stable",),
+    "stable_discrete": ("stable",),
+    "unstable_continuous": ("unstable",),
+    "unstable_discrete": ("unstable",),
+    "compensator_stable": ("strictly_proper", "stable"),
+    "compensator_unstable": ("strictly_proper", "unstable"),
+    "compensator_proper": ("strictly_proper",),
+    "compensator_stable_if": ("strictly_proper",),
+} | {
+    f"{phrase}_{kind}": (fact,)
+    for kind in ("observer", "state_feedback")
+    for phrase, fact in (
+        ("fixed_but_wanted", "polynomial"),
+        ("case_survives", "polynomial"),
+        ("case_other", "polynomial"),
+        ("case_no", "not_polynomial"),
+        ("impossible", "not_polynomial"),
+    )
+}
+
+#: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
+NAMING = frozenset({"undecided_case", "undecided_together"})
 
 #: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
 RESTS_ON: dict[str, str] = {

@@ -81,8 +81,26 @@ def wanted(plant: StateSpace, specification: Mapping[str, Any], point: Point) ->
         if key.endswith("poles"):
             yield prefix, multiplied_out(read_poles(value, plant.symbols, key), point)
         elif key.endswith("polynomial"):
-            polynomial = parse_polynomial(value, plant.variable, plant.symbols.names, where=key)
-            yield prefix, coefficients_at(polynomial, plant.variable, point)
+            yield prefix, coefficients_at(read_polynomial(value, plant, key), plant.variable, point)
+
+
+def read_polynomial(value: object, plant: StateSpace, where: str) -> Scalar:
+    return (
+        value
+        if isinstance(value, Scalar)
+        else parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
+    )
+
+
+def read_once(plant: StateSpace, specification: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a specification whose texts are read, for many points."""
+    found: dict[str, Any] = {}
+    for key, value in specification.items():
+        if key.endswith("poles"):
+            found[key] = read_poles(value, plant.symbols, key)
+        elif key.endswith("polynomial"):
+            found[key] = read_polynomial(value, plant, key)
+    return found
 
 
 def multiplied_out(poles: tuple[Complex, ...], point: Point) -> Polynomial:

@@ -1,7 +1,7 @@
 """Every way to change one thing in an answer or in a derivation: the lies that must not survive.
 
 `changes` walks any value of the library (scalars, matrices, formulas, facts, steps) and yields copies that differ in one
-place.  Nothing here knows what is true; `tests/plain_fractions.py` does.
+place.  Nothing here knows what is true; `tests/truth.py` does.
 """
 
 from __future__ import annotations
@@ -39,7 +39,15 @@ if TYPE_CHECKING:
 NODES = (Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative)
 #: Up to this many terms every coefficient of a scalar is changed in turn, beyond it the first, middle and last.
 _MANY_TERMS = 8
-_OTHER_OPERATOR = {"=": "!==", "!=": "=", "!==": "=", "<": ">", ">": "<", "<=": ">", ">=": "<"}
+_OTHER_OPERATORS = {
+    "=": ("!=", "!=="),
+    "!=": ("=", ">"),
+    "!==": ("=",),
+    "<": (">", "<="),
+    ">": ("<", ">="),
+    "<=": (">", "<"),
+    ">=": ("<", ">"),
+}
 #: Sentences that say the opposite, or of another thing, with the same slots.
 _OTHER_WORDS = [
     ("stable_continuous", "unstable_continuous"),
@@ -100,10 +108,10 @@ def _of_parts(item: Any) -> Iterator[Change]:
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:
-    """Yield value + 1, −value and 2 value, and the numerator with one coefficient one larger."""
+    """Yield value + 1, −value, 2 value and 0, and the numerator with one coefficient one larger."""
     found = {"+1": value + 1} if value else {"+1": value + 1, "-1": value - 1}
     if value:
-        found |= {"*(-1)": -value, "*2": value * 2}
+        found |= {"*(-1)": -value, "*2": value * 2, "*0": value * 0}
     terms = value.terms()
     chosen = range(len(terms)) if len(terms) <= _MANY_TERMS else (0, len(terms) // 2, len(terms) - 1)
     for index in chosen:
@@ -127,8 +135,9 @@ def _of_matrix(matrix: Matrix) -> Iterator[Change]:
 
 def _of_relation(relation: Relation) -> Iterator[Change]:
     for index, operator in enumerate(relation.operators):
-        other = (*relation.operators[:index], _OTHER_OPERATOR[operator], *relation.operators[index + 1 :])
-        yield Change(f".operators[{index}]", "structure", replace(relation, operators=other))
+        for other in _OTHER_OPERATORS[operator]:
+            operators = (*relation.operators[:index], other, *relation.operators[index + 1 :])
+            yield Change(f".operators[{index}] {other}", "structure", replace(relation, operators=operators))
     for change in changes(relation.members):
         yield change.within(".members", replace(relation, members=change.value))
 
@@ -175,7 +184,7 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
     name = f"{where}{result.task}"
     yield name, result
     for part in ("feedback", "estimator"):
-        if hasattr(type(result), "__dataclass_fields__") and part in type(result).__dataclass_fields__:
+        if part in type(result).__dataclass_fields__:
             yield from parts_of(getattr(result, part), f"{name}/")
     for case in result.case_tree:
         if case.result is not None:

@@ -41,10 +41,12 @@ def value_at(scalar: Scalar, point: Point) -> Fraction:
 
     In integers over one denominator q: Σ c Π (xᵢ/q)^eᵢ = Σ c Π xᵢ^eᵢ q^(d − Σ eᵢ) / q^d.
     """
+    if scalar.is_constant:
+        return scalar.fraction()
     above, below, degree = _terms(scalar)
     common = lcm(*(value.denominator for value in point.values()))
     bases = {name: value.numerator * (common // value.denominator) for name, value in point.items()}
-    powers = {name: [base**k for k in range(degree + 1)] for name, base in bases.items()}
+    powers = {name: [base**k for k in range(degree + 1)] for name, base in bases.items() if name in scalar.names}
     filling = [common**k for k in range(degree + 1)]
     top, bottom = (
         sum(

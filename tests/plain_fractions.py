@@ -10,7 +10,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import Matrix, Root, Scalar
@@ -29,31 +29,28 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
+    Shown,
     Sum,
     Together,
     Transpose,
 )
+from tests.plain import multiply, transposed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.derivation import Derivation, Step
+    from symobs.derivation import Step
     from symobs.formula import Environment, Fact, Formula
+    from tests.plain import Rows
 
-Table = list[list[Fraction]]
 LARGEST = 10**9
 
 
-def product(left: Table, right: Table) -> Table:
-    columns = list(zip(*right, strict=True))
-    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in left]
-
-
-def identity(order: int) -> Table:
+def identity(order: int) -> Rows:
     return [[Fraction(i == j) for j in range(order)] for i in range(order)]
 
 
-def eliminate(table: Table, width: int) -> tuple[int, Fraction, Table]:
+def eliminate(table: Rows, width: int) -> tuple[int, Fraction, Rows]:
     """Return rank and determinant of the first `width` columns, and the rows reduced by Gauss and Jordan."""
     rows, rank, determinant = [list(row) for row in table], 0, Fraction(1)
     for column in range(width):
@@ -73,11 +70,11 @@ def eliminate(table: Table, width: int) -> tuple[int, Fraction, Table]:
     return rank, determinant, rows
 
 
-def determinant(table: Table) -> Fraction:
+def determinant(table: Rows) -> Fraction:
     return eliminate(table, len(table))[1]
 
 
-def inverse(table: Table) -> Table:
+def inverse(table: Rows) -> Rows:
     order = len(table)
     rank, _, rows = eliminate([row + unit for row, unit in zip(table, identity(order), strict=True)], order)
     if rank < order:
@@ -85,12 +82,19 @@ def inverse(table: Table) -> Table:
     return [row[order:] for row in rows]
 
 
-def adjugate(table: Table) -> Table:
+def adjugate(table: Rows) -> Rows:
     def cofactor(i: int, j: int) -> Fraction:
         minor = [[x for b, x in enumerate(row) if b != i] for a, row in enumerate(table) if a != j]
-        return determinant(minor) * (-1 if (i + j) % 2 else 1)
+        return -determinant(minor) if (i + j) % 2 else determinant(minor)
 
     return [[cofactor(i, j) for j in range(len(table))] for i in range(len(table))]
+
+
+class Compared(NamedTuple):
+    """Two members that an inequality or inequation compares, and their difference."""
+
+    difference: Any
+    members: tuple[Formula, ...]
 
 
 @dataclass
@@ -194,7 +198,7 @@ class World:
             case Power(base, exponent):
                 return power(self.value(base), exponent)
             case Transpose(operand):
-                return [list(row) for row in zip(*self.value(operand), strict=True)]
+                return transposed(self.value(operand))
             case Apply(function, argument):
                 return self.apply(function, self.value(argument))
             case Block(rows):
@@ -203,17 +207,17 @@ class World:
                 return self.rate(self.value(operand))
         raise TypeError(item)
 
-    def apply(self, function: str, table: Table) -> Any:
+    def apply(self, function: str, table: Rows) -> Any:
         if function.endswith("_at"):
             total = [[Fraction(0)] * len(table) for _ in table]
             for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):
-                total = plus(product(total, table), times(coefficient, identity(len(table))))
+                total = plus(multiply(total, table), times(coefficient, identity(len(table))))
             return total
         if function == "rank":
             return Fraction(eliminate(table, len(table[0]))[0])
         return {"det": determinant, "adj": adjugate}[function](table)
 
-    def rate(self, signal: Mapping[str, Table]) -> Any:
+    def rate(self, signal: Mapping[str, Rows]) -> Any:
         parts = [times(table, self.value(self.rates[name])) for name, table in signal.items()]
         total = parts[0]
         for part in parts[1:]:
@@ -278,6 +282,7 @@ class World:
             return
         assert set(relation.operators) == {"="}, "an introduction is an equation"
         self.introduce(relation)
+        yield "means", self.value(relation.members[0])
         yield from self.facts((relation,))
 
     def facts(self, facts: Sequence[Fact | Formula | str]) -> Iterator[tuple[str, Any]]:
@@ -285,15 +290,21 @@ class World:
             match fact:
                 case Relation(members, operators):
                     values = [self.value(member) for member in members]
-                    for left, operator, right in zip(values[:-1], operators, values[1:], strict=True):
-                        yield operator, zeroed(plus(left, times(Fraction(-1), right)))
+                    for index, operator in enumerate(operators):
+                        content = zeroed(plus(values[index], times(Fraction(-1), values[index + 1])))
+                        yield (
+                            operator,
+                            content if operator in {"=", "!=="} else Compared(content, members[index : index + 2]),
+                        )
                 case Together(relations):
                     yield from self.facts(relations)
+                case Shown(formula, value):
+                    yield from self.facts((Relation((formula, value), ("=",)),))
                 case Predicate(name, subject):
                     yield f"property {name}", single(self.value(subject))
                 case Roots(polynomial, values):
                     yield "condition", single(self.value(polynomial))
-                    yield "roots", frozenset_of(self.root(root) for root in values)
+                    yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
                 case Exactly(about, where):
                     yield f"property {about.name}", single(self.value(about.subject))
                     yield "region", {(relation.operators, single(self.difference(relation))) for relation in where}
@@ -309,16 +320,12 @@ class World:
         return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
 
 
-def frozenset_of(roots: Iterator[tuple[Any, ...]]) -> tuple[str, ...]:
-    """Return the roots in an order of their own: a multiset."""
-    return tuple(sorted(map(repr, roots)))
-
-
 def single(value: Any) -> Fraction:
     """Read a 1×1 table as its entry."""
     if isinstance(value, Fraction):
         return value
     ((entry,),) = value
+    assert isinstance(entry, Fraction)
     return entry
 
 
@@ -347,7 +354,7 @@ def times(left: Any, right: Any) -> Any:
     if is_number(right):
         return times(right, left)
     if len(left[0]) == len(right):
-        return product(left, right)
+        return multiply(left, right)
     return times(single(left), right) if len(left) == len(left[0]) == 1 else times(single(right), left)
 
 
@@ -384,59 +391,3 @@ def zeroed(value: Any) -> Any:
     if is_number(value):
         return value
     return Fraction(0) if not any(entry for row in value for entry in row) else value
-
-
-# -- what is true -------------------------------------------------------------------------------------------------------
-
-
-def readings(steps: Sequence[Step], start: Environment, points: int = 3) -> list[list[tuple[str, Any]]]:
-    """Return what steps say at some random points."""
-    return [list(World.of(start, seed).read(steps)) for seed in range(points)]
-
-
-def is_true(derivation: Derivation) -> bool:
-    """Tell whether every equation of a derivation holds at random points; other lines need `still_true`."""
-    return all(
-        content == 0
-        for reading in readings(derivation.steps, derivation.start)
-        for kind, content in reading
-        if kind in {"=", "zero"}
-    )
-
-
-def still_true(changed: Derivation, original: Derivation) -> bool:
-    """Tell whether a changed derivation says other things that are true as well.
-
-    Equations hold; inequations and conditions differ from the original ones by a constant factor, or are between
-    constants; properties are of the same thing up to a factor; roots, regions, labels, words are the same.
-    """
-    try:
-        told = readings(changed.steps, changed.start)
-    except (ArithmeticError, ValueError, TypeError, LookupError, AssertionError):
-        return False
-    meant = readings(original.steps, original.start)
-    if any([kind for kind, _ in a] != [kind for kind, _ in b] for a, b in zip(told, meant, strict=True)):
-        return False
-    lines = zip(zip(*told, strict=True), zip(*meant, strict=True), strict=True)
-    return all(_agrees(new[0][0], [c for _, c in new], [c for _, c in old]) for new, old in lines)
-
-
-def _agrees(kind: str, new: list[Any], old: list[Any]) -> bool:
-    if kind in {"=", "zero"}:
-        return all(content == 0 for content in new)
-    if kind == "!==":
-        return any(content != 0 for content in new)
-    if new == old:
-        return True
-    if kind in {"!=", "condition"} or kind.startswith("property"):
-        values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
-        if any(b == 0 for _, b in values) or any(a == 0 for a, _ in values):
-            return False
-        constant = {a for a, _ in values}
-        return (len(constant) == 1 and kind == "!=") or len({a / b for a, b in values}) == 1
-    if kind in {"<", ">", "<=", ">="}:
-        return (
-            len({single(a) / single(b) for a, b in zip(new, old, strict=True)}) == 1
-            and single(new[0]) / single(old[0]) > 0
-        )
-    return False

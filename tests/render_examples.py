@@ -35,6 +35,7 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
+    Shown,
     Sum,
     Transpose,
 )
@@ -114,6 +115,11 @@ def number(value: Scalar | int) -> Literal:
     return Literal(Scalar.of(value))
 
 
+def alone(value: Scalar | int) -> Shown:
+    """A value that a sentence only names."""
+    return Shown(number(value), number(value))
+
+
 def equals(*members: Formula) -> Relation:
     return Relation(members, ("=",) * (len(members) - 1))
 
@@ -145,6 +151,8 @@ def _environment() -> Environment:
         "C": Matrix.of([[1, 0]]),
         "chi": s**2 + s,
         "P": 1 / (s**2 + s),
+        "phi_c": (s + 2) ** 2,
+        "phi_o": (s + 10) ** 2,
     }
     return Environment(
         values=known, signals={"x": None, "x_hat": None, "u": None}, sizes={"x": ORDER, "x_hat": ORDER, "u": 1}
@@ -162,13 +170,12 @@ def target_derivation() -> Derivation:
 def given() -> Section:
     plant = equals(Derivative(x), plus(times(values((0, 1), (0, -1)), x), times(values((0,), (1,)), u)))
     output = equals(y, times(values((1, 0)), x))
-    poles = say("poles", control=pole_list(s + 2), observer=pole_list(s + 10))
+    poles = say("poles", control=pole_list("phi_c", s + 2), observer=pole_list("phi_o", s + 10))
     return Section(Sentence("given"), (Given((plant, output)), Note(poles)))
 
 
-def pole_list(factor: Scalar) -> Roots:
-    polynomial = factor**2
-    return Roots(Literal(polynomial), roots_of(polynomial, "s"))
+def pole_list(letter: str, factor: Scalar) -> Roots:
+    return Roots(Letter(letter), roots_of(factor**2, "s"))
 
 
 def state_feedback() -> Section:
@@ -216,8 +223,8 @@ def observer() -> Section:
                 say(
                     "differences",
                     phi=equals(Letter("phi_o"), squared(s + 10), Literal(phi)),
-                    first=plus(number(100), minus(number(0))),
-                    second=plus(number(20), minus(number(1))),
+                    first=Shown(number(100), plus(number(100), minus(number(0)))),
+                    second=Shown(number(19), plus(number(20), minus(number(1)))),
                 ),
                 answer=True,
             ),
@@ -239,6 +246,7 @@ def compensator() -> Section:
     adjugate = values((s + 4, 1), (-85, s + 19))
     front = Quotient(number(1), Literal(pole_polynomial))
     transfer = (319 * s + 400) / pole_polynomial
+    determinant = Apply("det", plus(times(Letter("s"), Identity(ORDER)), minus(gains)))
     return Section(
         say("compensator"),
         (
@@ -257,7 +265,7 @@ def compensator() -> Section:
                 answer=True,
             ),
             Conclude(
-                say("proper", polynomial=Literal(pole_polynomial)),
+                say("proper", polynomial=Shown(determinant, Literal(pole_polynomial))),
                 (Predicate("strictly_proper", Letter("F")), Predicate("stable", Letter("F"))),
             ),
             Diagram(
@@ -291,7 +299,7 @@ def closed_loop() -> Section:
             ),
             Conclude(say("both")),
             Note(
-                say("defective", pole=number(-2), defect=defect, transient=Literal(Scalar.symbol("t"))),
+                say("defective", pole=alone(-2), defect=defect, transient=alone(Scalar.symbol("t"))),
                 (defect,),
                 caution=True,
             ),

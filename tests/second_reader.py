@@ -31,6 +31,7 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
+    Shown,
     Sum,
     Together,
     Transpose,
@@ -171,6 +172,8 @@ class Reader:
         for name, slot in sentence.slots:
             if isinstance(slot, (Relation, Together, Predicate, Roots, Exactly)):
                 self.fact(slot)
+            elif isinstance(slot, Shown):
+                self.fact(Relation((slot.formula, slot.value), ("=",)))
             elif not isinstance(slot, str):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
@@ -241,7 +244,10 @@ class Reader:
             case Roots(polynomial, roots):
                 found = [sympy_root(root, self.names) for root in roots]
                 product = prod((self.symbol - root for root in found), start=sympy.Integer(1))
-                assert is_zero(product - scalar(self.value(polynomial))), fact
+                above, below = sympy.cancel(scalar(self.value(polynomial))).as_numer_denom()
+                parts = [sympy.Poly(part, self.symbol) for part in (above, below)]
+                whole = parts[1] if parts[1].degree() > 0 else parts[0]
+                assert is_zero(product - whole.as_expr() / whole.LC()), fact
             case Exactly(Predicate("stable", subject), where):
                 self.exactly(subject, where)
             case Predicate(name, subject):
@@ -257,6 +263,9 @@ class Reader:
     def predicate(self, name: str, subject: Formula) -> None:
         value = sympy.cancel(scalar(self.value(subject)))
         above, below = (sympy.Poly(part, self.symbol) for part in value.as_numer_denom())
+        if name in {"polynomial", "not_polynomial"}:
+            assert (below.degree() == 0) == (name == "polynomial"), subject
+            return
         if name == "strictly_proper":
             assert above.degree() < below.degree(), subject
             return
@@ -270,7 +279,8 @@ class Reader:
 
     def exactly(self, subject: Formula, where: tuple[Relation, ...]) -> None:
         """Compare the roots at every sample with the inequalities; both outcomes must occur."""
-        polynomial, seen = scalar(self.value(subject)), set()
+        above, below = sympy.cancel(scalar(self.value(subject))).as_numer_denom()
+        polynomial, seen = (below if below.has(self.symbol) else above), set()
         sides = [(scalar(self.value(r.members[0])) - scalar(self.value(r.members[1])), r.operators[0]) for r in where]
         for point in self.samples():
             stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)

@@ -11,10 +11,10 @@ import pytest
 from jinja2 import UndefinedError
 from jinja2.exceptions import SecurityError
 
-from symobs.derivation import Derivation, Diagram, Equal, Note
+from symobs.derivation import Define, Derivation, Diagram, Equal, Note
 from symobs.exact import Scalar
 from symobs.exact.roots import roots_of
-from symobs.formula import Environment, Literal, Roots
+from symobs.formula import Environment, Letter, Literal, Roots
 from symobs.phrases import PHRASES
 from symobs.render.escape import LETTERS, escape
 from symobs.render.latex import LatexArticle, LatexFragment, typeset
@@ -55,7 +55,7 @@ def faults_in_log(require_tool: Callable[[str], str], tmp_path: Path) -> Callabl
     return run
 
 
-def page_with(*steps: Equal | Diagram | Note, title: str = "") -> example.HandWritten:
+def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> example.HandWritten:
     return document(Derivation(steps, Environment(signals={"u": None, "y": None})), title=title)
 
 
@@ -150,8 +150,8 @@ def test_a_loop_fits_its_page_whatever_its_labels(degree: int, faults: Callable[
 
 def test_roots_in_a_sentence() -> None:
     polynomial = (s + 2) ** 2 * (s**2 + 40 * s + 800) * (s**2 + 2 * s - 1) * (s**2 + 1) * (s**3 + s + 1)
-    roots = Roots(Literal(polynomial), roots_of(polynomial, "s"))
-    page = page_with(Note(say("roots", roots=roots)))
+    known = Define(equals(Letter("chi"), number(polynomial)), silent=True)
+    page = page_with(known, Note(say("roots", roots=Roots(Letter("chi"), roots_of(polynomial, "s")))))
     body = r"$-2$, $-2$, $\pm i$, $-1\pm \sqrt{2}$, $-20\pm 20i$, $\{s:s^3+s+1=0\}$, all of them."
     assert body in LatexFragment().render(page)
     assert "-2, -2, ± i, -1 ± √2, -20 ± 20i, {s: s³ + s + 1 = 0}, all" in " ".join(Text().render(page).split())

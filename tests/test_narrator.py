@@ -141,7 +141,8 @@ def test_a_condition_keeps_its_place() -> None:
     b = Literal(Scalar.symbol("b"))
     condition = Relation((b, number(0)), ("!=",))
     assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
-    assert told(Given((condition,), say("small"))) == (Paragraph(("and so on",)),)
+    said = Sentence("test_about", (("A", condition),))
+    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is.")),)
 
 
 def test_sections_are_numbered_through_the_page_and_nest() -> None:
@@ -186,8 +187,9 @@ def test_the_source_is_a_sentence(source: str, shown: str) -> None:
 
 
 def test_a_slot_that_is_a_predicate_shows_its_subject() -> None:
-    stable = Predicate("never_zero", number(1))
-    assert told(Conclude(Sentence("test_about", (("A", stable),)))) == (Paragraph(("with ", number(1), " as it is.")),)
+    known = Define(Relation((A, number(1)), ("=",)), silent=True)
+    fact = Sentence("test_about", (("A", Predicate("never_zero", A)),))
+    assert told(known, Conclude(fact)) == (Paragraph(("with ", A, " as it is.")),)
 
 
 def test_a_slot_that_is_a_region_shows_its_inequalities() -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.pages import formula_of_factored, given, say_stability
 from symobs.certificate import Claim
 from symobs.exact import Factored, Scalar, factored, roots_of
-from symobs.formula import Environment, Literal, Roots
+from symobs.formula import Environment, Roots
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
@@ -62,8 +62,8 @@ class CharacteristicPolynomial(Result):
             page.define("chi", *members, say="its_characteristic_polynomial", answer=True, closing=False)
             roots = roots_of(polynomial, self.plant.variable)
             if all(root.is_closed for root in roots):
-                page.conclude("its_roots", roots=Roots(Literal(polynomial), roots))
-            say_stability(page, polynomial)
+                page.conclude("its_roots", roots=Roots(page["chi"].formula, roots))
+            say_stability(page, page["chi"])
 
 
 @method("characteristic_polynomial/determinant", source="definition")

@@ -89,7 +89,12 @@ class RankResult(Result):
         }
         e = Environment(variable=self.plant.variable, values=values)
         yield Claim(relation(letter("O", e), letter("upper", e)), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
-        if self.answer["rank"]:
+        found, hidden = self.answer["rank"], self.plant.order - self.answer["rank"]
+        witnesses = len(self.answer["rows"]), len(self.answer["columns"])
+        yield Claim(relation(found, *witnesses), e, "the minor has the order of the rank")
+        beside = N.shape[1], len(self.answer["free"]), *self.answer["restricted"].shape
+        yield Claim(relation(hidden, *beside), e, "the kernel has the dimension n - rank")
+        if found:
             minor = O.select(self.answer["rows"], self.answer["columns"])
             yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {self.answer['rank']} is not zero")
         if N.shape[1]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.conditions import never_zero, vanishing_factors
+from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
@@ -14,7 +14,7 @@ from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
     from symobs.analysis.observability import RankResult
-    from symobs.formula import Formula
+    from symobs.formula import Formula, Relation
     from symobs.formula.term import Term
     from symobs.method import Case
     from symobs.specification import DesiredPolynomial
@@ -143,8 +143,7 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
     shown = determinant_form(page, determinant)
     open_factors = vanishing_factors([determinant], signs)
     if not open_factors:
-        members = [det, shown, "!=", 0] if never_zero(determinant, signs) else [det, shown]
-        page.equal(relation(*members))
+        page.equal(relation(det, shown, "!=", 0))
         page.conclude(f"yes_{kind}")
         return
     page.equal(relation(det, shown))
@@ -184,21 +183,42 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     for vector in result.kernel_vectors:
         zero = Matrix.zeros(matrix.value.shape[0], 1)
         page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
-    restricted = result.answer["restricted"]
-    polynomial = restricted.characteristic_polynomial(page.plant.variable)
-    page.conclude(f"modes_{kind}", modes=Roots(Literal(polynomial), roots_of(polynomial, page.plant.variable)))
+    page.set("N", result.answer["kernel"])
+    page.set("X", result.answer["restricted"])
+    polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
+    page.conclude(
+        f"modes_{kind}",
+        *hidden(page, kind == "observability"),
+        modes=Roots(
+            hidden_polynomial(page, len(result.kernel_vectors)).formula, roots_of(polynomial, page.plant.variable)
+        ),
+    )
 
 
-def say_stability(page: Page, polynomial: Scalar) -> None:
-    """Say whether a polynomial is stable, or exactly where."""
-    plant = page.plant
+def hidden(page: Page, is_observer: bool) -> tuple[Relation, ...]:  # noqa: FBT001
+    """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
+    N, X = page["N"], page["X"]
+    A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
+    count = N.value.shape[1]
+    zero = Matrix.zeros(row.value.shape[0], count)
+    return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
+
+
+def hidden_polynomial(page: Page, order: int) -> Term:
+    """Return det(sI − X): the polynomial of the hidden modes."""
+    return (page.s @ page.identity(order) - page["X"]).apply("det")
+
+
+def say_stability(page: Page, about: Term) -> None:
+    """Say whether the polynomial that a term means is stable, or exactly where."""
+    plant, polynomial = page.plant, about.scalar
     found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     time = "discrete" if plant.is_discrete else "continuous"
     if found.verdict == "yes":
-        page.conclude(f"stable_{time}", predicate("stable", polynomial))
+        page.conclude(f"stable_{time}", predicate("stable", about))
     elif found.verdict == "no":
-        page.conclude(f"unstable_{time}", predicate("unstable", polynomial))
+        page.conclude(f"unstable_{time}", predicate("unstable", about))
     else:
         inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
         where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", polynomial), where))
+        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", about), where))

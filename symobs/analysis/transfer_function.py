@@ -9,11 +9,10 @@ from symobs.analysis.pages import factored_form, given
 from symobs.certificate import Claim
 from symobs.errors import InputError
 from symobs.exact import Scalar, roots_of, transfer
-from symobs.formula import Environment, Literal, Quotient, Roots
-from symobs.formula.term import identity, letter
+from symobs.formula import Environment, Literal, Quotient, Roots, Shown
+from symobs.formula.term import block, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.stability import monic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -65,11 +64,18 @@ class TransferFunction(Result):
                 stages = [stage + page["D"] for stage in stages]
             page.define("P", *stages, factored_form(page, P), say="its_transfer_function", answer=True, closing=False)
             if P.denominator.degree(variable) < self.plant.order:
-                page.conclude("cancelled", order=page.value(P.denominator.degree(variable)))
-            for part, key in ((P.denominator, "its_poles"), (P.numerator, "its_zeros")):
+                everything = block([[C @ A**k] for k in range(m.A.shape[0])]) @ block(
+                    [[A**k @ B for k in range(m.A.shape[0])]]
+                )
+                order = page.value(P.denominator.degree(variable))
+                page.conclude("cancelled", order=Shown(everything.apply("rank").formula, order.formula))
+            for part, key, of in (
+                (P.denominator, "its_poles", page["P"]),
+                (P.numerator, "its_zeros", page["P"].inverse),
+            ):
                 roots = roots_of(part, variable) if part else ()
                 if roots and all(root.is_closed for root in roots):
-                    page.conclude(key, roots=Roots(Literal(monic(part, variable)), roots))
+                    page.conclude(key, roots=Roots(of.formula, roots))
 
 
 @method("transfer_function/resolvent", source="definition")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
-from symobs.certificate import verify
+from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
 from symobs.derivation.steps import (
     Case,
@@ -39,13 +39,16 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
+    Shown,
     Signal,
     Together,
+    children,
     evaluate,
     letters,
 )
-from symobs.formula.plain import plain_relation
-from symobs.stability import stability
+from symobs.formula.plain import plain, plain_relation
+from symobs.phrases import ASSERTS, NAMING
+from symobs.stability import monic, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -77,18 +80,32 @@ class Derivation:
         return environment
 
 
+#: The letter that a label of a diagram must agree with, where the page has it.
+_LABELS = {"plant": "P", "compensator": "F"}
+
+
 def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
     for step in steps:
-        environment = _after(step, environment, discrete)
+        try:
+            environment = _after(step, environment, discrete)
+        except SENSELESS as error:
+            message = f"a step of kind {type(step).__name__} cannot be read: {error}"
+            repair = "please report this: it is a bug of symobs"
+            raise DerivationRejected(message, repair=repair, line=str(step)) from error
     return environment
 
 
 def _after(step: Step, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
     """Verify one step and return the environment after it."""
     match step:
-        case Given(relations):
+        case Given(relations, sentence):
+            said = [slot for _, slot in sentence.slots] if sentence else []
+            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Together) else (slot,))}
             for relation in relations:
-                environment = _introduce(relation, environment)
+                if relation.operators == ("!=",) and (not sentence or relation in stated):
+                    environment = _assume(relation, environment)
+                else:
+                    environment = _introduce(relation, environment)
         case Define(relation):
             environment = _introduce(relation, environment)
         case Equal(relations):
@@ -100,9 +117,12 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Conclude(facts=facts) | Note(facts=facts):
             for fact in facts:
                 _fact(fact, environment, discrete)
+            _asserted(step.sentence, facts)
         case Diagram(_, labels):
-            for place, label in labels:
-                _fact(Relation((Letter(DRAWN[place]), label), ("=",)), environment, discrete)
+            for name, label in labels:
+                _established(label, environment)
+                if environment.knows(_LABELS.get(name, "")):
+                    _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
         case Case(when, substitution, inside):
             _walk(inside, _on_stratum(when, dict(substitution), environment), discrete)
         case Section(title, inside):
@@ -116,10 +136,30 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together)):
+        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
+            if _has_values(slot) and sentence.key not in NAMING:
+                _reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")
+
+
+def _asserted(sentence: Sentence | None, facts: tuple[Fact, ...]) -> None:
+    """Reject a sentence that asserts a property which is not among the facts of its step."""
+    checked = {fact.name for fact in facts if isinstance(fact, Predicate)}
+    if sentence is not None and not checked.issuperset(ASSERTS.get(sentence.key, ())):
+        _reject(f"{sentence.key}, which rests on {', '.join(ASSERTS[sentence.key])},")
+
+
+def _has_values(formula: Formula) -> bool:
+    return isinstance(formula, Literal) or any(_has_values(part) for part in children(formula))
+
+
+def _about_letters(formula: Formula, environment: Environment) -> None:
+    """Reject a property of what is written out only: it would say nothing about the problem."""
+    _established(formula, environment)
+    if not letters(formula) - {"s"}:
+        _reject(f"a property of {plain(formula, environment.variable)}, which is no letter's,")
 
 
 def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
@@ -134,44 +174,48 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         for part in fact.relations:
             _fact(part, environment, discrete)
         return
+    if isinstance(fact, Shown):
+        _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
+        return
     environment = replace(environment, coefficients={})
     if isinstance(fact, Roots):
-        polynomial = evaluate(fact.polynomial, environment, Exact(environment))
+        _about_letters(fact.polynomial, environment)
+        value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))
+        polynomial = _polynomial(value, environment)
         if not roots_are(polynomial, environment.variable, fact.values):
             _reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
     if isinstance(fact, Exactly):
-        polynomial = evaluate(fact.property.subject, environment, Exact(environment))
+        _about_letters(fact.property.subject, environment)
+        value = as_scalar(evaluate(fact.property.subject, environment, Exact(environment)))
+        polynomial = _polynomial(value, environment)
         found = stability(polynomial, environment.variable, environment.signs, discrete=discrete)
         said = {_positive_part(relation, environment) for relation in fact.where}
         if fact.property.name != "stable" or found.verdict != "conditional" or said != set(found.positive):
             _reject(f"{polynomial} is stable exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
-    _established(fact.subject, environment)
-    value = evaluate(fact.subject, environment, Exact(environment))
-    if isinstance(value, Matrix) and value.shape == (1, 1):
-        value = value[0, 0]
+    _about_letters(fact.subject, environment)
+    value = as_scalar(evaluate(fact.subject, environment, Exact(environment)))
     if fact.name not in PREDICATES or not PREDICATES[fact.name](value, environment, discrete):
         _reject(f"{fact.name}({value})")
 
 
 def _positive_part(relation: Relation, environment: Environment) -> Scalar:
     """Return what a strict inequality says is positive."""
+    if relation.operators not in {(">",), ("<",)}:
+        _reject(plain_relation(relation, environment.variable))
     left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
     difference: Scalar = left - right if relation.operators == (">",) else right - left
     return difference
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:
-    """Verify the links after the first member and let the first member mean the rest; `!=` states an assumption."""
+    """Verify the links after the first member and let the first member mean the rest."""
     target, *rest = relation.members
     for member in rest:
         _established(member, environment)
-    if relation.operators[0] == "!=":
-        _established(target, environment)
-        assumed = evaluate(target, environment, Exact(environment))
-        factors = [factor for factor, _ in assumed.numerator.factors()[1]]
-        return replace(environment, assumed=(*environment.assumed, *factors))
+    if relation.operators[0] != "=":
+        _reject(plain_relation(relation, environment.variable))
     anew = isinstance(target, Letter) and target.name in environment.values  # written anew, not given another meaning
     agreeing = relation if anew else Relation(tuple(rest), relation.operators[1:])
     if len(agreeing.members) > 1 and verify(agreeing, environment)[0] == "":
@@ -179,24 +223,46 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
     return _meaning(target, rest, environment)
 
 
+def _assume(relation: Relation, environment: Environment) -> Environment:
+    """Let the factors of a difference be different from 0 from here on."""
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+    factors = [factor for factor, _ in (left - right).numerator.factors()[1]]
+    return replace(environment, assumed=(*environment.assumed, *factors))
+
+
 def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:
     match target:
-        case Derivative(Letter(name)):
+        case Derivative(Letter(name)) if _is_free(name, environment):
             return environment.having(dynamics={name: rest[0]})
-        case Literal(value) if isinstance(value, Scalar) and len(value.names) == 1:
+        case Literal(value) if isinstance(value, Scalar) and str(value) in value.names:
             (name,) = value.names
+            _new_name(name, environment)
             meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
             return environment.having(coefficients={name: meaning})
-        case Letter(name):
+        case Letter(name) if name not in environment.signals or _is_free(name, environment):
             last = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])
             value = evaluate(last, environment, Exact(environment))
             if isinstance(value, Signal):
                 return environment.having(signals={name: rest[0]})
+            if name == "s" or name in environment.signals:
+                _reject(f"{name}, which stands for something else, as a name for a value")
             if isinstance(last, Literal):
                 value = last.value
             return environment.having(values={name: value})
         case _:
             return _reject("only a letter, a derivative or a named coefficient can be introduced")
+
+
+def _is_free(name: str, environment: Environment) -> bool:
+    """Whether a signal has neither a definition nor a derivative: only such a one can be given either."""
+    return name in environment.signals and environment.signals[name] is None and name not in environment.dynamics
+
+
+def _new_name(name: str, environment: Environment) -> None:
+    """Reject a coefficient's name that stands for something already: a parameter would lose its generality."""
+    used = [*environment.values.values(), *environment.coefficients.values()]
+    if name in environment.signs or name in environment.coefficients or any(name in value.names for value in used):
+        _reject(f"{name}, which means something already, as a name for a coefficient")
 
 
 def _established(formula: Formula, environment: Environment) -> None:
@@ -213,12 +279,9 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
             replaced[name] = value.substitute(substitution)
         except ZeroDivisionError:  # the letter means nothing on this stratum
             continue
-    inside = replace(environment, values=replaced)
-    members = tuple(
-        Literal(member.value.substitute(substitution)) if isinstance(member, Literal) else member
-        for member in when.members
-    )
-    if verify(Relation(members, when.operators), inside)[0] == "":
+    named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}
+    inside = replace(environment, values=replaced, coefficients={**substitution, **named}, assumed=())
+    if when.operators != ("=",) or verify(when, inside)[0] == "":
         _reject(plain_relation(when, environment.variable))
     return inside
 
@@ -231,8 +294,14 @@ def _reject(line: str) -> NoReturn:
 # -- properties that no equation states -------------------------------------------------------------------------------
 
 
+def _polynomial(value: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial as it is, and of a rational function the monic denominator."""
+    variable = environment.variable
+    return value if value.is_polynomial_in(variable) else monic(value.denominator, variable)
+
+
 def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
-    polynomial = value.denominator if not value.is_polynomial_in(environment.variable) else value
+    polynomial = _polynomial(value, environment)
     return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
 
 
@@ -240,12 +309,11 @@ def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
     return value.degree(environment.variable), value.denominator.degree(environment.variable)
 
 
-#: The letter whose value each box of a diagram shows.
-DRAWN = {"plant": "P", "compensator": "F"}
-
 PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
     "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
     "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
+    "polynomial": lambda value, environment, _: value.is_polynomial_in(environment.variable),
+    "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

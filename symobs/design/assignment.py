@@ -92,11 +92,11 @@ def divide(polynomial: Scalar, divisor: Scalar, variable: str) -> Scalar | None:
 
 
 def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
-    """Return (quotient, remainder) by a monic divisor."""
+    """Return (quotient, remainder); raises ZeroDivisionError for the divisor 0."""
     s = Scalar.symbol(variable)
     quotient, rest = Scalar.of(0), polynomial
-    degree = divisor.degree(variable)
+    degree, top = divisor.degree(variable), divisor.coefficients(variable)[0]
     while not rest.is_zero and rest.degree(variable) >= degree:
-        lead = rest.coefficients(variable)[0] * s ** (rest.degree(variable) - degree)
+        lead = rest.coefficients(variable)[0] / top * s ** (rest.degree(variable) - degree)
         quotient, rest = quotient + lead, rest - lead * divisor
     return quotient, rest

@@ -10,7 +10,7 @@ from symobs.certificate import Certificate, Claim, check
 from symobs.design.gain import GainDesign, letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.design.state_feedback import StateFeedbackDesign
-from symobs.errors import InputError
+from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Factored, Matrix, Scalar, factored, transfer
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
@@ -65,6 +65,9 @@ class CompensatorDesign(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield: K and L are the certified gains of the two designs; F is K times the resolvent times L."""
+        if self._exists != (self.feedback.answer["K"] is not None and self.estimator.answer["L"] is not None):
+            message = "there is a compensator exactly where there are both gains"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         e = self._environment()
         for design in (self.feedback, self.estimator):
             own, certified = self.answer[design.letter], design.answer[design.letter]

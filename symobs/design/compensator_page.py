@@ -95,25 +95,25 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     ]
     page.define("F", *stages, say="transfer_function_of_compensator", answer=True)
     found = design.own_stability
-    properness = predicate("strictly_proper", F)
+    properness = predicate("strictly_proper", page["F"])
     key = {"yes": "compensator_stable", "no": "compensator_unstable"}.get(found)
     if key is None:
         _stable_where(page, F)
     else:
-        page.conclude(key, properness, predicate("stable" if found == "yes" else "unstable", F.denominator))
+        page.conclude(key, properness, predicate("stable" if found == "yes" else "unstable", page["F"]))
 
 
 def _stable_where(page: Page, F: Scalar) -> None:
     """Say for which parameters the compensator itself is stable, where the conditions are few."""
     plant = page.plant
     found = stability(F.denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    proper = predicate("strictly_proper", F)
+    proper = predicate("strictly_proper", page["F"])
     if sum(value.size for value in found.positive) > _READABLE_TERMS:
         page.conclude("compensator_proper", proper)
         return
     inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
     where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-    page.conclude("compensator_stable_if", proper, where=Exactly(predicate("stable", F.denominator), where))
+    page.conclude("compensator_stable_if", proper, where=Exactly(predicate("stable", page["F"]), where))
 
 
 def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
@@ -154,7 +154,7 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
     page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
     polynomial = design.loop_polynomial.value
     if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):
-        page.conclude("loop_poles", poles=Roots(Literal(polynomial), _poles(design, polynomial)))
+        page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
     else:
         page.conclude("loop_polynomial")
 
@@ -165,6 +165,10 @@ def _plant(page: Page, design: CompensatorDesign) -> Term:
     form = factored_form(page, numerator / characteristic)
     if not page.knows("P"):
         page.define("P", form, say="plant_transfer", closing=False)
+        response = page["C"] @ (page.s @ page.identity(design.plant.order) - page["A"]).inverse @ page["B"]
+        if design.plant.matrices.has_feedthrough:
+            response = response + page["D"]
+        page.conclude_silently(relation(page["P"], response))
     return form
 
 
@@ -179,7 +183,7 @@ def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
     page.define("F", K @ resolvent @ L, above / below, say="transfer_function_of_compensator", answer=True)
     names.show()
     page.conclude_silently(relation(page["F"], design.answer["F"]))
-    page.conclude("compensator_proper", predicate("strictly_proper", page["F"].value))
+    page.conclude("compensator_proper", predicate("strictly_proper", page["F"]))
 
 
 class _Namer:
@@ -244,6 +248,13 @@ def _cautions(page: Page, design: CompensatorDesign) -> None:
             is_negative = pole.fraction() < 0
             offset = closed + page.value(-pole) @ size if is_negative else closed - page.value(pole) @ size
             zero = Matrix.zeros(plant.order, plant.order)
-            facts = relation(offset, "!==", zero)
-            page.caution("defective", facts, pole=page.value(pole), matrix=relation(offset, offset.shown))
+            rest = desired.polynomial / factor**2
+            single = page["phi_c"] / (page.value(factor) @ page.value(rest))
+            page.caution(
+                "defective",
+                relation(offset, "!==", zero),
+                relation(page["phi_c"], page.value(factor) ** 2 @ page.value(rest)),
+                pole=Roots(single.formula, roots_of(factor, plant.variable)),
+                matrix=relation(offset, offset.shown),
+            )
             return

@@ -13,7 +13,7 @@ from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.assignment import Pair, remainder
-from symobs.errors import InputError
+from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
 from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
@@ -87,7 +87,13 @@ class GainDesign(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield det(sI − A + LC) = φ(s) for the gain and its family, or the proof that no gain exists."""
-        gain = self.answer[self.letter]
+        gain, phi, own = self.answer[self.letter], self.answer["polynomial"], self.pair(self.plant)
+        if (self._pair.A, self._pair.c) != (own.A, own.c):
+            message = "the witness speaks of another plant"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if self.desired is not None and phi is not self.desired.polynomial:
+            e = Environment(variable=self.plant.variable)
+            yield Claim(relation(phi, self.desired.polynomial), e, "the polynomial is the one asked for")
         if gain is None:
             yield from self._impossible()
             return
@@ -112,6 +118,7 @@ class GainDesign(Result):
         pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
         yield Claim(relation(C @ kernel, Matrix.zeros(1, N.shape[1])), e, "C*N = 0")
         yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
+        yield Claim(relation(kernel.apply("rank"), X.shape[0], "!==", 0), e, "N has full rank")
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
         phi = letter("phi", e)
         yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")

@@ -10,17 +10,18 @@ from symobs.analysis.pages import (
     determinant_form,
     factored_form,
     formula_of_factored,
+    hidden,
+    hidden_polynomial,
     say_stability,
     square_test,
     undecided,
 )
 from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Step
 from symobs.design.gain import GainDesign, fresh_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
-from symobs.formula import Literal, Roots
+from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
-from symobs.page import Page, Slot, relation, sentence
+from symobs.page import Page, predicate, relation
 from symobs.specification import DesiredPolynomial
 
 if TYPE_CHECKING:
@@ -237,20 +238,36 @@ def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
 def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
     variable = page.plant.variable
-    polynomial, desired = design.fixed_polynomial, design.desired
-    assert desired is not None and design.gain_family is not None  # noqa: S101, PT018 - fixed modes come with a family
-    roots = Roots(Literal(polynomial), roots_of(polynomial, variable))
+    polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
+    assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
     page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
-    page.remark(f"fixed_but_wanted_{side.kind}", roots=roots)
-    page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
-    page.remark(f"family_{side.kind}", gain=page.value(design.gain_family[side.gain]))
+    fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    roots = Roots(fixed.formula, roots_of(polynomial, variable))
+    divides = predicate("polynomial", page[side.phi] / fixed)
+    page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER), divides, roots=roots)
+    gain = page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
+    free = page["N"] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
+    general = gain + (free if side is OBSERVER else free.T)
+    page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
 
 
 def _impossible(page: Page, design: GainDesign, side: Side) -> None:
     """The fixed modes are not among the poles asked for."""
-    polynomial = design.desired.polynomial if design.desired else design.answer["polynomial"]
-    fixed = page.value(design.fixed_polynomial)
-    page.conclude(f"impossible_{side.kind}", fixed=fixed, polynomial=page.value(polynomial))
+    fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    page.conclude(
+        f"impossible_{side.kind}",
+        *hidden(page, side is OBSERVER),
+        predicate("not_polynomial", page[side.phi] / fixed),
+        fixed=Shown(fixed.formula, Literal(design.fixed_polynomial)),
+        polynomial=Shown(page[side.phi].formula, Literal(page[side.phi].value)),
+    )
+
+
+def _fixed(page: Page, kernel: Matrix, restricted: Matrix) -> Term:
+    """Introduce N and X, and return the polynomial of the modes that no gain moves."""
+    page.set("N", kernel)
+    page.set("X", restricted)
+    return hidden_polynomial(page, kernel.shape[1])
 
 
 def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
@@ -265,7 +282,7 @@ def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
     if len(polynomial.factors()[1]) > 1:
         members.append(shown)
     page.equal(relation(*members), say="its_polynomial", answer=True)
-    say_stability(page, polynomial)
+    say_stability(page, error_determinant(page, side))
 
 
 def _verified(page: Page, design: GainDesign, side: Side) -> None:
@@ -286,24 +303,28 @@ def _case(page: Page, case: Case, side: Side) -> None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
-    fixed = result.fixed_polynomial
-    modes = Roots(Literal(fixed), roots_of(fixed, page.plant.variable))
-    kernel, restricted = result._pair.kernel, result._pair.restricted  # noqa: SLF001 - the witness of the stratum
-    A = page["A"] if side.gain == "L" else page["A"].T
-    row = page["C"] if side.gain == "L" else page["B"].T
-    invariant = relation(A @ page.value(kernel), page.value(kernel) @ page.value(restricted))
-    unseen = relation(row @ page.value(kernel), Matrix.zeros(1, kernel.shape[1]))
-    steps: list[Step] = []
-    if result.answer[side.gain] is None:
-        steps.append(Conclude(sentence(f"case_no_{side.kind}", {"modes": modes}), (invariant, unseen)))
-    else:
-        own = design_gain_on(case, page, side)
-        key = f"case_survives_{side.kind}" if own else f"case_other_{side.kind}"
-        slots: dict[str, Slot] = {"modes": modes}
-        if not own:
-            slots["gain"] = page.value(result.answer[side.gain])
-        steps.append(Conclude(sentence(key, slots), (invariant, unseen)))
+    outer, environment = page.steps, page.environment
+    page.steps = []
+    try:
+        _on_stratum(page, case, result, side)
+    finally:
+        steps, page.steps, page.environment = page.steps, outer, environment
     page.steps.append(CaseStep(when, tuple(case.substitution.items()), tuple(steps)))
+
+
+def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
+    """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
+    own, gain = design_gain_on(case, page, side), result.answer[side.gain]
+    fixed = _fixed(page, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
+    modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
+    wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
+    key = "case_no" if gain is None else "case_survives" if own else "case_other"
+    page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER), wanted, modes=modes)
+    if gain is None:
+        return
+    if not own:
+        page.define(side.gain, gain)
+    page.conclude_silently(relation(error_determinant(page, side), page[side.phi]))
 
 
 def design_gain_on(case: Case, page: Page, side: Side) -> bool:

@@ -40,14 +40,14 @@ class Point:
 
     def scalar(self, value: Scalar) -> int:
         """Return the residue of a scalar; the sizes of the integers it comes from are kept in `bits`."""
-        arguments = [self.values.get(name, 0) for name in value.field.names]
+        arguments = [self.values[name] for name in value.field.names]
         above, below = value.numerator_part(*arguments), value.denominator_part(*arguments)
         self.bits[id(value)] = above.bit_length(), below.bit_length()
         return int(above % self.prime) * self._inverse(below) % self.prime
 
     def matrix(self, value: Matrix) -> nmod_mat:
         """Return the matrix of residues; the sizes of the integers it comes from are kept in `bits`."""
-        arguments = [self.values.get(name, 0) for name in value.field.names]
+        arguments = [self.values[name] for name in value.field.names]
         below = value.denominator(*arguments)
         if isinstance(value.table, fmpz_mat):
             entries = value.table.entries()

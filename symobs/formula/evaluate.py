@@ -197,6 +197,8 @@ class Modular:
         return left * right
 
     def invert(self, value: Any) -> Any:
+        if value == 0 and isinstance(value, int):
+            raise ZeroDivisionError
         return pow(value, -1, self.prime) if isinstance(value, int) else value.inv()
 
     def transpose(self, value: Any) -> Any:

@@ -126,7 +126,7 @@ class Predicate:
 
 @dataclass(frozen=True, slots=True)
 class Roots:
-    """The roots of a monic polynomial, with multiplicity; shown as their list."""
+    """The roots of a monic polynomial (of a rational function: its poles), with multiplicity; shown as their list."""
 
     polynomial: Formula
     values: tuple[Root, ...]
@@ -147,7 +147,15 @@ class Together:
     relations: tuple[Relation, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """What a formula is worth; shown as the value alone."""
+
+    formula: Formula
+    value: Formula
+
+
+Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

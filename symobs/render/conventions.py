@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Sum, Together, letters
+from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Shown, Sum, Together, letters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -79,5 +79,7 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
         if isinstance(value, Relation | Predicate | Roots | Exactly | Together):
             yield from _in_facts((value,))
+        elif isinstance(value, Shown):
+            yield value.value
         elif not isinstance(value, str):
             yield value

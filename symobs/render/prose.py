@@ -10,7 +10,7 @@ import re
 import string
 from typing import TYPE_CHECKING
 
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Sum, Together, Transpose
+from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Shown, Sum, Together, Transpose
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
@@ -48,6 +48,8 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
     match slot:
         case Predicate(subject=subject):
             yield subject
+        case Shown(value=value):
+            yield value
         case Exactly(where=where) | Together(relations=where):
             for place, relation in enumerate(where):
                 yield from (", ", relation) if place else (relation,)

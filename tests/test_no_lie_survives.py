@@ -1,0 +1,293 @@
+"""No lie survives: every answer entry, witness entry and derivation line of every worked example, changed, is rejected.
+
+A change that makes another true statement is proved to be one in plain fractions or by SymPy, and counted apart.  By
+default a stratified sample of the changes is tried, the same in every run; with SYMOBS_FULL=1 all of them are.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs import StateSpace, compensator, observability, observer
+from symobs.analysis.observability import RankResult
+from symobs.design.compensator import CompensatorDesign
+from symobs.design.gain import GainDesign
+from symobs.errors import CertificateRejected, DerivationRejected
+from symobs.exact import Matrix, Scalar
+from symobs.page import Page
+from symobs.problem import read
+from tests.mutations import Change, answer_changes, changes, lines_of, parts_of
+from tests.plain import multiply, observability_rows, rank_of, transposed
+from tests.plain_fractions import World, determinant, identity, inverse, plus, times
+from tests.truth import is_true, still_true
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symobs.design.assignment import Pair
+    from symobs.method import Result
+    from tests.plain import Rows
+
+EXAMPLES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
+WHOLE = os.environ.get("SYMOBS_FULL") == "1"
+#: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
+OF_AN_ANSWER, OF_LINES = 12, 120
+
+
+@cache
+def results(path: Path) -> tuple[Result, ...]:
+    return read(path.read_text(encoding="utf-8")).solve()
+
+
+def sample(found: Sequence[Change], most: int) -> Sequence[Change]:
+    """Return all, or some at even distances."""
+    if WHOLE or len(found) <= most:
+        return found
+    return [found[index * len(found) // most] for index in range(most)]
+
+
+@dataclass
+class Count:
+    """What became of the changes that were tried."""
+
+    tried: int = 0
+    rejected: int = 0
+    true: int = 0
+    lies: list[str] = field(default_factory=list)
+
+    def attempt(self, where: str, make: Callable[[], object], is_so: Callable[[], bool]) -> None:
+        """Make what was changed; where nothing objects, it must be so."""
+        self.tried += 1
+        try:
+            make()
+        except (CertificateRejected, DerivationRejected):
+            self.rejected += 1
+            return
+        if is_so():
+            self.true += 1
+        else:
+            self.lies.append(where)
+
+
+# -- answers -----------------------------------------------------------------------------------------------------------
+
+
+def try_answers(part: Result, where: str, count: Count) -> None:
+    for name, value in part.answer.items():
+        for change in sample(list(answer_changes(value)), OF_AN_ANSWER):
+            answer = {**part.answer, name: change.value}
+            make = partial(replace, part, answer=answer)
+            count.attempt(f"{where}: {name}{change.where}", make, partial(holds, part, answer))
+
+
+def holds(part: Result, answer: Mapping[str, Any]) -> bool:
+    """Tell in plain fractions whether an answer is right at random points."""
+    worlds = [World(seed, part.plant.variable, part.plant.symbols.signs) for seed in range(3)]
+    try:
+        return all(_holds_at(part, answer, world) for world in worlds)
+    except (ArithmeticError, LookupError, TypeError, ValueError):
+        return False
+
+
+def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
+    m = part.plant.matrices
+    A, B, C, D = (world.value(matrix) for matrix in (m.A, m.B, m.C, m.D))
+    s = world.number(part.plant.variable)
+    if isinstance(part, RankResult):
+        if part.task == "controllability":
+            A, C = transposed(A), transposed(B)
+        return _is_rank(A, C, answer, world)
+    if isinstance(part, GainDesign):
+        gain = world.value(answer[part.letter])
+        moved = multiply(gain, C) if part.letter == "L" else multiply(B, gain)
+        wanted = [world.value(answer["polynomial"])]
+        wanted += [world.value(part.desired.polynomial)] if part.desired is not None else []
+        return {determinant(pencil(s, plus(A, times(Fraction(-1), moved))))} == set(wanted)
+    if isinstance(part, CompensatorDesign):
+        K, L = world.value(answer["K"]), world.value(answer["L"])
+        own = [world.value(part.feedback.answer["K"]), world.value(part.estimator.answer["L"])]
+        moved = plus(plus(multiply(B, K), multiply(L, C)), times(Fraction(-1), multiply(L, multiply(D, K))))
+        ((F,),) = multiply(K, multiply(inverse(plus(pencil(s, A), moved)), L))
+        return own == [K, L] and world.value(answer["F"]) == F
+    return False
+
+
+def _is_rank(A: Rows, C: Rows, answer: Mapping[str, Any], world: World) -> bool:
+    O = observability_rows(A, C)
+    N, X = world.value(answer["kernel"]), world.value(answer["restricted"])
+    minor = [[O[i][j] for j in answer["columns"]] for i in answer["rows"]]
+    return (
+        world.value(answer["matrix"]) == O
+        and answer["rank"] == rank_of(O) == len(minor) == len(answer["columns"])
+        and determinant(minor) != 0
+        and len(answer["free"]) == len(N[0]) == len(A) - rank_of(O)
+        and determinant([N[i] for i in answer["free"]]) != 0
+        and not any(map(any, multiply(O, N)))
+        and multiply(A, N) == multiply(N, X)
+    )
+
+
+def pencil(s: Fraction, table: Rows) -> Rows:
+    found: Rows = plus(times(s, identity(len(table))), times(Fraction(-1), table))
+    return found
+
+
+# -- witnesses ---------------------------------------------------------------------------------------------------------
+
+
+def tampered(thing: Any, name: str, value: object) -> Any:
+    """Return a copy of something whose attribute was computed once, with another value for it."""
+    copy = object.__new__(type(thing))
+    copy.__dict__.update(thing.__dict__)
+    copy.__dict__[name] = value
+    return copy
+
+
+def try_witnesses(part: Result, where: str, count: Count) -> None:
+    """Change the family of gains, and where no gain exists the subspace that proves it."""
+    if not isinstance(part, GainDesign):
+        return
+    if part.gain_family is not None:
+        for change in sample(list(changes(part.gain_family[part.letter])), OF_AN_ANSWER):
+            family = {**part.gain_family, part.letter: change.value}
+            make = tampered(part, "gain_family", family).__post_init__
+            count.attempt(f"{where}: family{change.where}", make, partial(_is_family, part, family))
+    if part.answer[part.letter] is None:
+        for name in ("kernel", "restricted", "fixed_polynomial"):
+            for change in sample(list(changes(getattr(part._pair, name))), OF_AN_ANSWER):
+                pair = tampered(part._pair, name, change.value)
+                make = tampered(part, "_pair", pair).__post_init__
+                count.attempt(f"{where}: {name}{change.where}", make, partial(_is_hidden, part, pair))
+
+
+def _is_family(part: GainDesign, family: Mapping[str, Any]) -> bool:
+    """Tell whether every member meets φ, and the members fill a space of the dimension of ker 𝒪."""
+    gain, names = family[part.letter], family["parameters"]
+    world = World(0, part.plant.variable, part.plant.symbols.signs)
+
+    def member(chosen: str) -> list[Fraction]:
+        table = world.value(gain.substitute({name: Scalar.of(int(name == chosen)) for name in names}))
+        return [entry for row in table for entry in row]
+
+    directions = [[x - y for x, y in zip(member(name), member(""), strict=True)] for name in names]
+    return rank_of(directions) == len(names) and holds(part, {**part.answer, part.letter: gain})
+
+
+def _is_hidden(part: GainDesign, pair: Pair) -> bool:
+    """Tell whether N is a basis of an unseen invariant subspace whose polynomial is the one stated."""
+    world = World(0, part.plant.variable, part.plant.symbols.signs)
+    A, C, N, X = (world.value(matrix) for matrix in (pair.A, pair.c, pair.kernel, pair.restricted))
+    unseen = not any(map(any, multiply(C, N))) and multiply(A, N) == multiply(N, X)
+    fixed = determinant(pencil(world.number(part.plant.variable), X)) == world.value(pair.fixed_polynomial)
+    return rank_of(N) == len(N[0]) > 0 and unseen and fixed
+
+
+# -- derivations -------------------------------------------------------------------------------------------------------
+
+
+def try_lines(result: Result, count: Count) -> None:
+    lines = lines_of(result.derivation)
+    for number, line in enumerate(lines):
+        for change in sample(list(changes(line.step)), -(-OF_LINES // len(lines))):
+            told, meant = line.told(change.value), line.told(line.step)
+            where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
+            count.attempt(where, told.check, partial(still_true, told, meant))
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_no_lie_survives(path: Path, record_property: Callable[[str, object], None]) -> None:
+    answers, lines = Count(), Count()
+    for result in results(path):
+        for where, part in parts_of(result):
+            try_answers(part, where, answers)
+            try_witnesses(part, where, answers)
+        try_lines(result, lines)
+    for name, count in (("answers and witnesses", answers), ("lines", lines)):
+        numbers = f"{count.tried} tried, {count.rejected} rejected, {count.true} other true ones"
+        record_property(name, numbers)
+        print(f"{path.stem}: {name}: {numbers}")  # noqa: T201 - shown by pytest -rP
+        assert count.lies == []
+        assert count.tried == count.rejected + count.true
+        assert count.rejected > 0.8 * count.tried
+    assert lines.tried >= 100, "the examples together are at least 1,500"
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_line_holds_in_plain_fractions(path: Path) -> None:
+    for result in results(path):
+        assert is_true(result.derivation)
+
+
+# -- lies that agree with each other -----------------------------------------------------------------------------------
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+HIDDEN = StateSpace("[-1 0; 0 -2]", "[0; 1]", "[0 1]")
+
+
+def test_another_gain_with_its_own_polynomial_is_not_the_one_asked_for() -> None:
+    asked, other = observer(SERVO, poles=[-1, -2]), observer(SERVO, poles=[-3, -4])
+    with pytest.raises(CertificateRejected, match="asked for"):
+        replace(asked, answer=other.answer)
+
+
+def test_a_rank_cannot_be_lowered_with_its_witnesses() -> None:
+    result = observability(SERVO)
+    with pytest.raises(CertificateRejected):
+        replace(result, answer={**result.answer, "rank": 1, "rows": (0,), "columns": (0,)})
+    with pytest.raises(CertificateRejected):
+        replace(result, answer={**result.answer, "rank": 0, "rows": (), "columns": ()})
+
+
+def test_a_kernel_cannot_be_enlarged_by_a_dependent_vector() -> None:
+    result = observability(HIDDEN)
+    kernel, X = result.answer["kernel"], result.answer["restricted"]
+    twice = {"kernel": Matrix.block([[kernel, kernel]]), "restricted": Matrix.block([[X, X * 0], [X * 0, X]])}
+    with pytest.raises(CertificateRejected):
+        replace(result, answer={**result.answer, **twice, "free": (0, 1), "rank": 0, "rows": (), "columns": ()})
+
+
+def test_a_compensator_cannot_be_denied_nor_made_of_other_gains() -> None:
+    asked = compensator(SERVO, control_poles=[-1, -1], observer_poles=[-2, -2])
+    other = compensator(SERVO, control_poles=[-3, -3], observer_poles=[-4, -4])
+    with pytest.raises(CertificateRejected):
+        replace(asked, answer={**asked.answer, "F": None})
+    with pytest.raises(CertificateRejected):
+        replace(asked, answer=other.answer)
+
+
+def test_impossibility_needs_a_subspace_of_the_plant_itself() -> None:
+    impossible = observer(HIDDEN, poles=[-3, -4])
+    assert isinstance(impossible, GainDesign)
+    assert impossible.answer["L"] is None
+    nothing = tampered(impossible._pair, "kernel", Matrix.zeros(2, 1))
+    with pytest.raises(CertificateRejected):
+        tampered(impossible, "_pair", nothing).__post_init__()
+    possible = observer(SERVO, poles=[-3, -4])
+    foreign = tampered(tampered(possible, "answer", impossible.answer), "_pair", impossible._pair)
+    with pytest.raises(CertificateRejected):
+        replace(possible, working=impossible._pair)
+    with pytest.raises(CertificateRejected):
+        foreign.__post_init__()
+
+
+def test_a_page_cannot_speak_of_another_plant() -> None:
+    result = observability(SERVO)
+    other = StateSpace("[0 1; 0 -3]", "[0; 1]", "[1 0]")
+    result.derivation.check()
+
+    def write(page: Page) -> None:
+        aside = Page(other)
+        observability(other).write(aside)
+        page.steps = aside.steps
+
+    liar = tampered(result, "write", write)
+    liar.__dict__.pop("derivation")
+    with pytest.raises(DerivationRejected, match="another A"):
+        _ = liar.derivation

@@ -1,0 +1,151 @@
+"""What a changed derivation says: a lie, or something else that is true as well.  Decided without the kernel."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import prod
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import sympy
+
+from symobs.exact import Scalar
+from symobs.formula import Literal, Negative, Power, Product, Quotient
+from tests.plain_fractions import Compared, World, single
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symobs.derivation import Derivation
+
+POINTS = 3
+#: Enough values of the variable to tell a polynomial of degree up to 9 from any other rational function.
+_FITTED, _TESTED = 10, 4
+
+Readings: TypeAlias = "list[list[tuple[str, Any]]]"
+
+
+def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scale: int = 0) -> Readings:
+    """Return what a derivation says at random points; `scale` puts that multiple of the variable in its place."""
+    found = []
+    for seed in points:
+        world = World.of(derivation.start, seed)
+        if scale:
+            world.meanings[world.variable] = Scalar.of(scale * world.number(world.variable))
+        found.append(list(world.read(derivation.steps)))
+    return found
+
+
+def is_true(derivation: Derivation) -> bool:
+    """Tell whether every equation of a derivation holds at random points."""
+    return all(
+        content == 0 for reading in readings(derivation) for kind, content in reading if kind in {"=", "zero", "shown"}
+    )
+
+
+def still_true(changed: Derivation, original: Derivation) -> bool:
+    """Tell whether a changed derivation says other things that are true as well.
+
+    What it introduces means the same.  Equations hold.  Inequalities are proved by SymPy from the declared signs, or are the
+    same up to a factor.  Conditions are the same up to a factor.  Properties are of the same function up to a factor of
+    value or variable, or are decided anew.  Roots, regions, labels, words are the same.
+    """
+    try:
+        told = readings(changed)
+    except (ArithmeticError, ValueError, TypeError, LookupError, AssertionError):
+        return False
+    meant = readings(original)
+    if [_family(kind) for kind, _ in told[0]] != [_family(kind) for kind, _ in meant[0]]:
+        return False
+    for place, kind in enumerate(kind for kind, _ in told[0]):
+        new, old = ([reading[place][1] for reading in side] for side in (told, meant))
+        if not (_agrees(kind, new, old, original.start.signs) or _has_property(kind, place, changed, original, new)):
+            return False
+    return True
+
+
+def _family(kind: str) -> str:
+    return "comparison" if kind in _HOLDS else kind
+
+
+def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str]) -> bool:
+    if kind in {"=", "zero"}:
+        return all(content == 0 for content in new)
+    if kind == "!==":
+        return any(content != 0 for content in new)
+    if new == old:
+        return True
+    if kind in _HOLDS:
+        return _compares(kind, new, signs)
+    if kind == "condition" or kind.startswith("property"):
+        return _proportional(new, old)
+    return False
+
+
+def _proportional(new: list[Any], old: list[Any]) -> bool:
+    values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
+    return all(a != 0 and b != 0 for a, b in values) and len({a / b for a, b in values}) == 1
+
+
+def _compares(operator: str, compared: list[Compared], signs: Mapping[str, str]) -> bool:
+    """Prove an inequality: between constants, or from declared signs where no letter stands in it."""
+    differences = {single(content.difference) for content in compared}
+    if len(differences) == 1:
+        return bool(_HOLDS[operator](sympy.Rational(*differences.pop().as_integer_ratio())))
+    try:
+        left, right = (_symbolic(member, signs) for member in compared[0].members)
+    except KeyError:
+        return False
+    return bool(_HOLDS[operator](sympy.factor(left - right)))
+
+
+_HOLDS = {
+    "!=": lambda difference: difference.is_nonzero,
+    ">": lambda difference: difference.is_positive,
+    ">=": lambda difference: difference.is_nonnegative,
+    "<": lambda difference: difference.is_negative,
+    "<=": lambda difference: difference.is_nonpositive,
+}
+
+
+def _symbolic(formula: Any, signs: Mapping[str, str]) -> Any:
+    """Return a scalar formula without letters as a SymPy expression in symbols with the declared signs."""
+    match formula:
+        case Literal(Scalar() as value):
+            return _terms(value.numerator, signs) / _terms(value.denominator, signs)
+        case Negative(operand):
+            return -_symbolic(operand, signs)
+        case Product(factors):
+            return sympy.Mul(*(_symbolic(factor, signs) for factor in factors))
+        case Quotient(above, below):
+            return _symbolic(above, signs) / _symbolic(below, signs)
+        case Power(base, exponent):
+            return _symbolic(base, signs) ** exponent
+    raise KeyError(formula)
+
+
+def _terms(polynomial: Scalar, signs: Mapping[str, str]) -> Any:
+    total = sympy.Integer(0)
+    for coefficient, powers in polynomial.terms():
+        symbols = (sympy.Symbol(name, **{signs.get(name, "real"): True}) ** power for name, power in powers)
+        total += coefficient * sympy.Mul(*symbols)
+    return total
+
+
+def _has_property(kind: str, place: int, changed: Derivation, original: Derivation, new: list[Any]) -> bool:
+    """Decide a property anew: stability is kept when the variable is scaled, polynomials are told by interpolation."""
+    if kind in {"property stable", "property unstable", "property strictly_proper"}:
+        return _proportional(new, [reading[place][1] for reading in readings(original, scale=2)])
+    if kind not in {"property polynomial", "property not_polynomial"}:
+        return False
+    values = [(Fraction(k), readings(changed, [0], k)[0][place][1]) for k in range(1, _FITTED + _TESTED + 1)]
+    fitted, tested = values[:_FITTED], values[_FITTED:]
+    return all(_interpolated(fitted, at) == value for at, value in tested) == (kind == "property polynomial")
+
+
+def _interpolated(values: list[tuple[Fraction, Fraction]], at: Fraction) -> Fraction:
+    """Return the polynomial through some values at another place, by Lagrange's formula."""
+    total = Fraction(0)
+    for i, (place, value) in enumerate(values):
+        weights = [(at - other) / (place - other) for j, (other, _) in enumerate(values) if i != j]
+        total += value * prod(weights)
+    return total
