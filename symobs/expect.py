@@ -66,7 +66,7 @@ def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], error
             continue
         try:
             if not met(chosen, name, entry, where):
-                found = _shown(_found(result, name))
+                found = _shown(_found(chosen, name))
                 lines.append(
                     f"{where}: expected {shown(_shown(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}"
                 )

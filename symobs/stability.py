@@ -33,12 +33,10 @@ class Stability:
 
 def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> Stability:
     """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does."""
-    coefficients = list(polynomial.coefficients(variable))
-    if len(coefficients) == 1:
+    found = polynomial.coefficients(variable)
+    if len(found) == 1:
         return Stability("yes")
-    lead = sign_of(coefficients[0], signs)
-    if lead != "positive":  # −p, or a₀ p with its leading coefficient a₀²
-        coefficients = [c * (-1 if lead == "negative" else coefficients[0]) for c in coefficients]
+    coefficients = [c / found[0] for c in found]  # the leading coefficient may be of any sign
     if discrete:
         coefficients = _bilinear(coefficients)
     return _decide([*coefficients[:discrete], *_lienard_chipart(coefficients)], signs)

@@ -84,6 +84,7 @@ def values_at(scalar: Scalar, signs: Mapping[str, str]) -> list[tuple[dict[str, 
 
 class TestValues:
     @given(rational_functions(), signs_of_names)
+    @settings(max_examples=60)
     def test_what_is_certain_is_true_at_every_point(self, x: Twin, signs: dict[str, str]) -> None:
         found = sign_of(x.scalar, signs)
         for point, value in values_at(x.scalar, signs):
@@ -91,6 +92,7 @@ class TestValues:
             assert not never_zero(x.scalar, signs) or value != 0
 
     @given(polynomials(degree=2, most=2), polynomials(degree=1, most=2), signs_of_names)
+    @settings(max_examples=60)
     def test_what_is_certain_of_a_product_of_factors_is_true(self, x: Twin, y: Twin, signs: dict[str, str]) -> None:
         value = x.scalar**2 * y.scalar * (a - b)
         found = sign_of(value, signs)

@@ -70,7 +70,7 @@ def same(scalar: Scalar, expression: Any) -> bool:
 
 
 #: Examples a test: SymPy is the slow party here.
-few = settings(max_examples=20)
+few = settings(max_examples=15)
 
 
 class TestField:

@@ -81,7 +81,7 @@ def same(ours: Matrix | Scalar, theirs: Any) -> bool:
 sizes = st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3))
 
 #: Examples a test: SymPy is the slow party here.
-few = settings(max_examples=20)
+few = settings(max_examples=15)
 
 
 class TestArithmetic:

@@ -167,6 +167,7 @@ class RankResult(Result):
         return tuple(N.select(range(N.shape[0]), [j]) for j in range(N.shape[1]))
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Observability(RankResult):
     """𝒪, its rank, ker 𝒪 and the unobservable modes."""
 
@@ -199,6 +200,7 @@ class Observability(RankResult):
             rank_cases(page, "O", self, "observability")
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Controllability(RankResult):
     """𝒞, its rank and the uncontrollable modes."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class TransferFunction(Result):
     """P with P(s) = C (sI − A)⁻¹ B + D."""
 

@@ -8,7 +8,7 @@ that was not established before.  Renderers accept checked derivations only.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
@@ -128,6 +128,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Section(title, inside):
             _sentence(title, environment, discrete)
             environment = _walk(inside, environment, discrete)
+        case _:
+            assert_never(step)
     _sentence(getattr(step, "sentence", None), environment, discrete)
     return environment
 
@@ -182,6 +184,8 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _about_letters(fact.polynomial, environment)
         value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))
         polynomial = _polynomial(value, environment)
+        if polynomial is not value:
+            polynomial = monic(polynomial, environment.variable)
         if not roots_are(polynomial, environment.variable, fact.values):
             _reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
@@ -272,7 +276,10 @@ def _established(formula: Formula, environment: Environment) -> None:
 
 
 def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: Environment) -> Environment:
-    """Return the environment on a stratum, after verifying that the substitution lies on it."""
+    """Return the environment on a stratum, after verifying that the substitution describes it.
+
+    `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere too.
+    """
     replaced = {}
     for name, value in environment.values.items():
         try:
@@ -281,7 +288,10 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
             continue
     named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}
     inside = replace(environment, values=replaced, coefficients={**substitution, **named}, assumed=())
-    if when.operators != ("=",) or verify(when, inside)[0] == "":
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+    factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
+    says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)
+    if not says_no_more or verify(when, inside)[0] == "":
         _reject(plain_relation(when, environment.variable))
     return inside
 
@@ -295,9 +305,8 @@ def _reject(line: str) -> NoReturn:
 
 
 def _polynomial(value: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial as it is, and of a rational function the monic denominator."""
-    variable = environment.variable
-    return value if value.is_polynomial_in(variable) else monic(value.denominator, variable)
+    """Return a polynomial as it is, and of a rational function the denominator."""
+    return value if value.is_polynomial_in(environment.variable) else value.denominator
 
 
 def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001

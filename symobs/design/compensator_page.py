@@ -20,7 +20,7 @@ from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root
 from symobs.formula import Exactly, Literal, Quotient, Roots
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
-from symobs.stability import as_inequality, stability
+from symobs.stability import as_inequality, monic, stability
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +106,8 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
 def _stable_where(page: Page, F: Scalar) -> None:
     """Say for which parameters the compensator itself is stable, where the conditions are few."""
     plant = page.plant
-    found = stability(F.denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    polynomial = monic(F.denominator, plant.variable)
+    found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     proper = predicate("strictly_proper", page["F"])
     if sum(value.size for value in found.positive) > _READABLE_TERMS:
         page.conclude("compensator_proper", proper)

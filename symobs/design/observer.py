@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class ObserverDesign(GainDesign):
     """An observer gain: det(sI − A + LC) = φ(s)."""
 

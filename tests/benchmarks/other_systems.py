@@ -9,6 +9,7 @@ import re
 import resource
 import shutil
 import subprocess
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 #: gp's own default of 8 MB is too small for the larger orders.
 _GP = ("gp", "-q", "-f", "-s", "1G")
@@ -37,11 +38,13 @@ class Run:
         return min(self.wall, self.processor)
 
 
-def run(command: Sequence[str], limit: float, text: str = "") -> Run | None:
+def run(command: Sequence[str], limit: float, text: str = "", folder: Path | None = None) -> Run | None:
     """Run a command on an input text; None where it did not end within `limit` seconds."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     try:
-        done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=limit, check=False)
+        done = subprocess.run(
+            command, input=text, capture_output=True, text=True, timeout=limit, check=False, cwd=folder
+        )
     except subprocess.TimeoutExpired:
         return None
     wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -60,8 +63,9 @@ def formulations(system: str, stem: str) -> dict[str, Path]:
 
 
 def giac(path: Path, limit: float) -> Run | None:
-    """Let giac run a file."""
-    return run(["giac", str(path)], limit)
+    """Let giac run a file, in a folder of its own: it leaves a `session.tex` where it runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        return run(["giac", str(path)], limit, folder=Path(folder))
 
 
 def gp(path: Path, order: int, limit: float) -> Run | None:

@@ -1,0 +1,96 @@
+"""The benchmarks on small sizes: that they run, and that what they time is the same work.  No time is tested."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+import symobs
+from tests.benchmarks import __main__ as benchmarks
+from tests.benchmarks import models, other_systems, raw_flint
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+needs_giac = pytest.mark.skipif(not other_systems.available("giac"), reason="giac is not installed")
+needs_gp = pytest.mark.skipif(not other_systems.available("gp"), reason="gp is not installed")
+
+
+def test_every_model_has_names_that_no_earlier_one_had() -> None:
+    first, second = models.generic(2), models.generic(2)
+    assert set(first.plain).isdisjoint(second.plain)
+    assert list(first.plain.values()) == list(second.plain.values())
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_flint_alone_finds_the_gain_of_symobs(order: int) -> None:
+    model = models.generic(order)
+    _, entries = raw_flint.seconds(model, order)
+    found = [(str(above), str(below)) for above, below in entries]
+    wanted = [(str(e.numerator_part), str(e.denominator_part)) for e in benchmarks.solve(model).answer["L"].entries]
+    opposite = [(str(-above), str(-below)) for above, below in entries]
+    assert all(entry in pair for entry, pair in zip(wanted, zip(found, opposite, strict=True), strict=True))
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_subjects_take_turns_and_one_that_gives_up_is_left_out(order: int) -> None:
+    calls: list[str] = []
+
+    def subject(name: str, seconds: float | None) -> Callable[[], float | None]:
+        def run() -> float | None:
+            calls.append(name)
+            return seconds
+
+        return run
+
+    found = benchmarks.medians(order, {"a": subject("a", 1.0), "b": subject("b", None), "c": subject("c", 2.0)})
+    assert found == {"a": 1.0, "c": 2.0}
+    assert calls == ["a", "b", "c", *["a", "c"] * (order - 1)]
+
+
+def test_the_table_has_a_ratio_in_every_compared_row() -> None:
+    rows = [
+        benchmarks.Row("work", 0.002, "other", 0.1, ">= 40"),
+        benchmarks.Row("work", 0.002, "base", 0.001, "<= 4", inverted=True),
+        benchmarks.Row("alone", 1.5),
+    ]
+    lines = [re.split(r" {2,}", line) for line in benchmarks.table(rows).splitlines()]
+    assert lines[1:] == [
+        ["work", "2 ms", "other", "100 ms", "50", ">= 40"],
+        ["work", "2 ms", "base", "1 ms", "2", "<= 4"],
+        ["alone", "1.5 s"],
+    ]
+
+
+def test_flint_alone_is_a_row_of_the_table() -> None:
+    rows = list(benchmarks.beside_flint("generic 2x2", 2, 1, "<= 4"))
+    assert [(row.work, row.asked, row.inverted) for row in rows] == [("generic 2x2", "<= 4", True)]
+    assert rows[0].theirs
+
+
+@needs_giac
+@pytest.mark.parametrize(
+    ("stem", "formulation"), [("generic_", "cofactors"), ("generic_", "inverse"), ("cart_pole_", "bordered_minors")]
+)
+def test_giac_agrees_and_a_difference_would_be_seen(stem: str, formulation: str, tmp_path: Path) -> None:
+    model = models.generic(3) if stem == "generic_" else models.cart_pole()
+    wanted = benchmarks.differences(model, benchmarks.solve(model))
+    path = other_systems.formulations("giac", stem)[formulation]
+    assert other_systems.agrees(path, wanted, tmp_path)
+    assert not other_systems.agrees(path, [*wanted[:-1], wanted[-1] + "+s"], tmp_path)
+
+
+@needs_gp
+@pytest.mark.parametrize("formulation", ["inverse_image", "integers", "rational"])
+def test_gp_finds_the_gain_of_symobs(formulation: str, tmp_path: Path) -> None:
+    path = other_systems.formulations("pari", "")[formulation]
+    program = tmp_path / path.name
+    program.write_text(path.read_text(encoding="utf-8") + "print(Vec(L[,1]));\n", encoding="utf-8")
+    A, C, poles = models.rational(4)
+    design = symobs.observer(symobs.StateSpace(A, None, C), poles=poles)
+    done = other_systems.gp(program, 4, 60)
+    assert done is not None
+    assert done.output.strip() == str([str(entry) for entry in design.answer["L"].entries]).replace("'", "")
