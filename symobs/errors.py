@@ -8,6 +8,11 @@ A mathematical "no" (not observable, poles not assignable) is never an exception
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 
 class SymobsError(Exception):
     """Base of all errors; `exit_code` is what the command line returns for it."""
@@ -76,6 +81,22 @@ class ProblemErrors(InputError):
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by the errors it holds."""
         return (type(self), (self.errors,))
+
+
+def together(*actions: Callable[[], Any]) -> tuple[Any, ...]:
+    """Return what all actions return; what several of them raise is raised together."""
+    values: list[Any] = []
+    errors: list[SymobsError] = []
+    for action in actions:
+        try:
+            values.append(action())
+        except ProblemErrors as several:
+            errors += several.errors
+        except InputError as error:
+            errors.append(error)
+    if errors:
+        raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))
+    return tuple(values)
 
 
 class UsageError(SymobsError):

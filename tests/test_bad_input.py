@@ -224,6 +224,17 @@ def test_mistakes_of_several_tasks_come_together(tmp_path: Path) -> None:
     )
 
 
+def test_both_loops_of_a_compensator_are_checked(tmp_path: Path) -> None:
+    poles = 'control_poles = [-1]\nobserver_polynomial = "s^3"\nobserver = "none"\nmethod = "magic"'
+    assert_refused(
+        solved(tmp_path, problem(poles, 'task = "compensator"')),
+        ("specification.observer", "'none'"),
+        ("specification.method", "'magic'"),
+        ("specification.control_poles", "1 pole given"),
+        ("specification.observer_polynomial", "degree 3 given"),
+    )
+
+
 def test_shapes_are_checked_beside_a_matrix_that_cannot_be_read(tmp_path: Path) -> None:
     run = solved(tmp_path, problem(B='"[0; 1; 2]"', C='"[1 x]"'))
     assert_refused(run, ("plant.C", '"x" is not declared'), ("plant.B", "3×1"))

@@ -312,6 +312,14 @@ def test_a_region_is_the_whole_region() -> None:
     refused(Define(said(Letter("phi"), literal(s + 1))), where())
 
 
+def test_a_fraction_has_the_region_and_the_roots_of_its_denominator() -> None:
+    F_is = Define(said(F, literal(1 / (c * s + 1))))
+    checked(F_is, Conclude(slot(Exactly(Predicate("stable", F), (said(c, ">", 0),)))))
+    checked(F_is, Conclude(None, (Roots(F, roots_of(c * s + 1, "s")),)))
+    refused(F_is, Conclude(None, (Predicate("stable", F),)))
+    refused(F_is, Conclude(None, (Predicate("unstable", F),)))
+
+
 def test_stability_is_that_of_the_time_domain() -> None:
     start = replace(START, variable="z")
     slow, z = Define(said(Letter("phi"), literal(Scalar.symbol("z") - Scalar.rational(1, 2)))), Letter("phi")
@@ -370,6 +378,13 @@ def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
     refused(C_IS, case(at=2))
     refused(C_IS, case(when=said(c, "!==", 2)))
     refused(C_IS, case(when=said(c, 0)))
+    refused(C_IS, case(when=said(0, 0)))
+    refused(C_IS, case(when=said((c - 1) * (c - 3), 0)))
+    refused(C_IS, case(when=said((c - 1) * b, 0)))
+    checked(C_IS, case(when=said(2 * a * (c - 1), 0)))
+    refused(C_IS, case(when=said(b, 0)))
+    refused(C_IS, Case(said(c - 1, 0), (), ()))
+    refused(C_IS, Case(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
     refused(C_IS, case(Equal((said(1, 2),))))
 
 
@@ -399,6 +414,10 @@ def test_sections_share_what_is_established() -> None:
     assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).knows("chi")
     refused(Section(Sentence("test_plain"), (CHI,)), A_IS)
     refused(Section(slot(said(1, 2)), ()))
+
+
+def test_only_steps_are_steps() -> None:
+    refused("a line of prose", match="cannot be read")  # type: ignore[arg-type]
 
 
 def test_a_derivation_is_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:

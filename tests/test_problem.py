@@ -363,3 +363,14 @@ def test_other_fields_are_held_against_the_member_expected() -> None:
     right = 'L = "[1; 2]"\nA = "[-1 0; -4 -5]"\nB_y = "[1; 2]"\nverdict = "yes"\nfixed_modes = "-1"'
     assert expecting(right, NOT_UNIQUE) == []
     assert [line[:9] for line in expecting(right.replace("-4 -5", "-4 -6"), NOT_UNIQUE)] == ["expect.A:"]
+
+
+def test_a_compensator_follows_the_members_expected() -> None:
+    # A - BK = [0 1; -4 -4]; F = K (sI - A + BK + LC)^-1 L for L = [1; 2]; ours is for another L.
+    text = NOT_UNIQUE.replace('task = "observer"', 'task = "compensator"').replace("poles = [-1, -5]", "")
+    text = text.replace("C =", 'B = "[0; 1]"\nC =') + "control_poles = [-2, -2]\nobserver_poles = [-1, -5]\n"
+    right = 'K = "[2 1]"\nL = "[1; 2]"\ncompensator_matrix = "[-1 0; -6 -6]"\nF = "4 (s + 2)/((s + 1) (s + 6))"'
+    assert expecting(right, text) == []
+    wrong = [right.replace("(s + 2)", "(s + 3)"), right.replace("-6 -6", "-6 -5"), right.replace("[1; 2]", "[1; 1]")]
+    places = [expecting(lines, text)[0].split(":")[0] for lines in wrong]
+    assert places == ["expect.F", "expect.compensator_matrix", "expect.L"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.certificate import Certificate, Claim, check
 from symobs.design.gain import GainDesign, letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.design.state_feedback import StateFeedbackDesign
-from symobs.errors import CertificateRejected, InputError
+from symobs.errors import CertificateRejected, InputError, together
 from symobs.exact import Factored, Matrix, Scalar, factored, transfer
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
@@ -44,7 +44,7 @@ class CompensatorDesign(Result):
     task: ClassVar[str] = "compensator"
 
     @classmethod
-    def of(cls, feedback: StateFeedbackDesign, estimator: ObserverDesign, method_name: str) -> CompensatorDesign:
+    def of(cls, feedback: StateFeedbackDesign, estimator: ObserverDesign, method_name: str) -> Self:
         """Return the compensator of two designs for one plant."""
         plant = feedback.plant
         K, L = feedback.answer["K"], estimator.answer["L"]
@@ -53,6 +53,14 @@ class CompensatorDesign(Result):
             numerator, denominator = transfer(compensator_matrix(plant, K, L), L, K, Scalar.of(0), plant.variable)
             F = numerator / denominator
         return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the compensator with another gain, and with the F that follows from it."""
+        if name not in {"K", "L"}:
+            return super().with_answer(name, value)
+        feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
+        estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
+        return type(self).of(feedback, estimator, self.method)
 
     @property
     def _exists(self) -> bool:
@@ -263,14 +271,21 @@ def compensator(
     plant.require("B", "C", task="compensator")
     require_single(plant.inputs, "input", "compensator")
     require_single(plant.outputs, "output", "compensator")
+
+    def wanted(loop: str, poles: object, polynomial: object) -> DesiredPolynomial | None:
+        return desired_polynomial(plant, poles, polynomial, names=(f"{loop}_poles", f"{loop}_polynomial"))
+
+    _, chosen, control, estimate = together(
+        lambda: _require_full(observer),
+        lambda: choose("compensator", method, "separation"),
+        lambda: wanted("control", control_poles, control_polynomial),
+        lambda: wanted("observer", observer_poles, observer_polynomial),
+    )
+    found: Result = chosen.solve(plant, control, estimate).asked(method)
+    return found
+
+
+def _require_full(observer: str) -> None:
     if observer != "full":
         message = f"{observer[:40]!r} is not an observer this version designs"
         raise InputError(message, where="specification.observer", repair='write "full"')
-    chosen = choose("compensator", method, "separation")
-    control = desired_polynomial(
-        plant, control_poles, control_polynomial, names=("control_poles", "control_polynomial")
-    )
-    estimate = desired_polynomial(
-        plant, observer_poles, observer_polynomial, names=("observer_poles", "observer_polynomial")
-    )
-    return chosen.solve(plant, control, estimate).asked(method)

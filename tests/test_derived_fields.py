@@ -1,0 +1,232 @@
+"""The fields of a result that follow from its answer and are claimed by nothing, computed again in plain fractions."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from math import prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs.exact import Factored, Matrix, Root, Scalar
+from symobs.expression import parse_scalar
+from symobs.problem import read
+from tests.mutations import parts_of
+from tests.plain import (
+    eliminated,
+    is_hurwitz,
+    is_schur,
+    matrix_at,
+    multiply,
+    observability_rows,
+    random_fraction,
+    seeded,
+    subtract,
+    transposed,
+    value_at,
+)
+from tests.plain_fractions import determinant, identity, inverse, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from _pytest.mark import ParameterSet
+
+    from symobs.method import Result
+    from tests.plain import Point, Polynomial, Rows
+
+EXAMPLES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
+PARTS: list[tuple[str, Result]] = [
+    (f"{path.stem}: {where}", part)
+    for path in EXAMPLES
+    for result in read(path.read_text(encoding="utf-8")).solve()
+    for where, part in parts_of(result)
+]
+MODES = {"observability": "unobservable_modes", "controllability": "uncontrollable_modes"}
+#: Points where a region is compared with the roots, and those where everything else is.
+MANY, FEW = 60, 3
+
+
+def parts(*tasks: str) -> list[ParameterSet]:
+    return [pytest.param(part, id=name) for name, part in PARTS if not tasks or part.task in tasks]
+
+
+def points(part: Result, count: int) -> Iterator[Point]:
+    """Yield values for every name, small ones with the declared signs, at which the answer exists."""
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    names = {part.plant.variable, *part.plant.field.names}.union(*(value.names for value in values))
+    for seed in range(count):
+        draw = seeded((seed, part.task))
+        point = {name: random_fraction(draw, part.plant.symbols.sign(name)) for name in sorted(names)}
+        try:
+            for value in values:
+                at(value, point)
+        except ZeroDivisionError:
+            continue
+        yield point
+
+
+def at(value: Any, point: Point) -> Any:
+    """Read a value of the kernel at a point; roots as the product of (s − root)."""
+    if isinstance(value, Matrix):
+        return matrix_at(value, point)
+    if isinstance(value, Factored):
+        return value_at(value.unit, point) * prod(value_at(factor, point) ** power for factor, power in value.factors)
+    if isinstance(value, tuple):
+        return product_of_roots(value, point)
+    return None if value is None else value_at(value, point)
+
+
+def product_of_roots(roots: Sequence[Root], point: Point) -> Fraction:
+    """Multiply (s − root) out: pairs of square roots together, roots without closed form as their whole factor."""
+    waiting, total = list(roots), Fraction(1)
+    while waiting:
+        root = waiting.pop()
+        s, centre, radicand = point[root.variable], value_at(root.centre, point), value_at(root.radicand, point)
+        if not root.is_closed:
+            others = [r for r in waiting if r.factor == root.factor and r.index != root.index]
+            partners = list({r.index: r for r in others}.values())
+            assert len(partners) + 1 == root.factor.degree(root.variable)
+            total *= value_at(root.factor, point)
+        elif root.radicand.is_zero:
+            partners, total = [], total * (s - centre)
+        else:
+            partners = [Root(root.factor, root.variable, root.centre, root.radicand, -root.sign)]
+            total *= (s - centre) ** 2 - radicand
+        for partner in partners:
+            waiting.remove(partner)
+    return total
+
+
+def characteristic_at(A: Rows, s: Fraction) -> Fraction:
+    return determinant(subtract(times(s, identity(len(A))), A))
+
+
+def blocks(*rows: tuple[Rows, Rows]) -> Rows:
+    return [left + right for pair in rows for left, right in zip(*pair, strict=True)]
+
+
+def hidden_at(A: Rows, C: Rows, s: Fraction) -> Fraction:
+    """Return the polynomial of A on the kernel of 𝒪, read off a basis that is the identity on the free rows."""
+    pivots, reduced = eliminated(observability_rows(A, C))
+    free = [j for j in range(len(A)) if j not in pivots]
+    N = [[Fraction(int(i == j)) for j in free] for i in range(len(A))]
+    for pivot, row in zip(pivots, reduced, strict=True):
+        N[pivot] = [-row[j] for j in free]
+    moved = multiply(A, N)
+    return characteristic_at([moved[i] for i in free], s) if free else Fraction(1)
+
+
+def computed(part: Result, point: Point) -> dict[str, Any]:
+    """Return what the derived fields must be at a point, from the plant and the claimed answer alone."""
+    m, s = part.plant.matrices, point[part.plant.variable]
+    A, B, C, D = (matrix_at(matrix, point) for matrix in (m.A, m.B, m.C, m.D))
+    answer = {name: at(value, point) for name, value in part.answer.items() if isinstance(value, (Matrix, Scalar))}
+    if part.task in {"observability", "controllability"}:
+        pair = (transposed(A), transposed(B)) if part.task == "controllability" else (A, C)
+        O = observability_rows(*pair)
+        square = determinant(O) if len(O) == len(A) else None
+        return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
+    if part.task == "characteristic_polynomial":
+        return {"roots": characteristic_at(A, s)}
+    if part.task == "transfer_function":
+        return {}
+    if part.task == "observer":
+        expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(A, C, s)}
+        if "L" not in answer:
+            return expected | {"A": None, "B_u": None, "B_y": None}
+        L = answer["L"]
+        driven = subtract(B, multiply(L, D)) if m.has_input else None
+        return expected | {"A": subtract(A, multiply(L, C)), "B_u": driven, "B_y": L}
+    if part.task == "state_feedback":
+        closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
+        hidden = hidden_at(transposed(A), transposed(B), s)
+        return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": hidden}
+    assert part.task == "compensator"
+    if "F" not in answer:
+        return {}
+    K, L = answer["K"], answer["L"]
+    BK, LC, zero = multiply(B, K), multiply(L, C), [[Fraction(0)] * len(A) for _ in A]
+    own = subtract(subtract(A, BK), subtract(LC, multiply(L, multiply(D, K))))
+    loop = blocks((subtract(A, BK), BK), (zero, subtract(A, LC)))
+    ((P,),) = multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B))
+    P += D[0][0]
+    return {
+        "compensator_matrix": own,
+        "closed_loop_matrix": loop,
+        "closed_loop_matrix_estimate": blocks((A, subtract(zero, BK)), (LC, subtract(subtract(A, BK), LC))),
+        "closed_loop_polynomial": characteristic_at(loop, s),
+        "closed_loop": P / (1 + P * answer["F"]),
+    }
+
+
+@pytest.mark.parametrize("part", parts())
+def test_derived_fields_are_what_plain_fractions_give(part: Result) -> None:
+    met = 0
+    for point in points(part, FEW):
+        try:
+            expected = computed(part, point)
+        except ZeroDivisionError:  # s meets a pole
+            continue
+        met += 1
+        for name, value in expected.items():
+            assert at(part.fields[name], point) == value, name
+    assert met >= 2
+
+
+@pytest.mark.parametrize("part", parts("transfer_function"))
+def test_a_transfer_function_is_made_of_its_poles_and_zeros(part: Result) -> None:
+    P = part.answer["transfer_function"]
+    ratios = {
+        value_at(P, point) * at(part.fields["poles"], point) / at(part.fields["zeros"], point)
+        for point in points(part, FEW)
+    }
+    assert len(ratios) == 1
+    assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
+
+
+@pytest.mark.parametrize("part", parts("characteristic_polynomial"))
+def test_factors_multiply_to_the_polynomial(part: Result) -> None:
+    for point in points(part, FEW):
+        product = prod(value_at(factor, point) ** power for factor, power in part.fields["factors"])
+        assert product == value_at(part.fields["polynomial"], point)
+
+
+# -- stability ---------------------------------------------------------------------------------------------------------
+
+
+def said_stable(part: Result) -> list[tuple[Scalar, str, list[str] | None]]:
+    """Return the polynomials that a result calls stable or not, with verdict and region."""
+    found: list[tuple[Scalar, str, list[str] | None]] = []
+    if "stable" in part.fields:
+        found.append((part.answer["polynomial"], part.fields["stable"], part.fields["stable_if"]))
+    if "F_stable" in part.fields:
+        found.append((part.answer["F"].denominator, part.fields["F_stable"], None))
+    return found
+
+
+def holds(text: str, point: Point) -> bool:
+    if text == "False":
+        return False
+    match = re.fullmatch(r"(.*) ([<>]) (.*)", text)
+    assert match is not None
+    left, operator, right = match.groups()
+    difference = value_at(parse_scalar(left), point) - value_at(parse_scalar(right), point)
+    return difference > 0 if operator == ">" else difference < 0
+
+
+@pytest.mark.parametrize("part", parts())
+def test_what_is_called_stable_has_all_its_roots_there(part: Result) -> None:
+    variable = part.plant.variable
+    for polynomial, verdict, region in said_stable(part):
+        seen = set()
+        for point in points(part, MANY if polynomial.names - {variable} else 1):
+            coefficients: Polynomial = [value_at(c, point) for c in polynomial.coefficients(variable)]
+            stable = is_schur(coefficients) if part.plant.is_discrete else is_hurwitz(coefficients)
+            seen.add(stable)
+            if region is not None:
+                assert stable == all(holds(text, point) for text in region)
+        if verdict != "undecided":
+            assert seen == {"yes": {True}, "no": {False}, "conditional": {True, False}}[verdict]
