@@ -1,4 +1,4 @@
-"""Every kind of step is checked: a false line, a letter nobody introduced, a value out of nowhere are rejected."""
+"""Every kind of step is checked: a false line, a letter nobody introduced, a case off its stratum are rejected."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from symobs import StateSpace, observer
 from symobs.derivation import (
     Case,
     Conclude,
@@ -21,14 +22,11 @@ from symobs.derivation import (
     Solve,
     Step,
 )
-from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Root, Scalar, roots_of
+from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Apply,
     Derivative,
-    Environment,
     Exactly,
-    Fact,
     Formula,
     Identity,
     Letter,
@@ -45,56 +43,47 @@ from symobs.formula import (
     Together,
     Transpose,
 )
-from symobs.phrases import ASSERTS, PHRASES
+from symobs.method import Result
+from symobs.phrases import PHRASES
+from tests.steps import (
+    A_IS,
+    C_IS,
+    CHI,
+    COMPANION,
+    ESTIMATE,
+    OWN_PHRASES,
+    START,
+    A,
+    B,
+    C,
+    E,
+    F,
+    L,
+    S,
+    U,
+    X,
+    Y,
+    a,
+    b,
+    c,
+    checked,
+    literal,
+    refused,
+    s,
+    said,
+    slot,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator
 
-A, B, C, F, L, P, S = (Letter(name) for name in ("A", "B", "C", "F", "L", "P", "s"))
-X, ESTIMATE, E, U, Y = (Letter(name) for name in ("x", "x_hat", "e", "u", "y"))
-s, a, b, c = (Scalar.symbol(name) for name in "sabc")
-START = Environment(
-    signals={"x": None, "x_hat": None, "u": None},
-    sizes={"x": 2, "x_hat": 2, "u": 1},
-    signs={"a": "positive", "c": "real"},
-)
+    from symobs.certificate import Claim
 
 
 @pytest.fixture(autouse=True)
 def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PHRASES, "test_plain", "And so on.")
-    monkeypatch.setitem(PHRASES, "test_slot", "This is {it}.")
-
-
-def literal(item: Formula | Scalar | Matrix | int) -> Formula:
-    if isinstance(item, int):
-        return Literal(Scalar.of(item))
-    return Literal(item) if isinstance(item, (Scalar, Matrix)) else item
-
-
-def said(*items: Formula | Scalar | Matrix | int | str) -> Relation:
-    members = tuple(literal(item) for item in items if not isinstance(item, str))
-    operators = tuple(item for item in items if isinstance(item, str))
-    return Relation(members, operators or ("=",) * (len(members) - 1))
-
-
-def slot(it: Formula | Fact | str) -> Sentence:
-    return Sentence("test_slot", (("it", it),))
-
-
-def checked(*steps: Step, start: Environment = START, discrete: bool = False) -> Environment:
-    return Derivation(steps, start, discrete=discrete).check()
-
-
-def refused(*steps: Step, start: Environment = START, match: str | None = None, discrete: bool = False) -> None:
-    with pytest.raises(DerivationRejected, match=match):
-        checked(*steps, start=start, discrete=discrete)
-
-
-COMPANION = Matrix.of([[0, 1], [-2, -3]])
-A_IS = Given((said(A, COMPANION),), silent=True)
-C_IS = Given((said(C, Matrix.of([[1, c]])),), silent=True)
-CHI = Define(said(Letter("chi"), Apply("det", Sum((Product((S, Identity(2))), Negative(A)))), s**2 + 3 * s + 2))
+    for key, phrase in OWN_PHRASES.items():
+        monkeypatch.setitem(PHRASES, key, phrase)
 
 
 # -- what is introduced ------------------------------------------------------------------------------------------------
@@ -232,136 +221,6 @@ def test_a_free_signal_ceases_to_be_free() -> None:
     assert START.signals["u"] is None
 
 
-# -- facts in sentences ------------------------------------------------------------------------------------------------
-
-UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
-
-
-@pytest.mark.parametrize(
-    ("fact", "false"),
-    [
-        (said(Apply("det", A), 2), said(Apply("det", A), 3)),
-        (Together((said(1, 1), said(a, ">", 0))), Together((said(a, ">", 0), said(c, ">", 0)))),
-        (Shown(Apply("det", A), literal(2)), Shown(Apply("det", A), literal(-2))),
-        (Predicate("stable", Letter("chi")), Predicate("unstable", Letter("chi"))),
-        (Predicate("stable", Power(Letter("chi"), -1)), Predicate("unstable", Power(Letter("chi"), -1))),
-        (Predicate("strictly_proper", Power(Letter("chi"), -1)), Predicate("strictly_proper", Letter("chi"))),
-        (
-            Predicate("not_polynomial", Quotient(Letter("chi"), literal(s))),
-            Predicate("polynomial", Quotient(Letter("chi"), literal(s))),
-        ),
-        (
-            Predicate("polynomial", Quotient(Letter("chi"), literal(s + 1))),
-            Predicate("not_polynomial", Quotient(Letter("chi"), literal(s + 1))),
-        ),
-        (Predicate("never_zero", Apply("det", A)), Predicate("never_zero", Product((Apply("det", A), literal(c))))),
-        (Predicate("never_zero", Product((C, Transpose(C)))), Predicate("no_such_property", Letter("chi"))),
-        (
-            Roots(Letter("chi"), roots_of(s**2 + 3 * s + 2, "s")),
-            Roots(Letter("chi"), roots_of(s**2 + 3 * s - 4, "s")),
-        ),
-        (
-            Roots(Power(Letter("chi"), -1), roots_of(s**2 + 3 * s + 2, "s")),
-            Roots(Power(Letter("chi"), -1), ()),
-        ),
-    ],
-)
-def test_a_fact_is_checked_as_such_and_in_a_sentence(fact: Fact, false: Fact) -> None:
-    checked(A_IS, C_IS, CHI, Conclude(None, (fact,)), Note(slot(fact)))
-    refused(A_IS, C_IS, CHI, Conclude(None, (false,)))
-    for step in (Conclude(slot(false)), Note(slot(false)), Equal((), slot(false)), Given((), slot(false))):
-        refused(A_IS, C_IS, CHI, step)
-    refused(A_IS, C_IS, CHI, Case(said(c, 0), (("c", Scalar.of(0)),), (), slot(false)))
-
-
-def test_a_property_belongs_to_a_letter() -> None:
-    for fact in (
-        Predicate("stable", Literal(s + 1)),
-        Predicate("stable", Sum((S, literal(1)))),
-        Roots(Literal(s + 1), roots_of(s + 1, "s")),
-        Exactly(Predicate("stable", Literal(s + c)), (said(c, ">", 0),)),
-    ):
-        refused(Conclude(None, (fact,)), match="no letter's")
-
-
-def test_a_property_of_a_matrix_makes_no_sense() -> None:
-    refused(A_IS, Conclude(None, (Predicate("stable", A),)), match="cannot be read")
-
-
-def test_a_value_in_a_sentence_stands_with_what_it_is_the_value_of() -> None:
-    checked(A_IS, Note(slot(A)))
-    checked(A_IS, Note(slot("a word")))
-    refused(A_IS, Note(slot(literal(2))), match="without what it is the value of")
-    refused(A_IS, Note(slot(Sum((A, Literal(COMPANION))))), match="without what it is the value of")
-
-
-def test_a_region_is_the_whole_region() -> None:
-    phi = Define(said(Letter("phi"), literal(s**2 + a * s + c - 1)))
-    stable = Predicate("stable", Letter("phi"))
-
-    def where(*relations: Relation) -> Conclude:
-        return Conclude(slot(Exactly(stable, relations)))
-
-    checked(phi, where(said(c, ">", 1)))
-    checked(phi, where(said(1, "<", c)))
-    for lie in (said(c, ">=", 1), said(1, "<=", c), said(c, ">", 0), said(c, "<", 1), said(c, "!=", 1)):
-        refused(phi, where(lie))
-    refused(phi, where(said(c, ">", 1), said(c, ">", 0)))
-    refused(phi, where())
-    refused(phi, Conclude(slot(Exactly(replace(stable, name="unstable"), (said(c, ">", 1),)))))
-    refused(Define(said(Letter("phi"), literal(s + 1))), where())
-
-
-def test_a_fraction_has_the_region_and_the_roots_of_its_denominator() -> None:
-    F_is = Define(said(F, literal(1 / (c * s + 1))))
-    checked(F_is, Conclude(slot(Exactly(Predicate("stable", F), (said(c, ">", 0),)))))
-    checked(F_is, Conclude(None, (Roots(F, roots_of(c * s + 1, "s")),)))
-    refused(F_is, Conclude(None, (Predicate("stable", F),)))
-    refused(F_is, Conclude(None, (Predicate("unstable", F),)))
-
-
-def test_stability_is_that_of_the_time_domain() -> None:
-    start = replace(START, variable="z")
-    slow, z = Define(said(Letter("phi"), literal(Scalar.symbol("z") - Scalar.rational(1, 2)))), Letter("phi")
-    checked(slow, Conclude(None, (Predicate("stable", z),)), start=start, discrete=True)
-    refused(slow, Conclude(None, (Predicate("stable", z),)), start=start, discrete=False)
-
-
-@pytest.mark.parametrize("key", sorted(ASSERTS))
-def test_a_sentence_that_asserts_a_property_has_it_among_its_facts(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PHRASES, key, "It is so.")
-    facts: Mapping[str, Fact] = {
-        "stable": Predicate("stable", Letter("chi")),
-        "unstable": Predicate("unstable", Negative(Sum((Letter("chi"), literal(-9))))),
-        "strictly_proper": Predicate("strictly_proper", Power(Letter("chi"), -1)),
-        "polynomial": Predicate("polynomial", Letter("chi")),
-        "not_polynomial": Predicate("not_polynomial", Power(Letter("chi"), -1)),
-    }
-    needed = tuple(facts[name] for name in ASSERTS[key])
-    checked(A_IS, CHI, Conclude(Sentence(key), needed))
-    refused(A_IS, CHI, Conclude(Sentence(key), needed[1:]), match="rests on")
-    refused(A_IS, CHI, Note(Sentence(key), needed[:-1]), match="rests on")
-
-
-def test_slots_match_their_phrase() -> None:
-    with pytest.raises(ValueError, match=r"has the slots \['it'\], not \[\]"):
-        Sentence("test_slot")
-    with pytest.raises(ValueError, match=r"has the slots \[\], not \['it'\]"):
-        Sentence("test_plain", (("it", "word"),))
-
-
-# -- diagrams ----------------------------------------------------------------------------------------------------------
-
-
-def test_the_labels_of_a_diagram_are_what_its_letters_mean() -> None:
-    known = (Given((said(P, 1 / s), said(F, 2 / (s + 1)))),)
-    checked(*known, Diagram("loop", (("plant", literal(1 / s)), ("compensator", F))))
-    refused(*known, Diagram("loop", (("plant", literal(2 / s)), ("compensator", F))))
-    refused(*known, Diagram("loop", (("plant", F),)))
-    checked(*known, Diagram("loop", (("controller", F),)))
-    checked(Diagram("loop", (("plant", literal(2 / s)),)))
-
-
 # -- cases -------------------------------------------------------------------------------------------------------------
 
 
@@ -452,11 +311,38 @@ def test_a_signal_in_terms_of_itself_is_refused() -> None:
     refused(Define(Relation((U, Sum((U, U))), ("=",))), Equal((said(U, U),)))
 
 
-def test_roots_without_closed_form_are_held_to_their_factor() -> None:
-    quintic = s**5 - s - 1
-    phi = Define(said(Letter("phi"), literal(quintic)))
-    roots = roots_of(quintic, "s")
-    checked(phi, Conclude(None, (Roots(Letter("phi"), roots),)))
-    refused(phi, Conclude(None, (Roots(Letter("phi"), roots[1:]),)))
-    other = tuple(Root(root.factor + 1, "s", root.centre, root.radicand, 1, root.index) for root in roots)
-    refused(phi, Conclude(None, (Roots(Letter("phi"), other),)))
+# -- a result and its page ---------------------------------------------------------------------------------------------
+
+
+class Claimless(Result):
+    """A result of whom nothing is said."""
+
+    task = "claimless"
+
+
+class Bare(Claimless):
+    """A result that claims nothing and has no page."""
+
+    def claims(self) -> Iterator[Claim]:
+        yield from ()
+
+
+def test_a_result_must_say_what_it_claims_and_how_its_page_reads() -> None:
+    plant = StateSpace("[0 1; 0 -1]")
+    with pytest.raises(NotImplementedError):
+        Claimless(plant, "none", {"number": 1})
+    bare = Bare(plant, "none", {"number": 1, "missing": None})
+    with pytest.raises(NotImplementedError):
+        _ = bare.derivation
+    assert (bare.existence, dict(bare.fields), bare.verdict) == ((), dict(bare.answer), "yes")
+    assert repr(bare) == "Bare(number=1, verdict='yes')"
+
+
+def test_every_face_of_a_result_shows_one_page() -> None:
+    result = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
+    bundle = result._repr_mimebundle_()
+    assert result.to_latex() == result.to("latex")
+    assert result.to_json() == result.to("json")
+    assert bundle == {"text/plain": result.to("text"), "text/latex": result._repr_latex_()}
+    assert {"L", "poles", "conditions", "derivation"} <= set(dir(result))
+    assert repr(result).startswith("ObserverDesign(L=[19; 81], polynomial=s**2 + 20*s + 100, verdict='yes')")
