@@ -2,7 +2,7 @@
 
 A claim is a relation between two formulas in an environment: `det(sI − A + LC) = φ(s)`.  Checking it needs products
 and a comparison, never the method that met it.  Small claims are evaluated exactly.  Large ones are evaluated at
-random points modulo random 62-bit primes; the probability that a false one passes is bounded by following degrees and
+random points modulo random 64-bit primes; the probability that a false one passes is bounded by following degrees and
 heights through the same formulas, and the bound is part of the certificate.  Points and primes come from a generator
 seeded by the SHA-256 of the claim, so runs repeat.
 """
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import never_zero, sign_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.modular import POINT_BITS, PRIMES_BELOW, Point, VanishingDenominator
+from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     Environment,
@@ -302,7 +302,7 @@ def _holds_at_points(
         points += 1
         error *= _error_bound(relation, environment, arithmetic)
         if error <= ERROR_GOAL:
-            return f"at {points} random point{'s' if points > 1 else ''} modulo 62-bit primes", error
+            return f"at {points} random point{'s' if points > 1 else ''} modulo 64-bit primes", error
     return "", 0.0
 
 
@@ -323,7 +323,7 @@ def _error_bound(relation: Relation, environment: Environment, arithmetic: Modul
         for first, second in _paired(left, right):
             degree = max(first.above + second.below, second.above + first.below)
             bits = 1 + max(first.above_bits + second.below_bits, second.above_bits + first.below_bits)
-            total += degree / 2.0**POINT_BITS + bits / 61 / PRIMES_BELOW
+            total += degree / 2.0**POINT_BITS + bits / (PRIME_BITS - 1) / PRIMES_BELOW
     return min(total, 0.5)
 
 

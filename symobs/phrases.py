@@ -134,6 +134,7 @@ COMPENSATION: dict[str, str] = {
     "estimate_coordinates": "In state and estimate the same loop reads",
     "plant_transfer": "As a transfer function the plant is",
     "return_path": "With $F$ in the return path,",
+    "no_stable_compensator": "At a zero of $P$ in the right half-plane its characteristic polynomial is negative. No stable compensator can stabilise such a plant.",
     "with_coefficients": "where",
     "named_entries": "From here on we write its entries as",
     "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
@@ -154,6 +155,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_unstable": ("strictly_proper", "unstable"),
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
+    "no_stable_compensator": ("no_stable_compensator",),
 } | {
     f"{phrase}_{kind}": (fact,)
     for kind in ("observer", "state_feedback")

@@ -6,7 +6,9 @@ determinants Δₙ₋₁, Δₙ₋₃, … are positive.  For |z| < 1 the same i
 
 from __future__ import annotations
 
+import random
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of
@@ -14,6 +16,9 @@ from symobs.exact import Matrix, Scalar, from_coefficients
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+#: How many points are tried before it is left open whether a polynomial can be stable, and can be unstable.
+_POINTS = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,3 +125,55 @@ def as_inequality(positive: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, s
         if (-lead).is_one:
             return symbol, "<", rest
     return positive, ">", Scalar.of(0)
+
+
+def stable_somewhere(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> set[bool]:
+    """Return which outcomes are met at points that respect the declared signs: a proof that both occur, or neither."""
+    generator, met = random.Random(0), set[bool]()  # noqa: S311 - the same points in every run
+    names = sorted(set(polynomial.names) - {variable})
+    for _ in range(_POINTS):
+        point = {name: Scalar.of(_number(generator, signs.get(name, "real"))) for name in names}
+        try:
+            value = polynomial.substitute(point)
+        except ZeroDivisionError:
+            continue
+        if value.degree(variable) == polynomial.degree(variable):
+            met.add(stability(value, variable, {}, discrete=discrete).verdict == "yes")
+        if len(met) == 2:
+            break
+    return met
+
+
+def _number(generator: random.Random, sign: str) -> Fraction:
+    size = Fraction(generator.randint(1, 40), generator.choice((1, 2, 5, 20)))
+    negative = sign in {"negative", "nonpositive"} or (sign in {"real", "nonzero"} and generator.random() < 0.5)
+    return -size if negative else size
+
+
+def no_stable_compensator(transfer_function: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
+    """Tell whether P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
+
+    With F = n/δ the loop's polynomial is χδ + Nn.  It is positive at z, being stable, so δ(z) < 0, although δ(s) tends
+    to +∞: δ has a root beyond z.  (Half of the parity interlacing property of Youla, Bongiorno and Lu, 1974.)  Zeros
+    are seen where a factor of N is s − z, or s² − z².
+    """
+    characteristic = monic(transfer_function.denominator, variable)
+    for factor, _ in transfer_function.numerator.factors()[1]:
+        lead, *rest = factor.coefficients(variable)
+        if len(rest) not in {1, 2} or any(not c.is_zero for c in rest[:-1]):
+            continue
+        if sign_of(rest[-1] / lead, signs) == "negative":
+            signs_at_zero = {
+                sign_of(c, signs) for c in _remainder(characteristic, -rest[-1] / lead, len(rest), variable)
+            }
+            if "negative" in signs_at_zero and signs_at_zero <= {"negative", "nonpositive", "zero"}:
+                return True
+    return False
+
+
+def _remainder(polynomial: Scalar, power: Scalar, order: int, variable: str) -> list[Scalar]:
+    """Return the coefficients that are left, lowest first, where sᵒʳᵈᵉʳ is put equal to `power`."""
+    left = [Scalar.of(0)] * order
+    for k, coefficient in enumerate(reversed(polynomial.coefficients(variable))):
+        left[k % order] = left[k % order] + coefficient * power ** (k // order)
+    return left

@@ -261,4 +261,4 @@ def test_a_denominator_that_is_zero_at_the_point_is_noticed(monkeypatch: pytest.
 def test_a_weak_point_is_followed_by_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(certificate, "EXACT_UP_TO", -1)
     monkeypatch.setattr(certificate, "_error_bound", lambda *_: 2.0**-20)
-    assert verify(said(a, a), Environment()) == ("at 3 random points modulo 62-bit primes", 2.0**-60)
+    assert verify(said(a, a), Environment()) == ("at 3 random points modulo 64-bit primes", 2.0**-60)

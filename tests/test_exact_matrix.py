@@ -364,11 +364,11 @@ class TestModularPoints:
         expected = [[residue(entry, point.prime) for entry in row] for row in exact]
         assert [[int(found[i, j]) for j in range(n)] for i in range(m)] == expected
 
-    def test_primes_are_prime_have_62_bits_and_repeat_with_the_seed(self) -> None:
+    def test_primes_are_prime_have_64_bits_and_repeat_with_the_seed(self) -> None:
         for seed in range(20):
             found = random_prime(seeded(seed))
             assert sympy.isprime(found)
-            assert found.bit_length() == 62
+            assert found.bit_length() == 64
             assert found == random_prime(seeded(seed))
 
     def test_a_vanishing_denominator_is_told(self) -> None:

@@ -239,18 +239,7 @@ def test_attributes_are_never_of_the_kernel() -> None:
                 assert not type(getattr(result, field_name)).__module__.startswith("symobs"), field_name
 
 
-STABILITY = [
-    pytest.param(
-        name,
-        marks=pytest.mark.xfail(strict=True, reason="called conditional, and no parameters make it stable")
-        if name == "cart_pole"
-        else (),
-    )
-    for name in PROBLEMS
-]
-
-
-@pytest.mark.parametrize("name", STABILITY)
+@pytest.mark.parametrize("name", PROBLEMS)
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
     for result in results(name):

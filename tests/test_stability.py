@@ -12,7 +12,15 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
-from symobs.stability import Stability, as_inequality, hurwitz_matrix, monic, stability
+from symobs.stability import (
+    Stability,
+    as_inequality,
+    hurwitz_matrix,
+    monic,
+    no_stable_compensator,
+    stability,
+    stable_somewhere,
+)
 from tests.plain import at_number, coefficients_at, is_hurwitz, random_fraction, seeded, value_at
 
 s, z = Scalar.symbol("s"), Scalar.symbol("z")
@@ -246,3 +254,38 @@ def test_the_hurwitz_matrix_is_the_one_of_the_books() -> None:
 def test_monic() -> None:
     assert monic(3 * s**2 + a * s - 6, "s") == s**2 + a / 3 * s - 2
     assert monic(a * s + 1, "s") == s + 1 / a
+
+
+# -- compensators that cannot be stable --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("above", "below", "forbidden"),
+    [
+        (s - 1, (s - 2) * (s - 3), False),  # two poles beyond the zero: parity is even
+        (s - 1, s * (s - 2), True),  # one pole beyond it
+        (s - 3, s * (s - 2), False),  # the pole lies before it
+        (s + 1, s * (s - 2), False),  # no zero in the right half-plane
+        ((s - 1) * (s - 3), (s - 2) * (s - 4) * (s + 1), True),  # 1 has two poles beyond it, 3 has one
+        (s**2 - 2, s**2 * (s**2 - 9), True),  # zeros ±√2, poles 0, 0, ±3
+        (s**2 + 2, s**2 * (s**2 - 9), False),  # zeros on the axis
+    ],
+)
+def test_a_stable_compensator_is_ruled_out_by_the_parity_of_poles_beyond_a_zero(
+    above: Scalar, below: Scalar, *, forbidden: bool
+) -> None:
+    assert no_stable_compensator(above / below, "s", {}) is forbidden
+
+
+def test_signs_decide_about_zeros_with_parameters() -> None:
+    plant = (s - a) / (s**2 - b)
+    assert not no_stable_compensator(plant, "s", {"a": "positive", "b": "positive"})
+    assert no_stable_compensator((s - a) / (s * (s - a - b)), "s", {"a": "positive", "b": "positive"})
+    assert not no_stable_compensator((s - a) / (s * (s - a - b)), "s", {"a": "positive"})
+
+
+def test_points_prove_that_both_outcomes_occur() -> None:
+    assert stable_somewhere(s + a, "s", {}, discrete=False) == {True, False}
+    assert stable_somewhere(s + a, "s", {"a": "positive"}, discrete=False) == {True}
+    assert stable_somewhere(s**2 + a**2 * s + b**2 + 1, "s", {"a": "nonzero"}, discrete=False) == {True}
+    assert stable_somewhere(z - a, "z", {"a": "positive"}, discrete=True) == {True, False}

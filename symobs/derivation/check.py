@@ -48,7 +48,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
-from symobs.stability import monic, stability
+from symobs.stability import monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -324,5 +324,8 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
     "polynomial": lambda value, environment, _: value.is_polynomial_in(environment.variable),
     "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
+    "no_stable_compensator": lambda value, environment, discrete: (
+        not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

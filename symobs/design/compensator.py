@@ -7,17 +7,18 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.certificate import Certificate, Claim, check
+from symobs.conditions import sign_of
 from symobs.design.gain import GainDesign, letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected, InputError, together
-from symobs.exact import Factored, Matrix, Scalar, factored, transfer
+from symobs.exact import Factored, Matrix, Scalar, controller, factored, transfer
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText, desired_polynomial
-from symobs.stability import stability
+from symobs.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
-#: The stability of a compensator with more terms than this is left undecided: its Hurwitz determinants take seconds.
+#: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
 
 
@@ -50,7 +51,7 @@ class CompensatorDesign(Result):
         K, L = feedback.answer["K"], estimator.answer["L"]
         F = None
         if K is not None and L is not None:
-            numerator, denominator = transfer(compensator_matrix(plant, K, L), L, K, Scalar.of(0), plant.variable)
+            numerator, denominator = own_transfer(feedback, estimator)
             F = numerator / denominator
         return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
 
@@ -137,6 +138,11 @@ class CompensatorDesign(Result):
         return compensator_matrix(self.plant, self.answer["K"], self.answer["L"]).normal()
 
     @cached_property
+    def own_transfer(self) -> tuple[Scalar, Scalar]:
+        """The compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
+        return own_transfer(self.feedback, self.estimator)
+
+    @cached_property
     def plant_transfer(self) -> tuple[Scalar, Scalar]:
         """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled."""
         m = self.plant.matrices
@@ -147,7 +153,7 @@ class CompensatorDesign(Result):
         """P/(1 + PF): the plant with F in the return path, checked against its definition."""
         numerator, characteristic = self.plant_transfer
         P, F = numerator / characteristic, self.answer["F"]
-        own = self.own_matrix.characteristic_polynomial(self.plant.variable)
+        _, own = self.own_transfer
         polynomial = self.loop_polynomial
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
@@ -181,11 +187,30 @@ class CompensatorDesign(Result):
 
     @cached_property
     def own_stability(self) -> str:
-        """Whether the compensator itself is stable; `undecided` where its polynomial is too long to be decided in time."""
+        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`."""
         plant, F = self.plant, self.answer["F"]
-        if F.size > _DECIDABLE_TERMS:
-            return "undecided"
-        return stability(F.denominator, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        if self._is_unavoidably_unstable:
+            return "no"
+        if F.size <= _DECIDABLE_TERMS:
+            verdict = stability(F.denominator, variable, signs, discrete=discrete).verdict
+            if verdict != "conditional":
+                return verdict
+        met = stable_somewhere(F.denominator, variable, signs, discrete=discrete)
+        return "conditional" if len(met) == 2 else "undecided"
+
+    @cached_property
+    def _is_unavoidably_unstable(self) -> bool:
+        """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
+        plant = self.plant
+        signs = plant.symbols.signs
+        if plant.is_discrete:
+            return False
+        wanted = (c for factor, _ in self.loop_polynomial.factors for c in factor.coefficients(plant.variable))
+        numerator, characteristic = self.plant_transfer
+        return all(sign_of(c, signs) == "positive" for c in wanted) and no_stable_compensator(
+            numerator / characteristic, plant.variable, signs
+        )
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -235,6 +260,13 @@ def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:
     m = plant.matrices
     matrix = m.A - m.B @ K - L @ m.C
     return matrix + L @ (m.D @ K) if m.has_feedthrough else matrix
+
+
+def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tuple[Scalar, Scalar]:
+    """Return the compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
+    m, K, L = feedback.plant.matrices, feedback.answer["K"], estimator.answer["L"]
+    closed = feedback.answer["polynomial"] * estimator.answer["polynomial"]
+    return controller(m.A, m.B, m.C, m.D[0, 0], K, L, closed, feedback.plant.variable)
 
 
 @method("compensator/separation", source="S0, section 4.3: separation principle, (4.23)-(4.29)")

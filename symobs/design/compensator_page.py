@@ -20,7 +20,7 @@ from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root
 from symobs.formula import Exactly, Literal, Quotient, Roots
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
-from symobs.stability import as_inequality, monic, stability
+from symobs.stability import as_inequality, monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +82,7 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     K, L, F = page["K"], page["L"], design.answer["F"]
     order = design.plant.order
     pencil = (page.s @ page.identity(order) - page["A_c"]).value
-    characteristic = design.own_matrix.characteristic_polynomial(design.plant.variable)
+    _, characteristic = design.own_transfer
     adjugate = pencil.adjugate()
     one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
     resolvent = page.value(pencil)
@@ -162,14 +162,17 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
 
 def _plant(page: Page, design: CompensatorDesign) -> Term:
     """Show the plant's transfer function, unless the problem gave it."""
+    plant = design.plant
     numerator, characteristic = design.plant_transfer
     form = factored_form(page, numerator / characteristic)
     if not page.knows("P"):
         page.define("P", form, say="plant_transfer", closing=False)
-        response = page["C"] @ (page.s @ page.identity(design.plant.order) - page["A"]).inverse @ page["B"]
-        if design.plant.matrices.has_feedthrough:
+        response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
+        if plant.matrices.has_feedthrough:
             response = response + page["D"]
         page.conclude_silently(relation(page["P"], response))
+    if not plant.is_discrete and no_stable_compensator(page["P"].value, plant.variable, plant.symbols.signs):
+        page.conclude("no_stable_compensator", predicate("no_stable_compensator", page["P"]))
     return form
 
 

@@ -10,7 +10,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
 from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
-from symobs.exact.transfer import transfer
+from symobs.exact.transfer import controller, transfer
 
 __all__ = [
     "RATIONALS",
@@ -23,6 +23,7 @@ __all__ = [
     "Scalar",
     "apply_polynomial",
     "companion",
+    "controller",
     "echelon",
     "factored",
     "from_coefficients",

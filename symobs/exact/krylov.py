@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from flint import fmpq_mat, fmpz_mat, nmod_mat
+
 from symobs.exact import ring
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symobs.exact.field import Field
+
+#: A determinant that is not 0 modulo this prime is not 0.
+_PRIME = 2**64 - 59
 
 
 @dataclass(frozen=True)
@@ -48,25 +53,39 @@ class Krylov:
     @property
     def is_singular(self) -> bool:
         """Whether det 𝒪 is 0 identically."""
-        return not self._integral_determinant if self.field.names else self.determinant.is_zero
+        if self.field.names:
+            return not self._integral_determinant
+        return int(nmod_mat(self._numbers, _PRIME).det()) == 0 and self._numbers.det() == 0
 
-    @property
+    @cached_property
+    def _numbers(self) -> fmpz_mat:
+        """N where there is no parameter."""
+        order = len(self.rows)
+        return fmpz_mat(order, order, [entry for row in self.rows for entry in row.table.entries()])  # type: ignore[union-attr]
+
+    @cached_property
     def matrix(self) -> Matrix:
         """𝒪."""
         return Matrix.block([[row] for row in self.rows])
 
     @cached_property
     def _last_cofactors(self) -> tuple[fmpz_mpoly, ...]:
-        """The cofactors of N's last row."""
+        """The cofactors of N's last row: the minors of the rows above it, all from one expansion."""
         order = len(self.rows)
-        table = tuple(row.polynomials[0] for row in self.rows)
-        return tuple(ring.cofactor(table, order - 1, i, self.field) for i in range(order))
+        if order > ring.MINORS_UP_TO:
+            table = tuple(row.polynomials[0] for row in self.rows)
+            return tuple(ring.cofactor(table, order - 1, i, self.field) for i in range(order))
+        content, rows = ring.strip_row_contents(tuple(row.polynomials[0] for row in self.rows[:-1]), self.field)
+        minors = ring.maximal_minors(rows, self.field) if rows else {(): self.field.one}
+        cofactors = []
+        for i in range(order):
+            minor = minors.get((*range(i), *range(i + 1, order)), self.field.zero) * content
+            cofactors.append(-minor if (order - 1 + i) % 2 else minor)
+        return tuple(cofactors)
 
     @cached_property
     def determinant(self) -> Scalar:
         """The determinant of 𝒪 as it comes: common factors with nothing cancelled but within the fraction itself."""
-        if not self.field.names:
-            return self.matrix.determinant()
         bottom = self.field.one
         for row in self.rows:
             bottom = bottom * row.denominator
@@ -75,17 +94,22 @@ class Krylov:
     @cached_property
     def _integral_determinant(self) -> fmpz_mpoly:
         """The determinant of N."""
+        if not self.field.names:
+            return self.field.context.constant(self._numbers.det())
         return ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
 
     def solve_last(self) -> Matrix:
         """Return 𝒪⁻¹ eₙ; raises ZeroDivisionError where det 𝒪 = 0 identically."""
         order = len(self.rows)
+        scale = self.rows[-1].denominator
         if not self.field.names:
-            return self.matrix.solve(Matrix.unit(order, order - 1))
+            unit = fmpz_mat(order, 1, [int(i == order - 1) for i in range(order)])
+            table, number = fmpq_mat(self._numbers).solve(fmpq_mat(unit)).numer_denom()
+            solution = Matrix(self.field, table, self.field.context.constant(number), (order, 1))
+            return solution.scaled(scale).normal()
         below = self._integral_determinant
         if not below:
             message = "not observable"
             raise ZeroDivisionError(message)
-        scale = self.rows[-1].denominator
         column = tuple((cofactor * scale,) for cofactor in self._last_cofactors)
         return Matrix(self.field, column, below, (order, 1))

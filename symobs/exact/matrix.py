@@ -13,7 +13,8 @@ from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
 from symobs.exact.field import RATIONALS, Field
-from symobs.exact.scalar import Scalar, degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.ring import degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -31,6 +32,7 @@ class Matrix:
         self.table = table
         self.denominator = denominator
         self.shape = shape
+        self._elsewhere: dict[Field, Matrix] = {}
 
     # -- construction ---------------------------------------------------------------------------------------------
 
@@ -51,9 +53,7 @@ class Matrix:
         for row in lifted:
             for entry in row:
                 denominator = ring.common_multiple(denominator, entry.denominator_part)
-        table = tuple(
-            tuple(entry.numerator_part * (denominator / entry.denominator_part) for entry in row) for row in lifted
-        )
+        table = tuple(tuple(entry.over(denominator) for entry in row) for row in lifted)
         matrix = build(field, table, denominator, shape)
         matrix.__dict__["rows"] = rows
         return matrix
@@ -97,9 +97,14 @@ class Matrix:
         return Matrix.of(rows, sum(part.shape[1] for part in blocks[0]))
 
     def within(self, field: Field) -> Matrix:
-        """Return the same matrix over `field`."""
+        """Return the same matrix over `field`; kept, since a design asks for A, B and C again and again."""
         if field is self.field:
             return self
+        if field not in self._elsewhere:
+            self._elsewhere[field] = self._carried(field)
+        return self._elsewhere[field]
+
+    def _carried(self, field: Field) -> Matrix:
         if isinstance(self.table, fmpz_mat):
             table = ring.rows_of(self.table, field)
         elif not field.names:
@@ -283,6 +288,8 @@ class Matrix:
         """Return the same matrix with what all entries and the denominator share cancelled."""
         if isinstance(self.table, fmpz_mat):
             return _lowest(self)
+        if ring.coprime(self.denominator, (entry for row in self.table for entry in row)):
+            return self
         shared = self.denominator
         for row in self.table:
             for entry in row:

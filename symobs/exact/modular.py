@@ -1,8 +1,8 @@
 """Exact values at a random point modulo a prime: the arithmetic in which large claims are checked.
 
 A polynomial identity of total degree d that is false survives a random point of {0, …, 2⁶¹−1}ᵏ with probability at most
-d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random 62-bit prime with probability at
-most h / (61 · 4·10¹⁶), there being more than 4·10¹⁶ such primes.
+d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random 64-bit prime with probability at
+most h / (63 · 2·10¹⁷), there being more than 2·10¹⁷ such primes.
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ if TYPE_CHECKING:
     import random
     from collections.abc import Iterable
 
+    from flint import fmpz_mpoly
+
     from symobs.exact.matrix import Matrix
     from symobs.exact.scalar import Scalar
 
 POINT_BITS = 61
-PRIME_BITS = 62
-PRIMES_BELOW = 4 * 10**16
+PRIME_BITS = 64
+PRIMES_BELOW = 2 * 10**17
+_ZERO = fmpz(0)
 
 
 class VanishingDenominator(Exception):
@@ -33,7 +36,7 @@ class Point:
     __slots__ = ("bits", "prime", "values")
 
     def __init__(self, names: Iterable[str], generator: random.Random) -> None:
-        """Draw a prime of 62 bits and a residue for each name."""
+        """Draw a prime of 64 bits and a residue for each name."""
         self.prime = random_prime(generator)
         self.values = {name: generator.getrandbits(POINT_BITS) for name in sorted(names)}
         self.bits: dict[int, tuple[int, int]] = {}
@@ -41,32 +44,36 @@ class Point:
     def scalar(self, value: Scalar) -> int:
         """Return the residue of a scalar; the sizes of the integers it comes from are kept in `bits`."""
         arguments = [self.values[name] for name in value.field.names]
-        above, below = value.numerator_part(*arguments), value.denominator_part(*arguments)
-        self.bits[id(value)] = above.bit_length(), below.bit_length()
-        return int(above % self.prime) * self._inverse(below) % self.prime
+        above = value.numerator_part(*arguments)
+        over, below_bits = self._denominator(value.denominator_part, arguments)
+        self.bits[id(value)] = above.bit_length(), below_bits
+        return int(above % self.prime) * over % self.prime
 
     def matrix(self, value: Matrix) -> nmod_mat:
         """Return the matrix of residues; the sizes of the integers it comes from are kept in `bits`."""
         arguments = [self.values[name] for name in value.field.names]
-        below = value.denominator(*arguments)
-        if isinstance(value.table, fmpz_mat):
-            entries = value.table.entries()
-            table = nmod_mat(value.table, self.prime)
-        else:
-            entries = [entry(*arguments) for row in value.table for entry in row]
-            table = nmod_mat(*value.shape, [int(entry % self.prime) for entry in entries], self.prime)
-        self.bits[id(value)] = max((entry.bit_length() for entry in entries), default=0), below.bit_length()
-        return table * nmod(self._inverse(below), self.prime)
+        table = value.table
+        if not isinstance(table, fmpz_mat):
+            numbers = [entry(*arguments) if entry else _ZERO for row in table for entry in row]
+            table = fmpz_mat(*value.shape, numbers)
+        over, below_bits = self._denominator(value.denominator, arguments)
+        self.bits[id(value)] = max((entry.bit_length() for entry in table.entries()), default=0), below_bits
+        residues = nmod_mat(table, self.prime)
+        return residues if over == 1 else residues * nmod(over, self.prime)
 
-    def _inverse(self, number: fmpz) -> int:
+    def _denominator(self, polynomial: fmpz_mpoly, arguments: list[int]) -> tuple[int, int]:
+        """Return the inverse of a denominator's residue, and the size of the integer it comes from."""
+        if polynomial.is_one():
+            return 1, 1
+        number = polynomial(*arguments)
         residue = int(number % self.prime)
         if not residue:
             raise VanishingDenominator
-        return pow(residue, -1, self.prime)
+        return pow(residue, -1, self.prime), number.bit_length()
 
 
 def random_prime(generator: random.Random) -> int:
-    """Return a random prime of 62 bits."""
+    """Return a random prime of 64 bits."""
     while True:
         candidate = generator.getrandbits(PRIME_BITS) | 1 << (PRIME_BITS - 1) | 1
         if fmpz(candidate).is_prime():

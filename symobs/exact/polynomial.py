@@ -34,14 +34,15 @@ def apply_polynomial(factors: Iterable[Scalar], variable: str, matrix: Matrix, v
 
     No power of the matrix is formed: a factor s + p costs one product of matrix and vector.
     """
+    factors = tuple(factors)
+    field = matrix.field | vector.field
+    beyond = {name for f in factors for name in f.field.names if name not in field.position} - {variable}
+    if beyond:
+        field = field | Field.of(beyond.intersection(set().union(*(f.names for f in factors))))
+    matrix, vector = matrix.within(field), vector.within(field)
+    apply = _horner if field.names else _numeric_horner
     for factor in factors:
-        coefficients = factor.coefficients(variable)
-        field = matrix.field | vector.field | Field.of({name for c in coefficients for name in c.names})
-        lifted = [coefficient.within(field) for coefficient in coefficients]
-        if field.names:
-            vector = _horner(lifted, matrix.within(field), vector.within(field))
-        else:
-            vector = _numeric_horner(lifted, matrix, vector)
+        vector = apply(factor.coefficients(variable, field), matrix, vector)
     return vector
 
 
@@ -52,7 +53,12 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
     common = field.one
     for coefficient in coefficients:
         common = ring.common_multiple(common, coefficient.denominator_part)
-    whole = [c.numerator_part * (common / c.denominator_part) for c in coefficients]
+    whole = [coefficient.over(common) for coefficient in coefficients]
+    below = vector.denominator * common * scale ** (len(whole) - 1)
+    if len(whole) == 2:
+        moved = ring.plus_diagonal(rows, whole[0], whole[1] * scale)
+        image = [ring.dot(row, column, field.zero) for row in moved]
+        return Matrix(field, tuple((entry,) for entry in image), below, vector.shape)
     image = [entry * whole[0] for entry in column] if not whole[0].is_one() else column
     power = field.one
     for numerator in whole[1:]:
@@ -61,7 +67,7 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
         image = [ring.dot(row, image, field.zero) for row in rows]
         if factor:
             image = [entry + factor * old for entry, old in zip(image, column, strict=True)]
-    return Matrix(field, tuple((entry,) for entry in image), vector.denominator * common * power, vector.shape)
+    return Matrix(field, tuple((entry,) for entry in image), below, vector.shape)
 
 
 def _numeric_horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Matrix:

@@ -6,17 +6,22 @@ numeric case, the functions here the parametric one.  Everything is fraction-fre
 
 from __future__ import annotations
 
+from math import log2
 from typing import TYPE_CHECKING, TypeAlias
 
 from flint import fmpz_mat, fmpz_mpoly
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
+
+    from flint import fmpz
 
     from symobs.exact.field import Field
 
 Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
 
+#: Up to this many terms a fingerprint is the whole text.
+_WHOLE_TEXT = 60
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 
@@ -39,6 +44,38 @@ def product(left: Rows, right: Rows, zero: fmpz_mpoly) -> Rows:
 def transpose(rows: Rows) -> Rows:
     """Return the transpose."""
     return tuple(zip(*rows, strict=True))
+
+
+def plus_diagonal(rows: Rows, factor: fmpz_mpoly, addend: fmpz_mpoly) -> Rows:
+    """Return factor · M + addend · I."""
+    scaled = rows if factor.is_one() else tuple(tuple(entry * factor for entry in row) for row in rows)
+    return tuple((*row[:i], row[i] + addend, *row[i + 1 :]) for i, row in enumerate(scaled))
+
+
+def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_mpoly:
+    """Return an integer times the coefficient of the highest powers of these generators, one after the other."""
+    for index in foreign:
+        for _ in range(int(polynomial.degrees()[index])):
+            polynomial = polynomial.derivative(index)
+    return polynomial
+
+
+def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
+    """Tell whether it is easily seen that no factor divides the denominator and all entries.
+
+    A factor of the denominator is free of the generators that the denominator lacks, so it divides the coefficients
+    of the entries in those; the leading ones are much shorter than the entries, and mostly two of them suffice.
+    """
+    if denominator.is_one():
+        return True
+    foreign = [index for index, degree in enumerate(denominator.degrees()) if degree <= 0]
+    leading = sorted((leading_coefficient(entry, foreign) for entry in entries if entry), key=len)
+    shared = None
+    for polynomial in [*leading, denominator]:
+        shared = polynomial if shared is None else shared.gcd(polynomial)
+        if shared.is_one():
+            return True
+    return False
 
 
 def determinant(rows: Rows, field: Field) -> fmpz_mpoly:
@@ -183,3 +220,40 @@ def align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, 
     """Return (common denominator, factor for the left, factor for the right)."""
     common = common_multiple(left, right)
     return common, common / left, common / right
+
+
+def by_powers(
+    polynomial: fmpz_mpoly, index: int, places: Sequence[int], width: int
+) -> list[dict[tuple[int, ...], fmpz]]:
+    """Return the terms of the coefficients of each power of one generator, highest first.
+
+    Generator i stands at `places[i]` among the `width` ones of the context the coefficients are for.
+    """
+    degree = int(polynomial.degrees()[index])
+    collected: list[dict[tuple[int, ...], fmpz]] = [{} for _ in range(degree + 1)]
+    for powers, coefficient in polynomial.terms():
+        monomial = [0] * width
+        for i, power in enumerate(powers):
+            if power and i != index:
+                monomial[places[i]] = power
+        collected[degree - int(powers[index])][tuple(monomial)] = coefficient
+    return collected
+
+
+def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
+    """Return FLINT's text of a polynomial where it is short, else a summary of it."""
+    if len(polynomial) <= _WHOLE_TEXT:
+        return str(polynomial)
+    return f"{len(polynomial)} {polynomial.degrees()} {polynomial.leading_coefficient()}"
+
+
+def length_bits(polynomial: fmpz_mpoly) -> float:
+    """Return an upper bound of log₂ Σ |coefficients|."""
+    if not polynomial:
+        return 0.0
+    return max(abs(c) for c in polynomial.coeffs()).bit_length() + log2(len(polynomial))
+
+
+def degree_bound(polynomial: fmpz_mpoly) -> int:
+    """Return the sum of the degrees in each generator, which the total degree cannot exceed (and which is cheap)."""
+    return int(sum(polynomial.degrees())) if polynomial else 0

@@ -7,12 +7,12 @@ two scalars are equal exactly when both parts are.  Arithmetic joins fields by i
 from __future__ import annotations
 
 from fractions import Fraction
-from math import log2
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.exact.field import RATIONALS, Field
+from symobs.exact.ring import by_powers, degree_bound, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -83,6 +83,12 @@ class Scalar:
         if field is self.field:
             return self
         return Scalar(field, field.lift(self.numerator_part, self.field), field.lift(self.denominator_part, self.field))
+
+    def over(self, denominator: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the numerator over a multiple of the denominator."""
+        if denominator.is_one():
+            return self.numerator_part
+        return self.numerator_part * (denominator / self.denominator_part)
 
     def __reduce__(self) -> tuple[object, ...]:
         return (
@@ -257,18 +263,20 @@ class Scalar:
         index = self.field.position.get(variable)
         return index is None or self.denominator_part.degrees()[index] <= 0
 
-    def coefficients(self, variable: str) -> tuple[Scalar, ...]:
-        """Return the coefficients of a polynomial in `variable`, highest power first, free of `variable`."""
+    def coefficients(self, variable: str, field: Field | None = None) -> tuple[Scalar, ...]:
+        """Return the coefficients of a polynomial in `variable`, highest power first, free of `variable`.
+
+        They are elements of `field` where one is given; it must contain the other generators that occur.
+        """
+        target = self.field if field is None else field
         index = self.field.position.get(variable)
         degree = self.degree(variable)
         if index is None or degree <= 0:
-            return (self,)
-        collected: list[dict[tuple[int, ...], fmpz]] = [{} for _ in range(degree + 1)]
-        for powers, coefficient in self.numerator_part.terms():
-            power = int(powers[index])
-            collected[degree - power][(*powers[:index], 0, *powers[index + 1 :])] = coefficient
-        build = self.field.context.from_dict
-        return tuple(Scalar.reduced(self.field, build(terms), self.denominator_part) for terms in collected)
+            return (self.within(target),)
+        places = [target.position.get(name, -1) for name in self.field.names]
+        collected = by_powers(self.numerator_part, index, places, len(target.names))
+        build, below = target.context.from_dict, target.lift(self.denominator_part, self.field)
+        return tuple(Scalar.reduced(target, build(terms), below) for terms in collected)
 
     # -- factors and substitution ---------------------------------------------------------------------------------
 
@@ -293,25 +301,6 @@ class Scalar:
         return _compose(self.numerator_part, self.field, relevant) / _compose(
             self.denominator_part, self.field, relevant
         )
-
-
-def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
-    """Return FLINT's text of a polynomial where it is short, else a summary of it."""
-    if len(polynomial) <= _WHOLE_TEXT:
-        return str(polynomial)
-    return f"{len(polynomial)} {polynomial.degrees()} {polynomial.leading_coefficient()}"
-
-
-def length_bits(polynomial: fmpz_mpoly) -> float:
-    """Return an upper bound of log₂ Σ |coefficients|."""
-    if not polynomial:
-        return 0.0
-    return max(abs(c) for c in polynomial.coeffs()).bit_length() + log2(len(polynomial))
-
-
-def degree_bound(polynomial: fmpz_mpoly) -> int:
-    """Return the sum of the degrees in each generator, which the total degree cannot exceed (and which is cheap)."""
-    return int(sum(polynomial.degrees())) if polynomial else 0
 
 
 def _constant(polynomial: fmpz_mpoly) -> fmpz:

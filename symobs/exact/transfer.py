@@ -23,6 +23,28 @@ def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple
     return numerator + d * characteristic, characteristic
 
 
+def controller(
+    A: Matrix, b: Matrix, c: Matrix, d: Scalar, K: Matrix, L: Matrix, closed: Scalar, variable: str
+) -> tuple[Scalar, Scalar]:
+    """Return (n, δ) with K (sI − M)⁻¹ L = n/δ and δ = det(sI − M) for the compensator M = A − bK − Lc + LdK.
+
+    `closed` must be det(sI − A + bK) det(sI − A + Lc).  No determinant of M, whose entries are large, is formed: adding
+    a column times K, or L times a row, to sI − A leaves n = K adj(sI − A) L as it is; and where z/χ is the plant,
+    χ δ + z n = closed.
+    """
+    field = A.field | b.field | c.field | K.field | L.field | d.field | closed.field
+    if not field.names or A.shape[0] > ring.MINORS_UP_TO:
+        return transfer(A - b @ K - L @ c + L @ K * d, L, K, Scalar.of(0), variable)
+    field = field | Field.of((variable,))
+    n, chi = (value.within(field) for value in _bordered(A, L, K, field, variable))
+    z = transfer(A, b, c, d, variable)[0].within(field)
+    phi = closed.within(field)
+    below = n.denominator_part * z.denominator_part
+    product = phi.numerator_part * below - n.numerator_part * z.numerator_part * phi.denominator_part
+    quotient = product * chi.denominator_part / chi.numerator_part  # exact: χ's numerator is primitive
+    return n, Scalar.reduced(field, quotient, below * phi.denominator_part)
+
+
 def _bordered(A: Matrix, b: Matrix, c: Matrix, field: Field, variable: str) -> tuple[Scalar, Scalar]:
     """Return c adj(sI − A) b = −det [sI − A, b; c, 0] and det(sI − A), both from the minors of [sI − A, b]."""
     field = field | Field.of((variable,))

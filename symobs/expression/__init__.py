@@ -18,7 +18,7 @@ from symobs.expression.budget import common_denominator_excess
 from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
 from symobs.expression.names import Names, Scope, declared_name
 from symobs.expression.source import shown
-from symobs.expression.tokens import MOST_DIGITS
+from symobs.expression.tokens import MOST_DIGITS, sharing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,6 +70,7 @@ def parse_poles(value: object, names: Names = None, *, where: str = "") -> tuple
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
+    scope = sharing(scope, listed)
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
 
 
@@ -181,6 +182,7 @@ def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]
         raise ShapeMismatch(unequal[0], where=where, repair=EQUAL_ROWS, row=unequal[1])
     if not cells or not cells[0]:
         raise ShapeMismatch("the matrix has no entry", where=where, repair="write for example [[0, 1], [0, -1]]")
+    scope = sharing(scope, [cell for row in cells for cell in row])
     return [[_entry(cell, scope, _cell(where, i, j)) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
 
 

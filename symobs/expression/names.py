@@ -15,6 +15,8 @@ from symobs.expression.source import shown
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.exact import Field
+
 #: The declared names; None declares every well-formed name.
 Names: TypeAlias = "Mapping[str, object] | None"
 
@@ -55,11 +57,12 @@ def refusal(name: str) -> tuple[str, str] | None:
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What the texts of one call may use: names, and work."""
+    """What the texts of one call may use: names, work, and one context for all where there are several."""
 
     names: Names
     variable: str | None
     meter: Meter = field(default_factory=Meter)
+    context: Field | None = None
 
     @staticmethod
     def of(names: Names, variable: str | None, where: str) -> Scope:

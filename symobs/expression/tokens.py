@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ from symobs.expression.names import FUNCTIONS, LONGEST_NAME, Scope, refusal
 from symobs.expression.source import Source, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Container
+    from collections.abc import Container, Iterable
 
 MOST_NESTING = 100
 MOST_DIGITS = 1_000
@@ -40,6 +41,18 @@ _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT")
 
 
+def sharing(scope: Scope, values: Iterable[object]) -> Scope:
+    """Return the scope with one context for all texts among the values."""
+    return replace(scope, context=_context_of(value for value in values if isinstance(value, str)))
+
+
+def _context_of(texts: Iterable[str]) -> Field:
+    """Return one context for every name in the texts, so that their values need not be carried from one to another."""
+    names = {name for text in texts for name in _NAMES.findall(text)} - set(FUNCTIONS)
+    fit = {name for name in names if len(name) <= LONGEST_NAME}
+    return Field.of(fit if len(fit) <= MOST_NAMES else ())
+
+
 class Tokeniser:
     """Cuts one text into tokens; each VALUE carries its exact number.
 
@@ -58,9 +71,8 @@ class Tokeniser:
 
     @cached_property
     def field(self) -> Field:
-        """One context for every name of the text, so that its values need not be carried from one to another."""
-        names = {name for name in _NAMES.findall(self.text) if name not in FUNCTIONS and len(name) <= LONGEST_NAME}
-        return Field.of(names) if len(names) <= MOST_NAMES else Field.of(())
+        """The context of the values."""
+        return _context_of([self.text]) if self.scope.context is None else self.scope.context
 
     def run(self) -> list[Token]:
         """Return the tokens, with brackets matched; raises ExpressionError with the place of the fault."""

@@ -218,6 +218,9 @@ class Modular:
         return bool(left == right)
 
 
+_MINUS_ONE = Scalar.of(-1)
+
+
 def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic) -> Any:
     """Return the value of a formula: a scalar, a matrix or a `Signal` of the arithmetic."""
     match formula:
@@ -235,7 +238,7 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
                 total = _add(total, evaluate(term, environment, arithmetic), arithmetic)
             return total
         case Negative(operand):
-            return _times(arithmetic.leaf(Scalar.of(-1)), evaluate(operand, environment, arithmetic), arithmetic)
+            return _times(arithmetic.leaf(_MINUS_ONE), evaluate(operand, environment, arithmetic), arithmetic)
         case Product(factors):
             value = evaluate(factors[-1], environment, arithmetic)
             for factor in reversed(factors[:-1]):

@@ -56,7 +56,8 @@ class StateSpace:
         self.symbols = known
         self.time = read_time(dt, known)
         self.origin = transfer_function
-        if self.variable in {*known.signs}.union(*(part.names for part in parts.values() if part is not None)):
+        given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
+        if self.variable in known.signs or any(self.variable in part.names for part in given):
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
 
