@@ -269,6 +269,15 @@ class Reader:
         if name == "strictly_proper":
             assert above.degree() < below.degree(), subject
             return
+        if name == "no_stable_compensator":
+            for point in self.samples():
+                zeros, monic = (
+                    sympy.Poly(above.as_expr().subs(point), self.symbol),
+                    (below.as_expr() / below.LC()).subs(point),
+                )
+                real = [root for root in zeros.nroots() if root.is_real and root > 0]
+                assert any(monic.subs(self.symbol, root) < 0 for root in real), subject
+            return
         polynomial = (below if below.degree() > 0 else above).as_expr()
         for point in self.samples():
             if name == "never_zero":

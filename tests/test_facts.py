@@ -159,6 +159,8 @@ def test_a_fraction_has_the_region_and_the_roots_of_its_denominator() -> None:
 
 def test_stability_is_that_of_the_time_domain() -> None:
     start = replace(START, variable="z")
+    plant = Given((said(P, literal((Scalar.symbol("z") - 1) / (Scalar.symbol("z") * (Scalar.symbol("z") - 2)))),))
+    refused(plant, Conclude(None, (Predicate("no_stable_compensator", P),)), start=start, discrete=True)
     slow, z = Define(said(Letter("phi"), literal(Scalar.symbol("z") - Scalar.rational(1, 2)))), Letter("phi")
     checked(slow, Conclude(None, (Predicate("stable", z),)), start=start, discrete=True)
     refused(slow, Conclude(None, (Predicate("stable", z),)), start=start, discrete=False)
@@ -173,11 +175,13 @@ def test_a_sentence_that_asserts_a_property_has_it_among_its_facts(key: str, mon
         "strictly_proper": Predicate("strictly_proper", Power(Letter("chi"), -1)),
         "polynomial": Predicate("polynomial", Letter("chi")),
         "not_polynomial": Predicate("not_polynomial", Power(Letter("chi"), -1)),
+        "no_stable_compensator": Predicate("no_stable_compensator", P),
     }
+    plant = Given((said(P, literal((s - 1) / (s * (s - 2)))),))
     needed = tuple(facts[name] for name in ASSERTS[key])
-    checked(A_IS, CHI, Conclude(Sentence(key), needed))
-    refused(A_IS, CHI, Conclude(Sentence(key), needed[1:]), match="rests on")
-    refused(A_IS, CHI, Note(Sentence(key), needed[:-1]), match="rests on")
+    checked(A_IS, CHI, plant, Conclude(Sentence(key), needed))
+    refused(A_IS, CHI, plant, Conclude(Sentence(key), needed[1:]), match="rests on")
+    refused(A_IS, CHI, plant, Note(Sentence(key), needed[:-1]), match="rests on")
 
 
 def test_slots_match_their_phrase() -> None:

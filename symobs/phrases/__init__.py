@@ -1,0 +1,45 @@
+"""Every sentence a derivation can say, in one place: the language of the prose lives here and nowhere else.
+
+A phrase is plain text with slots in braces, filled by a formula or fact (set as mathematics) or by a word; between dollar
+signs stand formulas in the letters of `notation` that only name things.  Steps name a phrase by its key; a step whose
+slots do not match its phrase cannot be made.  Each module of the folder holds the sentences of one subject, with what
+they assert and rest on.
+"""
+
+from __future__ import annotations
+
+import string
+from typing import Any
+
+from symobs.phrases import compensation, gains, polynomials, rank, titles
+
+_MODULES = (titles, polynomials, rank, gains, compensation)
+
+
+def _collected(name: str) -> dict[str, Any]:
+    """Return what the modules of this folder call `name`, joined; the same key twice is an error."""
+    joined: dict[str, Any] = {}
+    for module in _MODULES:
+        for key, value in dict(getattr(module, name, {})).items():
+            if key in joined:
+                message = f"the phrase {key!r} is written twice"
+                raise ValueError(message)
+            joined[key] = value
+    return joined
+
+
+PHRASES: dict[str, str] = _collected("PHRASES")
+
+#: The properties that a phrase asserts: a step that says it must have them among its facts, and so have been checked.
+ASSERTS: dict[str, tuple[str, ...]] = _collected("ASSERTS")
+
+#: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
+RESTS_ON: dict[str, str] = _collected("RESTS_ON")
+
+#: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
+NAMING = frozenset(key for module in _MODULES for key in getattr(module, "NAMING", ()))
+
+
+def slots_of(key: str) -> frozenset[str]:
+    """Return the names of the slots of a phrase."""
+    return frozenset(name for _, name, _, _ in string.Formatter().parse(PHRASES[key]) if name)

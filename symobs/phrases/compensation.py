@@ -1,0 +1,46 @@
+"""The observer, the compensator and the loop."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
+    "error_equation": "Whatever the input, the error {error} then obeys",
+    "observer_collected": "Collected and with the numbers put in, the observer reads",
+    "separation": "By the separation principle the control law uses the estimate in place of the state:",
+    "observer_closed": "Put into the observer, it leaves a system that is driven by $y$ alone,",
+    "compensator_matrix": "with the matrix",
+    "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
+    "compensator_stable": "It is strictly proper and stable.",
+    "compensator_unstable": "It is strictly proper. By itself it is not stable, although the loop is.",
+    "compensator_proper": "It is strictly proper.",
+    "compensator_stable_if": "It is strictly proper, and by itself stable exactly where {where}.",
+    "control_in_error": "In terms of the error,",
+    "closed_loop_matrix": "so that plant and error together are block triangular,",
+    "polynomial_splits": "and the polynomial of the loop is the product of the two that were asked for:",
+    "estimate_coordinates": "In state and estimate the same loop reads",
+    "plant_transfer": "As a transfer function the plant is",
+    "return_path": "With $F$ in the return path,",
+    "no_stable_compensator": "At a zero of $P$ in the right half-plane its characteristic polynomial is negative. No stable compensator can stabilise such a plant.",
+    "with_coefficients": "where",
+    "named_entries": "From here on we write its entries as",
+    "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
+    "loop_polynomial": "Its denominator is the product of the two polynomials asked for, as it must be.",
+    "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "
+    "not bounded by a multiple of the exponential alone. With distinct poles they are.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "compensator_stable": ("strictly_proper", "stable"),
+    "compensator_unstable": ("strictly_proper", "unstable"),
+    "compensator_proper": ("strictly_proper",),
+    "compensator_stable_if": ("strictly_proper",),
+    "no_stable_compensator": ("no_stable_compensator",),
+}
+
+RESTS_ON: dict[str, str] = {
+    "observer_equation": "observer",
+    "error_equation": "error",
+    "separation": "separation",
+    "transfer_function_of_compensator": "compensator",
+    "closed_loop_matrix": "closed_loop",
+}

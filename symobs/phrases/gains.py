@@ -1,0 +1,72 @@
+"""State feedback and observer gains."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "assignable_observer": "By the pole assignment theorem the poles of $A - L C$ can therefore be placed at will.",
+    "assignable_state_feedback": "By the pole assignment theorem the poles of $A - B K$ can therefore be placed at will.",
+    "asks_observer": "The observer poles ask for",
+    "asks_state_feedback": "The control poles ask for",
+    "coefficients": "with the coefficients",
+    "already_canonical": "The pair ($A$, $B$) is already in controllable canonical form, with {chi}, so the gain is the difference of "
+    "coefficients, constant first.",
+    "open_observer": "We place them for the dual pair ($Aᵀ$, $Cᵀ$), whose controllability matrix is $Oᵀ$ and whose characteristic polynomial is",
+    "open_state_feedback": "The characteristic polynomial of $A$ is",
+    "canonical_observer": "The dual pair is brought to controllable canonical form by",
+    "canonical_state_feedback": "The pair is brought to controllable canonical form by",
+    "row_observer": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
+    "row_state_feedback": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
+    "last_column": "Ackermann's formula takes the last column of the inverse of the observability matrix,",
+    "last_row": "Ackermann's formula takes the last row of the inverse of the controllability matrix,",
+    "ackermann_observer": "and puts $A$ into the polynomial asked for:",
+    "ackermann_state_feedback": "and puts $A$ into the polynomial asked for:",
+    "as_required": "{check}, as required.",
+    "fixed_but_wanted_observer": "No gain moves the unobservable modes {roots}, but they are among the poles asked for.",
+    "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable modes {roots}, but they are among the poles asked for.",
+    "one_gain_observer": "A gain that places the others is",
+    "one_gain_state_feedback": "A gain that places the others is",
+    "family_observer": "It is not the only one: all of them are {gain}.",
+    "family_state_feedback": "It is not the only one: all of them are {gain}.",
+    "impossible_observer": "Every gain leaves the factor {fixed} in the polynomial of $A - L C$, and this factor does not divide "
+    "{polynomial}: no gain places these poles.",
+    "impossible_state_feedback": "Every gain leaves the factor {fixed} in the polynomial of $A - B K$, and this factor does not divide "
+    "{polynomial}: no gain places these poles.",
+    "gain_given_observer": "The observer gain is given,",
+    "gain_given_state_feedback": "The feedback gain is given,",
+    "closed_matrix": "which makes",
+    "its_polynomial": "The characteristic polynomial is",
+    "case_survives_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for, so this $L$ "
+    "still works; it is no longer the only one.",
+    "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for, "
+    "so this $K$ still works; it is no longer the only one.",
+    "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for. A gain that "
+    "works there is",
+    "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for. "
+    "A gain that works there is",
+    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed mode {modes} is not among the poles asked for: no gain "
+    "places them.",
+    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed mode {modes} is not among the poles asked for: no "
+    "gain places them.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    f"{phrase}_{kind}": (fact,)
+    for kind in ("observer", "state_feedback")
+    for phrase, fact in (
+        ("fixed_but_wanted", "polynomial"),
+        ("case_survives", "polynomial"),
+        ("case_other", "polynomial"),
+        ("case_no", "not_polynomial"),
+        ("impossible", "not_polynomial"),
+    )
+}
+
+RESTS_ON: dict[str, str] = {
+    "assignable_observer": "observer_poles",
+    "open_observer": "duality",
+    "canonical_observer": "canonical_form",
+    "canonical_state_feedback": "canonical_form",
+    "already_canonical": "canonical_form",
+    "last_column": "ackermann",
+    "last_row": "ackermann",
+}

@@ -1,0 +1,25 @@
+"""Characteristic polynomials, transfer functions, stability."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "its_characteristic_polynomial": "The characteristic polynomial is",
+    "its_roots": "Its roots are {roots}.",
+    "its_transfer_function": "Adjugate over determinant gives",
+    "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
+    "its_poles": "The poles are {roots}.",
+    "its_zeros": "The zeros are {roots}.",
+    "stable_continuous": "All its roots lie in the open left half plane: it is stable.",
+    "stable_discrete": "All its roots lie inside the unit circle: it is stable.",
+    "unstable_continuous": "Not all its roots lie in the open left half plane: it is not stable.",
+    "unstable_discrete": "Not all its roots lie inside the unit circle: it is not stable.",
+    "stable_if_continuous": "All its roots lie in the open left half plane exactly where {where}.",
+    "stable_if_discrete": "All its roots lie inside the unit circle exactly where {where}.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "stable_continuous": ("stable",),
+    "stable_discrete": ("stable",),
+    "unstable_continuous": ("unstable",),
+    "unstable_discrete": ("unstable",),
+}

@@ -1,0 +1,38 @@
+"""Observability and controllability."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "observability_matrix": "The observability matrix is",
+    "controllability_matrix": "The controllability matrix is",
+    "yes_observability": "It has full rank, so the pair ($C$, $A$) is observable.",
+    "yes_controllability": "It has full rank, so the pair ($A$, $B$) is controllable.",
+    "full_rank_observability": "Since {rank}, the pair ($C$, $A$) is observable.",
+    "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
+    "generic_rank_observability": "In general {rank}, and the pair ($C$, $A$) is observable; the exceptions follow.",
+    "generic_rank_controllability": "In general {rank}, and the pair ($A$, $B$) is controllable; the exceptions follow.",
+    "case_rank": "There {rank}.",
+    "undecided_case": "What is true where {when} vanishes is not decided here.",
+    "undecided_together": "What is true where {when} and {other} vanish together is not decided here.",
+    "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
+    "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero. From here on we assume {condition}.",
+    "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
+    "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
+    "kernel_observability": "A state in this direction is never seen at the output:",
+    "kernel_controllability": "The input never moves the state along this direction:",
+    "modes_observability": "The unobservable modes are {modes}.",
+    "modes_controllability": "The uncontrollable modes are {modes}.",
+}
+
+NAMING = ("undecided_case", "undecided_together")
+
+RESTS_ON: dict[str, str] = {
+    "yes_observability": "observability_rank",
+    "full_rank_observability": "observability_rank",
+    "generic_rank_observability": "observability_rank",
+    "provided_observability": "observability_rank",
+    "no_observability": "observability_rank",
+    "yes_controllability": "duality",
+    "provided_controllability": "duality",
+    "no_controllability": "duality",
+}

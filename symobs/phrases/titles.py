@@ -1,0 +1,23 @@
+"""Headings, and what is given."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "given": "Given.",
+    "observability": "Observability.",
+    "controllability": "Controllability.",
+    "characteristic_polynomial": "Characteristic polynomial.",
+    "transfer_function": "Transfer function.",
+    "state_feedback": "State feedback.",
+    "observer": "Observer.",
+    "compensator": "Compensator.",
+    "closed_loop": "Closed loop.",
+    "realised": "In controllable canonical form this is",
+    "declared": "Throughout, {signs}.",
+    "desired_poles": "The poles asked for are {poles}.",
+    "desired_polynomial": "The polynomial asked for is {polynomial}.",
+    "control_poles": "The control poles are to be {poles}.",
+    "control_polynomial": "The control polynomial is to be {polynomial}.",
+    "observer_poles": "The observer poles are to be {poles}.",
+    "observer_polynomial": "The observer polynomial is to be {polynomial}.",
+}
