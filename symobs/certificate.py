@@ -29,6 +29,7 @@ from symobs.formula import (
     Literal,
     Modular,
     Relation,
+    Restricted,
     agree,
     children,
     differ,
@@ -228,16 +229,16 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
     free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
     leaves = _distinct(relation, environment)
-    exactly = pointwise or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
+    exactly = pointwise or environment.relations != () or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
     if exactly and (free is environment or "!==" not in relation.operators) and _holds_exactly(relation, free):
         return "exact", 0.0
-    if exactly and (pointwise or not environment.coefficients):
+    if exactly and (pointwise or environment.relations or not environment.coefficients):
         return "", 0.0
     return _holds_at_points(relation, environment, leaves)
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
-    arithmetic = Exact(environment)
+    arithmetic = Restricted(environment) if environment.relations else Exact(environment)
     values = [evaluate(member, environment, arithmetic) for member in relation.members]
     return all(
         _compare(left, operator, right, environment, arithmetic)
@@ -253,7 +254,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "!=":
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
-        return any(_excluded_from_zero(entry, environment) for entry in entries)
+        return any(_excluded_from_zero(entry, environment, arithmetic) for entry in entries)
     sign = sign_of(as_scalar(left) - as_scalar(right), environment.signs)
     return (
         sign
@@ -276,12 +277,14 @@ def as_scalar(value: Any) -> Scalar:
     return value
 
 
-def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
-    """Tell whether declared signs and stated conditions keep a value from 0, factor by factor."""
+def _excluded_from_zero(value: Scalar, environment: Environment, arithmetic: Exact) -> bool:
+    """Tell whether signs, stated conditions and what is known to vanish keep a value from 0, factor by factor."""
     if value.is_zero:
         return False
     if never_zero(value, environment.signs):
         return True
+    if isinstance(arithmetic, Restricted):
+        return arithmetic.excludes(value) or never_zero(arithmetic.ideal.remainder(value), environment.signs)
     assumed = set(environment.assumed)
     return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
 

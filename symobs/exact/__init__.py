@@ -6,6 +6,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 from symobs.exact.complex import Complex
 from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
+from symobs.exact.ideal import Ideal, TooLarge
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
 from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
@@ -18,9 +19,11 @@ __all__ = [
     "Complex",
     "Factored",
     "Field",
+    "Ideal",
     "Matrix",
     "Root",
     "Scalar",
+    "TooLarge",
     "apply_polynomial",
     "companion",
     "controller",

@@ -26,6 +26,7 @@ from symobs.formula.nodes import (
     letters,
     with_children,
 )
+from symobs.formula.restricted import Restricted
 
 __all__ = [
     "Apply",
@@ -47,6 +48,7 @@ __all__ = [
     "Product",
     "Quotient",
     "Relation",
+    "Restricted",
     "Roots",
     "Shown",
     "Signal",

@@ -45,6 +45,7 @@ class Environment:
     coefficients   a generator that stands for a longer scalar → that scalar, in generators introduced before it
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
+    relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
     """
 
     variable: str = "s"
@@ -55,6 +56,7 @@ class Environment:
     coefficients: Mapping[str, Scalar] = field(default_factory=dict)
     signs: Mapping[str, str] = field(default_factory=dict)
     assumed: tuple[Scalar, ...] = ()
+    relations: tuple[Scalar, ...] = ()
 
     def knows(self, name: str) -> bool:
         """Whether a letter is established."""

@@ -1,0 +1,89 @@
+"""Claims where polynomials are known to vanish: true on the stratum, and only there."""
+
+from __future__ import annotations
+
+import pytest
+import sympy
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symobs.certificate import verify
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge
+from symobs.formula import Environment, Letter, Literal, Power, Product, Relation
+from tests.plain import seeded
+
+a, b, c, d = (Scalar.symbol(name) for name in "abcd")
+
+
+def said(left: Scalar | Matrix, operator: str, right: Scalar | Matrix) -> Relation:
+    return Relation((Literal(left), Literal(right)), (operator,))
+
+
+def holds(relation: Relation, *relations: Scalar, **signs: str) -> bool:
+    return verify(relation, Environment(relations=relations, signs=signs))[0] == "exact"
+
+
+def test_an_equation_holds_where_its_difference_lies_in_the_ideal() -> None:
+    circle = a**2 + b**2 - 1
+    assert holds(said(a**4 - b**4, "=", 1 - 2 * b**2), circle)
+    assert not holds(said(a**4 - b**4, "=", 1 - b**2), circle)
+    assert not holds(said(a**4 - b**4, "=", 1 - 2 * b**2))
+    assert holds(said(Matrix.of([[a, b], [0, a]]), "=", Matrix.of([[b, b], [0, b]])), a - b)
+
+
+def test_an_inequation_holds_where_there_is_no_common_zero() -> None:
+    assert holds(said(a, "!=", b), a * b - 1, a - b - 1)
+    assert not holds(said(a, "!=", b), a * b - 1)  # a = b = 1
+    assert not holds(said(a, "!=", Scalar.of(0)), a**2 - b)
+    assert holds(said(a**2, "!=", Scalar.of(0)), a**2 - b - c, b="positive", c="nonnegative")
+    assert holds(said(a, "!==", b), a * b - 1)
+    assert not holds(said(a, "!==", b), a - b)
+
+
+def test_nothing_is_divided_by_what_vanishes() -> None:
+    one = Literal(Scalar.of(1))
+    over = Product((Literal(a - b), Power(Literal(a - b), -1)))
+    assert not holds(Relation((over, one), ("=",)), a - b)
+    assert holds(Relation((over, one), ("=",)), a - c)
+    assert not holds(said(c / (a - b), "=", c / (a - b)), a - b)
+    singular = Environment(values={"X": Matrix.of([[a - b, 0], [0, 1]])}, relations=(a - b,))
+    identity = Literal(Matrix.identity(2))
+    assert verify(Relation((Product((Letter("X"), Power(Letter("X"), -1))), identity), ("=",)), singular)[0] == ""
+
+
+def test_a_basis_beyond_the_limits_leaves_the_question_open() -> None:
+    generator = seeded(3)
+    names = [Scalar.symbol(name) for name in "abcdefgh"]
+    dense = [
+        sum((Scalar.of(generator.randint(-99, 99)) * x**3 * y**2 * z for x in names for y in names for z in names), -d)
+        for _ in range(4)
+    ]
+    with pytest.raises(TooLarge):
+        Ideal.of(dense)
+    assert verify(said(a, "=", a), Environment(relations=tuple(dense)))[0] == ""
+
+
+small = st.integers(-3, 3)
+
+
+@given(st.lists(st.tuples(small, small, small, small, small), min_size=1, max_size=3), st.tuples(small, small, small))
+def test_members_are_those_of_another_system(drawn: list[tuple[int, ...]], weights: tuple[int, ...]) -> None:
+    x, y = sympy.symbols("a b")
+    polynomials = [p * x**2 + q * x * y + r * y**2 + s * x + t for p, q, r, s, t in drawn]
+    ideal = Ideal.of([p * a**2 + q * a * b + r * b**2 + s * a + t for p, q, r, s, t in drawn])
+    nonzero = [p for p in polynomials if p != 0]
+    basis = sympy.groebner(nonzero, x, y, order="grevlex") if nonzero else None
+    u, v, w = weights
+    member = sum((u * x + v * y + w) * p for p in polynomials) + 0 * x
+    ours = sum(
+        ((u * a + v * b + w) * (p * a**2 + q * a * b + r * b**2 + s * a + t) for p, q, r, s, t in drawn), Scalar.of(0)
+    )
+    for probe, value in (
+        (member, ours),
+        (member + x, ours + a),
+        (x**2 * y, a**2 * b),
+        (sympy.Integer(1), Scalar.of(1)),
+    ):
+        expected = basis.contains(probe) if basis is not None else sympy.expand(probe) == 0
+        assert (value in ideal) == expected
+    assert ideal.is_whole == (basis is not None and basis.exprs == [1])
