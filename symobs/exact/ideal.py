@@ -60,7 +60,7 @@ class Ideal:
         if field is not self.field:
             return _ideal(self.generators, field).remainder(value)
         moved = field.lift(value.numerator_part, value.field).project_to_context(self.home)
-        return self._back(moved.reduction_primitive_part(self.basis))  # type: ignore[attr-defined] - not in its stubs
+        return self._back(moved.reduction_primitive_part(self.basis))  # type: ignore[attr-defined]
 
     def __contains__(self, value: Scalar) -> bool:
         return self.remainder(value).is_zero
@@ -86,4 +86,4 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     if not complete:
         message = "the equations are too long to be decided"
         raise TooLarge(message)
-    return Ideal(field, basis.autoreduction(groebner=True), home)  # type: ignore[attr-defined] - not in its stubs
+    return Ideal(field, basis.autoreduction(groebner=True), home)  # type: ignore[attr-defined]
