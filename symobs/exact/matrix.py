@@ -17,8 +17,9 @@ from symobs.exact.ring import degree_bound, length_bits, polynomial_fingerprint
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
+    import itertools
     from collections.abc import Iterable, Mapping, Sequence
-    from fractions import Fraction
+from fractions import Fraction
 
 
 class Matrix:
@@ -41,18 +42,16 @@ class Matrix:
         """Return the matrix with these rows; `columns` is needed only where there is no row."""
         rows = tuple(tuple(Scalar.of(entry) for entry in row) for row in entries)
         field = RATIONALS
-        for row in rows:
-            for entry in row:
-                field = field | entry.field
+        for entry in itertools.chain(*rows):
+            field = field | entry.field
         shape = (len(rows), len(rows[0]) if rows else (columns or 0))
         if any(len(row) != shape[1] for row in rows):
             message = f"rows of different lengths: {[len(row) for row in rows]}"
             raise ValueError(message)
         lifted = tuple(tuple(entry.within(field) for entry in row) for row in rows)
         denominator = field.one
-        for row in lifted:
-            for entry in row:
-                denominator = ring.common_multiple(denominator, entry.denominator_part)
+        for entry in itertools.chain(*lifted):
+            denominator = ring.common_multiple(denominator, entry.denominator_part)
         table = tuple(tuple(entry.over(denominator) for entry in row) for row in lifted)
         matrix = build(field, table, denominator, shape)
         matrix.__dict__["rows"] = rows
@@ -174,7 +173,12 @@ class Matrix:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Matrix):
             return NotImplemented
-        return self.shape == other.shape and (self - other).is_zero
+        if self.shape != other.shape:
+            return False
+        a, b, _ = self._fit(other)
+        if a.denominator == b.denominator:
+            return a is b or bool(a.table == b.table)
+        return (a - b).is_zero
 
     def __hash__(self) -> int:
         return hash((self.shape, self.rows))
@@ -223,10 +227,7 @@ class Matrix:
         a, b = a.scaled(left), b.scaled(right)
         if isinstance(a.table, fmpz_mat) and isinstance(b.table, fmpz_mat):
             return Matrix(field, a.table + b.table, denominator, self.shape)
-        table = tuple(
-            tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(a.polynomials, b.polynomials, strict=True)
-        )
-        return Matrix(field, table, denominator, self.shape)
+        return Matrix(field, ring.added(a.polynomials, b.polynomials), denominator, self.shape)
 
     def __neg__(self) -> Matrix:
         return self.scaled(self.field.context.constant(-1))

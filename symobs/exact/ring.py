@@ -41,6 +41,11 @@ def product(left: Rows, right: Rows, zero: fmpz_mpoly) -> Rows:
     return tuple(tuple(dot(row, column, zero) for column in columns) for row in left)
 
 
+def added(left: Rows, right: Rows) -> Rows:
+    """Return the sum of two matrices of one shape."""
+    return tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
+
+
 def transpose(rows: Rows) -> Rows:
     """Return the transpose."""
     return tuple(zip(*rows, strict=True))
