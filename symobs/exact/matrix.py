@@ -6,6 +6,7 @@ not reduce; reading an entry does, and `rows` (all entries, reduced) is computed
 
 from __future__ import annotations
 
+import itertools
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,8 @@ from symobs.exact.ring import degree_bound, length_bits, polynomial_fingerprint
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    import itertools
     from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
+    from fractions import Fraction
 
 
 class Matrix:
