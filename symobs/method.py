@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from dataclasses import fields as parts_of
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar, get_args
 
 import symobs
 from symobs.certificate import SENSELESS, Certificate, Claim, check_all
@@ -252,12 +252,20 @@ _FORMATS: dict[str, Any] = {}
 def task(function: Callback) -> Callback:
     """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
     keywords = {
-        name: str(parameter.annotation).split(" ")[0]
+        name: _kind(parameter.annotation)
         for name, parameter in inspect.signature(function).parameters.items()
         if parameter.kind is inspect.Parameter.KEYWORD_ONLY
     }
     _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function))
     return function
+
+
+def _kind(annotation: Any) -> str:
+    """Return the name of a kind: of the text `Poles | None` as of the types themselves."""
+    if isinstance(annotation, str):
+        return annotation.split(" ")[0]
+    kinds = getattr(annotation, "__metadata__", None)
+    return str(kinds[0]) if kinds else _kind(get_args(annotation)[0])
 
 
 def method(name: str, *, source: str) -> Callable[[Callback], Callback]:

@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
-#: The kinds of keyword a task may have.  Their names in signatures are the schema.
-Poles: TypeAlias = Any
-PolynomialText: TypeAlias = Any
-GainText: TypeAlias = Any
-Name: TypeAlias = str
+#: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
+Poles: TypeAlias = Annotated[Any, "Poles"]
+PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
+GainText: TypeAlias = Annotated[Any, "GainText"]
+Name: TypeAlias = Annotated[str, "Name"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {

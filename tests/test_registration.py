@@ -134,19 +134,23 @@ def test_a_method_that_lies_cannot_answer(copy: Copy) -> None:
     assert run.err.startswith("the claim det(s*I - A + L*C) = phi(s) does not hold")
 
 
-def test_a_task_is_one_new_file(copy: Copy) -> None:
-    copy.add("symobs/design/dummy_task.py", TASK)
+@pytest.mark.parametrize(
+    "text",
+    [TASK, TASK.replace("from __future__ import annotations\n", "").replace("Poles = None", "Poles | None = None")],
+)
+def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
+    copy.add("symobs/design/dummy_task.py", text)
     assert "  dummy_task " in copy.run("--help").out
     assert "dummy_task: Decide what nobody asked.\n    direct: Look at the rank.\n" in copy.run("methods").out
     schema = json.loads(copy.run("schema").out)
     assert "dummy_task" in schema["properties"]["task"]["enum"]
     assert schema["properties"]["specification"]["properties"]["dummy_poles"]["tasks"] == ["dummy_task"]
-    text = 'tasks = ["observability", "dummy_task"]\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
-    solved = copy.run("solve", "-", "--format", "json", stdin=f'{text}[specification]\ndummy_poles = "-1"\n')
+    file = 'tasks = ["observability", "dummy_task"]\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
+    solved = copy.run("solve", "-", "--format", "json", stdin=f'{file}[specification]\ndummy_poles = "-1"\n')
     assert (solved.code, solved.err) == (0, "")
     option = copy.run("dummy-task", "--A", "[0 1; 0 -1]", "--C", "[0 1]", "--dummy-poles", "-1", "--format", "json")
     assert option.code == 4
-    unknown = copy.run("solve", "-", stdin=f"{text}[specification]\ndummy_pole = 1\n")
+    unknown = copy.run("solve", "-", stdin=f"{file}[specification]\ndummy_pole = 1\n")
     assert unknown.err == "specification.dummy_pole: unknown key; did you mean dummy_poles?\n"
 
 
