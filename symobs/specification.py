@@ -64,6 +64,11 @@ class DesiredPolynomial:
         """Whether φ has no parameter."""
         return all(factor.names <= {self.variable} for factor in self.factors)
 
+    @property
+    def is_expanded(self) -> bool:
+        """Whether the product of the factors is φ multiplied out: one factor, or a power of the variable."""
+        return len(self.factors) == 1 or all(c.is_zero for c in self.coefficients)
+
     def grouped(self) -> tuple[tuple[Scalar, int], ...]:
         """Return the distinct factors with multiplicities, in the order they were given."""
         counted: dict[Scalar, int] = {}

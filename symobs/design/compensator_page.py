@@ -16,16 +16,19 @@ from symobs.design.gain_pages import (
     write_gain,
 )
 from symobs.design.observer import page_style, write_observer
+from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
+from symobs.specification import DesiredPolynomial
 from symobs.stability import as_inequality, monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.design.compensator import CompensatorDesign
+    from symobs.formula import Relation
 
 #: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
 LARGE = 60
@@ -246,7 +249,7 @@ def _cautions(page: Page, design: CompensatorDesign) -> None:
     if desired is None or plant.symbols.signs or not desired.is_numeric:
         return
     for factor, power in desired.grouped():
-        if power > 1 and factor.degree(plant.variable) == 1:
+        if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
             pole = -factor.coefficients(plant.variable)[1]
             closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
             is_negative = pole.fraction() < 0
@@ -254,11 +257,32 @@ def _cautions(page: Page, design: CompensatorDesign) -> None:
             zero = Matrix.zeros(plant.order, plant.order)
             rest = desired.polynomial / factor**2
             single = page["phi_c"] / (page.value(factor) @ page.value(rest))
+            instead = _with_distinct_poles(page, desired)
             page.caution(
-                "defective",
+                "defective" if instead is None else "defective_instead",
                 relation(offset, "!==", zero),
                 relation(page["phi_c"], page.value(factor) ** 2 @ page.value(rest)),
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
                 matrix=relation(offset, offset.shown),
+                **({} if instead is None else {"instead": instead}),
             )
             return
+
+
+def _with_distinct_poles(page: Page, desired: DesiredPolynomial) -> Relation | None:
+    """Return det(sI − A + BK) = φ for the poles asked for, repeated ones moved further in, where a gain places them."""
+    plant, variable = page.plant, page.plant.variable
+    further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
+    factors: dict[Scalar, None] = {}
+    for factor in desired.factors:
+        moved = factor
+        while moved in factors:
+            moved = moved.substitute({variable: further_in})
+        factors[monic(moved, variable)] = None
+    distinct = DesiredPolynomial(variable, tuple(factors))
+    gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
+    if gain is None:
+        return None
+    pencil = page.s @ page.identity(plant.order) - page["A"] + page["B"] @ page.value(gain)
+    product = Factored(Scalar.of(1), tuple((factor, 1) for factor in factors))
+    return relation(pencil.apply("det"), page.term(formula_of_factored(product)))

@@ -126,8 +126,10 @@ def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPoly
     variable, coefficients = desired.variable, desired.coefficients
     grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
     plain = page.value(desired.polynomial)
-    members = [plain] if len(desired.factors) == 1 else [grouped, plain]
+    members = [plain] if desired.is_expanded else [grouped, plain]
     if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
+        if not desired.poles and desired.is_expanded and page.knows(side.phi):
+            return desired
         page.define(side.phi, *members, say=f"asks_{side.kind}")
         return desired
     taken = {*taken_names(page), *desired.polynomial.field.names}
@@ -291,9 +293,11 @@ def _verified(page: Page, design: GainDesign, side: Side) -> None:
     polynomial = page[side.phi].value
     grouped = desired.grouped()
     members = [error_determinant(page, side), page.value(polynomial)]
-    if len(desired.factors) > 1 and polynomial == desired.polynomial:
+    if not desired.is_expanded and polynomial == desired.polynomial:
         members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
     page.verified("as_required", check=relation(*members))
+    if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
+        say_stability(page, error_determinant(page, side))
 
 
 def _case(page: Page, case: Case, side: Side) -> None:

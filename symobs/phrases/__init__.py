@@ -39,6 +39,9 @@ RESTS_ON: dict[str, str] = _collected("RESTS_ON")
 #: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
 NAMING = frozenset(key for module in _MODULES for key in getattr(module, "NAMING", ()))
 
+#: Phrases that begin a new paragraph wherever they stand.
+OPENS = frozenset(key for module in _MODULES for key in getattr(module, "OPENS", ()))
+
 
 def slots_of(key: str) -> frozenset[str]:
     """Return the names of the slots of a phrase."""

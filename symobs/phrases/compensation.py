@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+_DEFECTIVE = (
+    "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "
+    "not bounded by a multiple of the exponential alone."
+)
+
 PHRASES: dict[str, str] = {
     "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
     "error_equation": "Whatever the input, the error {error} then obeys",
-    "observer_collected": "Collected and with the numbers put in, the observer reads",
+    "observer_collected": "Collected, the observer reads",
     "separation": "By the separation principle the control law uses the estimate in place of the state:",
     "observer_closed": "Put into the observer, it leaves a system that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
@@ -25,9 +30,12 @@ PHRASES: dict[str, str] = {
     "named_entries": "From here on we write its entries as",
     "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
     "loop_polynomial": "Its denominator is the product of the two polynomials asked for, as it must be.",
-    "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "
-    "not bounded by a multiple of the exponential alone. With distinct poles they are.",
+    "defective": _DEFECTIVE,
+    "defective_instead": _DEFECTIVE + " With distinct poles they are, for example with {instead}.",
 }
+
+#: A new thought begins here.
+OPENS = ("observer_equation",)
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_stable": ("strictly_proper", "stable"),

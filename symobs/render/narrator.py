@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
 from symobs.notation import THEOREMS
-from symobs.phrases import PHRASES, RESTS_ON
+from symobs.phrases import OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
     Block,
     CaseBlock,
@@ -227,7 +227,8 @@ class _Page:
         if sentence is None:
             return
         inlines = filled(sentence)
-        if self.blocks and isinstance(last := self.blocks[-1], Paragraph):
+        goes_on = sentence.key not in OPENS
+        if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
             self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
         else:
             self.blocks.append(Paragraph(inlines))
