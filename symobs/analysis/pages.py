@@ -46,6 +46,8 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             page.environment = page.environment.having(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page)
+        if plant.is_from_floats:
+            page.remark("from_floats")
         state_signs(page)
         for name, wish in desired:
             if wish is not None:

@@ -13,6 +13,7 @@ PHRASES: dict[str, str] = {
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
     "realised": "In controllable canonical form this is",
+    "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
     "declared": "Throughout, {signs}.",
     "desired_poles": "The poles asked for are {poles}.",
     "desired_polynomial": "The polynomial asked for is {polynomial}.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
@@ -56,6 +57,7 @@ class StateSpace:
         self.symbols = known
         self.time = read_time(dt, known)
         self.origin = transfer_function
+        self.is_from_floats = False
         given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
         if self.variable in known.signs or any(self.variable in part.names for part in given):
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
@@ -83,9 +85,15 @@ class StateSpace:
 
     @classmethod
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
-        """Return the plant of a python-control state-space system; each float is read as its shortest decimal."""
-        rows = {name: [[repr(float(x)) for x in row] for row in getattr(system, name).tolist()] for name in "ABCD"}
-        return cls(rows["A"], rows["B"], rows["C"], rows["D"], system.dt or 0, symbols=symbols)
+        """Return the plant of a python-control state-space system; each float is read as its shortest decimal.
+
+        The page says so.  Raises `InputError` where the system has no A, B, C, D, or an entry is not a finite number.
+        """
+        rows = {name: _shortest_decimals(system, name) for name in "ABCD"}
+        dt = repr(system.dt) if isinstance(system.dt, float) else system.dt
+        plant = cls(rows["A"], rows["B"], rows["C"], rows["D"], dt or 0, symbols=symbols)
+        plant.is_from_floats = True
+        return plant
 
     # -- what the kernel sees ----------------------------------------------------------------------------------------
 
@@ -136,6 +144,7 @@ class StateSpace:
         m = self.matrices
         told = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=symbols)
         told.matrices, told.time, told.origin = m, self.time, self.origin
+        told.is_from_floats = self.is_from_floats
         return told
 
     def require(self, *names: str, task: str) -> None:
@@ -202,6 +211,22 @@ class Matrices:
     def has_feedthrough(self) -> bool:
         """Whether D is not zero."""
         return not self.D.is_zero
+
+
+def _shortest_decimals(system: Any, name: str) -> list[list[str]]:
+    """Return a matrix of a python-control system as texts, each the shortest that names the same float."""
+    try:
+        rows = [[float(entry) for entry in row] for row in getattr(system, name).tolist()]
+    except (AttributeError, TypeError, ValueError) as error:
+        message = (
+            f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers {name}"
+        )
+        raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)") from error
+    for entry in (entry for row in rows for entry in row):
+        if not isfinite(entry):
+            message = f"{entry} is not a finite number"
+            raise InputError(message, where=f"plant.{name}", repair="give finite entries")
+    return [[repr(entry) for entry in row] for row in rows]
 
 
 def realise(value: Scalar, variable: str, where: str = "transfer_function") -> tuple[Matrix, Matrix, Matrix, Matrix]:

@@ -1,0 +1,59 @@
+"""Plants that come from python-control: floats as their shortest decimals, and the page says so."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import control  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+from symobs import StateSpace
+from symobs.errors import InputError
+
+
+def test_floats_are_read_as_their_shortest_decimals() -> None:
+    plant = StateSpace.from_control(control.ss([[0, 1], [0.1, -10.78]], [[0], [1e-3]], [[1, 0]], [[0]]))
+    assert sympy.ImmutableMatrix([[0, 1], [sympy.Rational(1, 10), sympy.Rational(-539, 50)]]) == plant.A
+    assert sympy.ImmutableMatrix([[0], [sympy.Rational(1, 1000)]]) == plant.B
+    assert plant.dt == 0
+
+
+def test_the_page_says_what_was_read() -> None:
+    plant = StateSpace.from_control(control.ss([[0, 1], [0, -1]], [[0], [1]], [[1, 0]], [[0]]))
+    sentence = "shortest decimals of the floating-point numbers"
+    assert sentence in " ".join(symobs.observer(plant, poles=[-10, -10]).to("text").split())
+    exact = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    assert sentence not in " ".join(symobs.observer(exact, poles=[-10, -10]).to("text").split())
+
+
+@pytest.mark.parametrize(("dt", "expected"), [(0, 0), (True, True), (0.1, sympy.Rational(1, 10)), (None, 0)])
+def test_time_is_carried_over(dt: Any, expected: Any) -> None:
+    plant = StateSpace.from_control(control.ss([[0.5]], [[1]], [[1]], [[0]], dt))
+    assert plant.dt == expected
+    assert plant.is_discrete == (expected != 0)
+
+
+def test_gains_agree_with_the_numbers_of_python_control() -> None:
+    system = control.ss([[0, 1, 0], [0, 0, 1], [-0.5, -1.25, 2]], [[0], [0], [1]], [[1, 0.5, 0]], [[0]])
+    ours = symobs.state_feedback(StateSpace.from_control(system), poles=[-1, -2, "-5/2"]).K
+    theirs = control.acker(system.A, system.B, [-1, -2, -2.5])
+    assert np.allclose(np.array(ours, dtype=float), theirs, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        control.tf([1], [1, 1]),
+        SimpleNamespace(A=np.array([[np.nan]]), B=np.array([[1.0]]), C=np.array([[1.0]]), D=np.array([[0.0]]), dt=0),
+        SimpleNamespace(A=np.array([[1j]]), B=np.array([[1.0]]), C=np.array([[1.0]]), D=np.array([[0.0]]), dt=0),
+    ],
+)
+def test_what_is_no_system_of_finite_numbers_is_refused(system: Any) -> None:
+    with pytest.raises(InputError) as caught:
+        StateSpace.from_control(system)
+    assert caught.value.where == "plant.A"
+    assert caught.value.repair

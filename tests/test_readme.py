@@ -1,0 +1,65 @@
+"""README.md does what it says: its Python gives the values in its comments, its shell lines run on its problem file."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from typing import TYPE_CHECKING, Any
+
+import sympy
+
+from tests.command_line import ROOT, fresh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+def promised() -> list[tuple[str, str]]:
+    """Every line `expression  # comment` of the Python blocks."""
+    return re.findall(r"^(design\.\S+?) +# (.+)$", "\n".join(blocks("python")), re.MULTILINE)
+
+
+def test_python_gives_the_values_in_its_comments() -> None:
+    names: dict[str, Any] = {}
+    compared = 0
+    for block in blocks("python"):
+        exec(block, names)  # noqa: S102 - the text of our own README
+        for expression, comment in re.findall(r"^(design\.\S+?) +# (.+)$", block, re.MULTILINE):
+            value = eval(expression, names)  # noqa: S307
+            exact = re.match(r"Matrix\(.*\)|\(.*\)/\(.*?\)(?=,|$)", comment)
+            if exact:
+                difference = eval(exact[0], {"Matrix": sympy.Matrix, "s": sympy.Symbol("s")}) - value  # noqa: S307
+                assert sympy.simplify(difference) == difference * 0, expression
+                compared += 1
+    assert compared == 3
+    design = names["design"]
+    c = sympy.Symbol("c")
+    assert sympy.simplify(design.L - sympy.Matrix([-3, 6]) / (2 * c - 1)) == sympy.zeros(2, 1)
+    assert [str(condition) for condition in design.conditions] == ["Ne(2*c - 1, 0)"]
+    survivors = [case for case in design.cases if case.result is not None and case.result.verdict == "yes"]
+    assert [case.when for case in survivors] == [(sympy.Eq(c - 1, 0),)]
+
+
+def test_every_promised_value_is_on_a_line_of_its_own() -> None:
+    assert len(promised()) == 7
+
+
+def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str], tmp_path: Path) -> None:
+    require_tool("latexmk")
+    require_tool("pdflatex")
+    (problem,) = blocks("toml")
+    (tmp_path / "problem.toml").write_text(problem, encoding="utf-8")
+    lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
+    assert len(lines) == 5
+    for line in lines:
+        run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
+        assert (run.code, run.err) == (0, ""), line
+        assert run.out or "-o" in line
+    assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
