@@ -70,9 +70,11 @@ class ProblemErrors(InputError):
     """All errors of one problem file together."""
 
     def __init__(self, errors: tuple[SymobsError, ...], *, where: str = "") -> None:
-        """Keep every error of the file, in the order of the file."""
-        super().__init__(f"{len(errors)} error{'s' if len(errors) != 1 else ''}", where=where)
-        self.errors = errors
+        """Keep every error of the file, in the order of the file; those of one text stand beside the others."""
+        self.errors: tuple[SymobsError, ...] = tuple(
+            each for error in errors for each in (error.errors if isinstance(error, ProblemErrors) else (error,))
+        )
+        super().__init__(f"{len(self.errors)} error{'s' if len(self.errors) != 1 else ''}", where=where)
 
     def __str__(self) -> str:
         """Return one line an error."""

@@ -19,6 +19,7 @@ from symobs.errors import (
     ExpressionError,
     InexactInput,
     InputError,
+    ProblemErrors,
     ShapeMismatch,
     SymobsError,
     UnknownName,
@@ -514,6 +515,10 @@ def test_refused_with_place_and_reason_soon(text: str, kind: type[SymobsError], 
 
 def assert_safe(error: SymobsError) -> None:
     """An error is one short line of printable characters, however hostile the text was."""
+    if isinstance(error, ProblemErrors):
+        for each in error.errors:
+            assert_safe(each)
+        return
     assert str(error).isprintable()
     assert len(str(error)) < 500
 
@@ -882,3 +887,17 @@ def test_parser_is_built_when_the_first_text_that_needs_a_grammar_is_read() -> N
         "assert evaluation._parser.cache_info().misses == 1\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_all_undeclared_names_of_a_text_are_told_together() -> None:
+    with pytest.raises(ProblemErrors) as caught:
+        parse_matrix("[0 1; -omga^2 -beta*omga]", {"omega": "positive"}, where="plant.A")
+    assert [(error.facts["name"], error.facts["nearest"]) for error in caught.value.errors] == [
+        ("omga", "omega"),
+        ("beta", None),
+    ]
+    with pytest.raises(UnknownName):
+        parse_matrix("[0 1; -omga^2 -2*omga]", {"omega": "positive"})
+    with pytest.raises(ProblemErrors) as caught:
+        parse_scalar("+".join(f"a{k}" for k in range(1500)), {})
+    assert len(caught.value.errors) == 20

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from lark import Token
 
-from symobs.errors import BudgetExceeded, InputError, UnknownName
+from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, Scope, refusal
 from symobs.expression.source import Source, shown
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Container, Iterable
 
 MOST_NESTING = 100
+#: After this many names that are not declared a text is read no further.
+_MOST_UNKNOWN = 20
 MOST_DIGITS = 1_000
 MOST_POWER_OF_TEN = 1_000
 MOST_NAMES = 400
@@ -67,6 +69,7 @@ class Tokeniser:
         self.tokens: list[Token] = []
         self.open: list[Token] = []
         self.symbols: dict[str, Scalar] = {}
+        self.unknown: list[InputError] = []
         self.spaced = False
 
     @cached_property
@@ -75,7 +78,10 @@ class Tokeniser:
         return _context_of([self.text]) if self.scope.context is None else self.scope.context
 
     def run(self) -> list[Token]:
-        """Return the tokens, with brackets matched; raises ExpressionError with the place of the fault."""
+        """Return the tokens, with brackets matched; raises ExpressionError with the place of the fault.
+
+        All names that are not declared are told together, at the end.
+        """
         position = 0
         while position < len(self.text):
             match = _TOKEN.match(self.text, position)
@@ -91,6 +97,8 @@ class Tokeniser:
             raise self.source.error(
                 "an expression is expected, but the text is empty", 0, "write one between the quotes"
             )
+        if self.unknown:
+            raise self.unknown[0] if len(self.unknown) == 1 else ProblemErrors(tuple(self.unknown))
         return self.tokens
 
     def _take(self, kind: str, text: str, at: int) -> None:
@@ -214,8 +222,10 @@ class Tokeniser:
 
     def _require_admitted(self, name: str, at: int, *, called: bool) -> None:
         if self.scope.names is not None:
-            raise self._unknown(name, at, called=called)
-        if called:
+            self.unknown.append(self._unknown(name, at, called=called))
+            if len(self.unknown) == _MOST_UNKNOWN:
+                raise ProblemErrors(tuple(self.unknown))
+        elif called:
             repair = f"write {name}*(...) for a product; the functions are {', '.join(FUNCTIONS)}"
             raise self.source.error(f'"{name}" is followed by "(" but is neither declared nor a function', at, repair)
 
