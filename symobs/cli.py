@@ -11,6 +11,7 @@ import os
 import re
 import sys
 from contextlib import suppress
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -48,6 +49,17 @@ class Tasks(click.Group):
 
         task = tasks().get(cmd_name.replace("-", "_"))
         return None if task is None else _task_command(task)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Name the command most like one that does not exist."""
+        name = args[0]
+        if not name.startswith("-") and self.get_command(ctx, name) is None:
+            nearest = get_close_matches(name, self.list_commands(ctx), 1)
+            meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
+            ctx.fail(f"there is no command {name[:40]!r}{meant}")
+        return super().resolve_command(ctx, args)
 
 
 def _version(ctx: click.Context, _: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's signature
