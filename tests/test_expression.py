@@ -25,7 +25,7 @@ from symobs.errors import (
     UnknownName,
 )
 from symobs.exact import Complex, Matrix, Scalar
-from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.expression import declared_name, evaluation, parse_matrix, parse_poles, parse_polynomial, parse_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -882,8 +882,10 @@ def test_parser_is_built_when_the_first_text_that_needs_a_grammar_is_read() -> N
         "assert evaluation._parser.cache_info().currsize == 0\n"
         "parse_matrix('[0 1; 0 -1]')\n"
         "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -1/2]')\n"
-        "parse_matrix('[0 1; 0 -1/2]')\n"
+        "parse_matrix('[0 1; 0 -1/2*a]')\n"
+        "assert evaluation._parser.cache_info().currsize == 0\n"
+        "parse_matrix('[0 1; 0 -(1/2)]')\n"
+        "parse_matrix('[0 1; 0 -(1/2)]')\n"
         "assert evaluation._parser.cache_info().misses == 1\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
@@ -901,3 +903,54 @@ def test_all_undeclared_names_of_a_text_are_told_together() -> None:
     with pytest.raises(ProblemErrors) as caught:
         parse_scalar("+".join(f"a{k}" for k in range(1500)), {})
     assert len(caught.value.errors) == 20
+
+
+plain_atoms = st.one_of(
+    st.sampled_from(
+        ["a", "b", "omega", "i", "I", "s", "pi", "e", "oo", "sin", "x_1", "lambda", "1a", "2e3", "1.", ".5"]
+    ),
+    st.integers(0, 30).map(str),
+    st.decimals(0, 20, places=2).map(str),
+)
+plain_cells = st.builds(
+    lambda sign, atoms, operators: (
+        sign + "".join(x for pair in zip(["", *operators], atoms, strict=False) for x in pair)
+    ),
+    st.sampled_from(["", "-", "+", "--", "- "]),
+    st.lists(plain_atoms, min_size=1, max_size=3),
+    st.lists(st.sampled_from(["*", "/", "^", " ", " * ", "-"]), min_size=2, max_size=2),
+)
+plain_texts = st.builds(
+    lambda left, rows, right: left + rows + right,
+    st.sampled_from(["", "[", " [ ", "(", "[\n"]),
+    st.lists(st.lists(plain_cells, min_size=0, max_size=3).map(" ".join), min_size=1, max_size=3).map(";".join)
+    | st.lists(plain_cells, min_size=1, max_size=3).map(", ".join),
+    st.sampled_from(["", "]", " ] ", ")", ";]"]),
+)
+
+
+@given(plain_texts, st.sampled_from([None, {}, {"a": "real", "b": "real", "i": "real"}]))
+@example("[1 -2; a -b/2]", None)
+@example("[1 - 2; a, b]", None)
+@example("-a/0", None)
+@example("0*a/0.0, 1", None)
+@example("[7]", None)
+@example("", None)
+@example(" ", None)
+@example("[]", None)
+def test_the_short_way_reads_what_the_grammar_reads(text: str, names: dict[str, str] | None) -> None:
+    def outcome(read: Callable[[str], object]) -> object:
+        try:
+            return read(text)
+        except SymobsError as error:
+            return type(error), str(error)
+
+    readers: tuple[Callable[[str], object], ...] = (
+        lambda each: parse_matrix(each, names),
+        lambda each: parse_poles(each, names),
+        lambda each: parse_polynomial(each, "s", names),
+    )
+    found = [outcome(read) for read in readers]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(evaluation, "plain_rows", lambda *_: None)
+        assert [outcome(read) for read in readers] == found

@@ -16,6 +16,7 @@ from lark.visitors import Transformer_NonRecursive
 from symobs.errors import BudgetExceeded, ShapeMismatch
 from symobs.exact import Complex, Scalar
 from symobs.expression.budget import MOST_EXPONENT, Meter, Number, Parts, operation_size, power_size, work
+from symobs.expression.plain import plain_rows
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
 
@@ -48,12 +49,12 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     if len(text) > MOST_CHARACTERS:
         message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
         raise source.error(message, 0, _SMALLER, kind=BudgetExceeded)
-    tokens = Tokeniser(source, scope).run()
-    entries = _signed_values(tokens)
-    if entries is not None:
-        return entries
+    plain = plain_rows(text, scope)
+    if plain is not None:
+        rows, bracketed = plain
+        return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
     try:
-        return _Evaluator(source, scope.meter).transform(_parser().parse(tokens))
+        return _Evaluator(source, scope.meter).transform(_parser().parse(Tokeniser(source, scope).run()))
     except UnexpectedToken as found:
         at_end = found.token.type == "$END"
         place = "at the end" if at_end else f'before "{shown(found.token)}"'
@@ -61,35 +62,6 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
         raise source.error(f'a number, a name or "(" is expected {place}', position, "write one there") from None
     except VisitError as wrapped:  # lark's wrapping of what the evaluator raised
         raise wrapped.orig_exc from None
-
-
-def _signed_values(tokens: list[Token]) -> list[Entry] | None:
-    """Return the entries of a list, or of one matrix, of numbers and names with at most a sign: they need no grammar.
-
-    None where anything else is there; the grammar then says what it is, or what is wrong.
-    """
-    bracketed = tokens[0].type == "LEFT" and tokens[-1].type == "_RIGHT"
-    rows: list[list[Number]] = [[]]
-    sign, complete = "", False
-    for token in tokens[1:-1] if bracketed else tokens:
-        kind = token.type
-        if kind == "VALUE" and not complete:
-            rows[-1].append(-token.value if sign == "-" else token.value)
-            complete = True
-        elif kind == "ADD" and not complete and not sign:
-            sign = token.value
-        elif kind == "_COMMA" and complete:
-            sign, complete = "", False
-        elif kind == "_END" and complete:
-            rows.append([])
-            sign, complete = "", False
-        else:
-            return None
-    if not complete or unequal_row(rows):
-        return None
-    if not bracketed:
-        return list(rows[0])
-    return [rows[0][0]] if len(rows) == len(rows[0]) == 1 else [Grid(rows, start(tokens[0]))]
 
 
 class _Ready(Lexer):
