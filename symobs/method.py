@@ -94,6 +94,11 @@ class Result:
         """The values whose vanishing costs existence: determinants of 𝒪, 𝒞."""
         return ()
 
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The signals besides x, x̂ and u that the page starts with, and their sizes."""
+        return {}
+
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The answers in the order of the JSON object; further ones may be derived from the first."""
@@ -145,7 +150,7 @@ class Result:
     @cached_property
     def derivation(self) -> Derivation:
         """The derivation, written and checked when first asked for."""
-        page = Page(self.plant)
+        page = Page(self.plant, self.free_signals)
         self.write(page)
         written = page.derivation()
         established = written.check()

@@ -86,13 +86,14 @@ def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
 class Page:
     """A derivation in the making: the steps so far and the environment they establish."""
 
-    def __init__(self, plant: StateSpace) -> None:
-        """Start with the free signals x, x̂, u of the plant and the declared signs."""
+    def __init__(self, plant: StateSpace, further: Mapping[str, int] | None = None) -> None:
+        """Start with the free signals x, x̂, u of the plant, further ones with their sizes, and the declared signs."""
+        others = dict(further or {})
         self.plant = plant
         self.start = Environment(
             variable=plant.variable,
-            signals={"x": None, "x_hat": None, "u": None},
-            sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)},
+            signals={"x": None, "x_hat": None, "u": None} | dict.fromkeys(others),
+            sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)} | others,
             signs=plant.symbols.signs,
         )
         self.environment = self.start

@@ -20,6 +20,7 @@ from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matr
 Poles: TypeAlias = Annotated[Any, "Poles"]
 PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
 GainText: TypeAlias = Annotated[Any, "GainText"]
+MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
 Name: TypeAlias = Annotated[str, "Name"]
 
 KINDS: dict[str, dict[str, Any]] = {
@@ -30,6 +31,10 @@ KINDS: dict[str, dict[str, Any]] = {
     "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
     "GainText": {
         "description": 'a gain, "[19; 81]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "MatrixText": {
+        "description": 'a matrix, "[1 0; 0 1]"',
         "oneOf": [{"type": "string"}, {"type": "array"}],
     },
     "Name": {"description": "a name", "type": "string"},

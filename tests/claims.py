@@ -239,6 +239,21 @@ def transfer_holds(result: Result, at: Setting) -> None:
             assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
 
 
+def reduced_order_holds(result: Any, at: Setting) -> None:
+    """P A − F P = H C, G = P B − H D, M [C; P] = I, det(sI − F) = φ(s), or fixed modes that are not wanted."""
+    if result.answer["L"] is None:
+        assert result.fields["fixed_modes"]
+        assert rank_of(observability_rows(at.A, at.C)) < len(at.A)
+        return
+    T, L, F, H, M = (matrix_at(result.fields[name], at.point) for name in "TLFHM")
+    assert T[:1] == at.C
+    P = subtract(T[1:], multiply(L, at.C))
+    assert subtract(multiply(P, at.A), multiply(F, P)) == multiply(H, at.C)
+    assert matrix_at(result.fields["G"], at.point) == subtract(multiply(P, at.B), multiply(H, at.D))
+    assert multiply(M, [*at.C, *P]) == [[Fraction(int(i == j)) for j in range(len(P) + 1)] for i in range(len(P) + 1)]
+    assert characteristic(F) == at.wanted[""]
+
+
 def conditions_hold(conditions: Iterable[Condition], point: Point) -> bool:
     return all((value_at(c.expression, point) == 0) == (c.operator == "==") for c in conditions)
 
@@ -264,4 +279,5 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "controllability": rank_holds,
     "characteristic_polynomial": polynomial_holds,
     "transfer_function": transfer_holds,
+    "reduced_order_observer": reduced_order_holds,
 }

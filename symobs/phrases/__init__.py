@@ -11,9 +11,9 @@ from __future__ import annotations
 import string
 from typing import Any
 
-from symobs.phrases import compensation, gains, polynomials, rank, titles
+from symobs.phrases import compensation, gains, polynomials, rank, reduced_order, titles
 
-_MODULES = (titles, polynomials, rank, gains, compensation)
+_MODULES = (titles, polynomials, rank, gains, compensation, reduced_order)
 
 
 def _collected(name: str) -> dict[str, Any]:

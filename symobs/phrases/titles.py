@@ -10,6 +10,7 @@ PHRASES: dict[str, str] = {
     "transfer_function": "Transfer function.",
     "state_feedback": "State feedback.",
     "observer": "Observer.",
+    "reduced_order_observer": "Reduced-order observer.",
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
     "realised": "In controllable canonical form this is",

@@ -289,7 +289,7 @@ def _read_alone(
                     read_poles(value, symbols, where)
                 case "PolynomialText":
                     parse_polynomial(value, variable, symbols.names, where=where)
-                case "GainText":
+                case "GainText" | "MatrixText":
                     _read_cells(value, symbols, where, others)
                     read_matrix(value, symbols, where)
     others.found += unreadable(expect, symbols.names, variable)

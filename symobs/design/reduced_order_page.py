@@ -1,0 +1,235 @@
+"""The page of the reduced-order observer, in the order of S0, section 4.5: partition, Lemma 4.1, observer, z, assembly."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.observability import Observability
+from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
+from symobs.conditions import vanishing_factors
+from symobs.design.gain import fresh_names
+from symobs.design.gain_pages import OBSERVER, define_test_matrix, taken_names
+from symobs.design.reduced_order_observer import Partition, partition
+from symobs.exact import Factored, Matrix, Scalar, roots_of
+from symobs.formula import Roots
+from symobs.formula.term import Term, block
+from symobs.page import Page, predicate, relation
+
+if TYPE_CHECKING:
+    from symobs.design.reduced_order_observer import ReducedOrderObserver
+    from symobs.formula import Relation
+
+
+def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
+    """Write data, test, gain, and the observer without the derivative of the output."""
+    given(page, ("observer", design.desired))
+    parts = partition(page.plant, design.answer["T"])
+    with page.section("observability"):
+        test = Observability.of(page.plant, "rank")
+        define_test_matrix(page, OBSERVER)
+        square_test(page, "O", test, "observability")
+        rank_cases(page, "O", test, "observability")
+    with page.section("reduced_order_observer"):
+        _coordinates(page, parts)
+        if design.answer["L"] is None:
+            _impossible(page, design)
+            return
+        _parts(page, design)
+        _observer(page, design)
+        _gain(page, design)
+        _without_derivative(page, design)
+
+
+def _coordinates(page: Page, parts: Partition) -> None:
+    """T = [C; R] and the blocks of T A T⁻¹ and T B."""
+    plant = page.plant
+    order, measured = plant.order, plant.outputs
+    page.set("R", parts.T.select(range(measured, order), range(order)))
+    trivial = Matrix.identity(order) == parts.T
+    names = {
+        "A_11": parts.A11,
+        "A_12": parts.A12,
+        "A_21": parts.A21,
+        "A_22": parts.A22,
+        "B_1": parts.B1,
+        "B_2": parts.B2,
+    }
+    for name, value in names.items():
+        if value is not None:
+            page.set(name, value)
+    stacked = block([[page["C"]], [page["R"]]])
+    if trivial:
+        page.set("T", parts.T)
+        page.conclude_silently(relation(page["T"], stacked))
+    else:
+        page.define("T", stacked, say="coordinates")
+    exceptions = vanishing_factors([parts.T.determinant()], plant.symbols.signs)
+    if exceptions:
+        page.assume("coordinates_assumed", *exceptions)
+    blocks = block([[page["A_11"], page["A_12"]], [page["A_21"], page["A_22"]]])
+    shown = [relation(page["T"] @ page["A"] @ page["T"].inverse, blocks, blocks.shown)]
+    if parts.B1 is not None:
+        inputs = block([[page["B_1"]], [page["B_2"]]])
+        shown.append(relation(page["T"] @ page["B"], inputs, inputs.shown))
+    if trivial:
+        page.conclude_silently(*shown)
+    else:
+        page.equal(*shown, say="measured_first")
+
+
+def _parts(page: Page, design: ReducedOrderObserver) -> None:
+    """x₁ = C x and x₂ = R x with their equations, and Lemma 4.1."""
+    trivial = page["T"].value == Matrix.identity(page.plant.order)
+    page.signal("x_1", page["C"] @ page["x"], silent=True)
+    page.signal("x_2", page["R"] @ page["x"], silent=True)
+    x_1, x_2, u = page["x_1"], page["x_2"], page["u"]
+    driven = page.plant.matrices.has_input
+    first, second = [(page["A_11"], x_1), (page["A_12"], x_2)], [(page["A_21"], x_1), (page["A_22"], x_2)]
+    if driven:
+        first.append((page["B_1"], u))
+        second.append((page["B_2"], u))
+    known = page["y"] - page["D"] @ u if page.plant.matrices.has_feedthrough else page["y"]
+    key = "parts_with_feedthrough" if page.plant.matrices.has_feedthrough else "parts"
+    page.equal(
+        relation(x_1.derivative, _sum(first), _combination(page, first)),
+        relation(x_2.derivative, _sum(second), _combination(page, second)),
+        say=key,
+        measured=relation(x_1, page["C"] @ page["x"], known),
+        unmeasured=relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+    )
+    if design.inner.fixed_polynomial.is_one:
+        row, order = page["A_12"], page.plant.order - page.plant.outputs
+        test = block([[row @ page["A_22"] ** k if k else row] for k in range(order)])
+        page.conclude("first_part_measures", rank=relation(test.apply("rank"), order))
+
+
+def _observer(page: Page, design: ReducedOrderObserver) -> None:
+    """(4.37) and (4.38), the gain a matrix of unknowns."""
+    gain: Matrix = design.answer["L"]
+    names = iter(fresh_names("l_", len(gain.entries), taken_names(page)))
+    rows = [[page.name_coefficient(next(names), entry) for entry in row] for row in gain.rows]
+    page.set("L", Matrix.of(rows))
+    L, x_1, x_2_hat, u = (page[name] for name in ("L", "x_1", "x_2_hat", "u"))
+    copy = page["A_21"] @ x_1 + page["A_22"] @ x_2_hat
+    innovation = x_1.derivative - page["A_11"] @ x_1
+    if page.plant.matrices.has_input:
+        copy, innovation = copy + page["B_2"] @ u, innovation - page["B_1"] @ u
+    page.dynamics("x_2_hat", copy + L @ (innovation - page["A_12"] @ x_2_hat), say="reduced_observer")
+    page.signal("e_2", page["x_2"] - page["x_2_hat"], silent=True)
+    page.equal(
+        relation(page["e_2"].derivative, _error_matrix(page) @ page["e_2"]),
+        say="reduced_error",
+        error=relation(page["e_2"], page["x_2"] - page["x_2_hat"]),
+    )
+
+
+def _error_matrix(page: Page) -> Term:
+    return page["A_22"] - page["L"] @ page["A_12"]
+
+
+def _determinant(page: Page) -> Term:
+    order = page.plant.order - page.plant.outputs
+    return (page.s @ page.identity(order) - page["A_22"] + page["L"] @ page["A_12"]).apply("det")
+
+
+def _gain(page: Page, design: ReducedOrderObserver) -> None:
+    """Compare the coefficients of det(sI − A₂₂ + L A₁₂), linear in L, with those of φ."""
+    desired, variable = design.desired, page.plant.variable
+    unknown = page["L"].value
+    found = _determinant(page).scalar
+    page.equal(relation(page["L"], unknown), relation(_determinant(page), page.value(found)), say="with_unknown_gain")
+    grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
+    plain = page.value(desired.polynomial)
+    page.define("phi_o", *([plain] if desired.is_expanded else [grouped, plain]), say="wanted_polynomial")
+    pairs = zip(found.coefficients(variable)[1:], desired.coefficients, strict=True)
+    page.equal(*(relation(have, want) for have, want in pairs if not have.is_constant), say="compare")
+    if not design.inner.fixed_polynomial.is_one:
+        fixed, facts = _fixed_modes(page, design)
+        modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, variable))
+        page.remark("reduced_not_unique", *facts, predicate("polynomial", page["phi_o"] / fixed), modes=modes)
+    key = "hence_gain" if design.inner.fixed_polynomial.is_one else ""
+    page.define("L", design.answer["L"], say=key, answer=True)
+    members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
+    page.verified("as_required", check=relation(*members))
+
+
+def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
+    """(4.39)-(4.41): z = x̂₂ − L x₁, and the estimate put together again."""
+    m, L, u, x_1 = page.plant.matrices, page["L"], page["u"], page["x_1"]
+    name = "w_o" if page.plant.is_discrete else "z_o"
+    page.signal(name, page["x_2_hat"] - L @ x_1, silent=True)
+    z = page[name]
+    closed = _error_matrix(page)
+    rate, fed = closed @ z, closed @ L + page["A_21"] - L @ page["A_11"]
+    if m.has_input:
+        rate = rate + (page["B_2"] - L @ page["B_1"]) @ u
+    page.equal(
+        relation(z.derivative, rate + fed @ x_1),
+        say="next_output" if page.plant.is_discrete else "derivative_of_output",
+        state=relation(z, page["x_2_hat"] - L @ x_1),
+    )
+    page.set("F_z", design.answer["F"])
+    page.set("H_z", design.answer["H"])
+    pairs = [(page["F_z"], z)]
+    if design.answer["G"] is not None:
+        page.set("G_z", design.answer["G"])
+        pairs.append((page["G_z"], u))
+    pairs.append((page["H_z"], page["y"]))
+    page.conclude_silently(relation(page["F_z"], closed))
+    page.equal(relation(z.derivative, _sum(pairs), _combination(page, pairs)), say="reduced_final", answer=True)
+    output = page["y"] - page["D"] @ u if m.has_feedthrough else page["y"]
+    stacked = block([[output], [z]])
+    order, outputs = page.plant.order - page.plant.outputs, page.plant.outputs
+    corner = page.value(Matrix.zeros(outputs, order))
+    lift = block([[page.identity(outputs), corner], [L, page.identity(order)]])
+    page.define("M_z", page["T"].inverse @ lift, silent=True)
+    page.signal("x_hat", page["M_z"] @ stacked, silent=True)
+    page.equal(
+        relation(page["x_hat"], page["T"].inverse @ block([[x_1], [page["x_2_hat"]]]), page["M_z"].shown @ stacked),
+        say="assembled",
+        answer=True,
+    )
+    unseen = block([[corner @ page["e_2"]], [page["e_2"]]])
+    page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
+
+
+def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
+    """Introduce the part of x₂ that A₁₂ does not show; return its polynomial and what makes it that part."""
+    pair = design.inner._pair  # noqa: SLF001 - the witness
+    N, X = page.set("N_2", pair.kernel), page.set("X_2", pair.restricted)
+    count = pair.kernel.shape[1]
+    hidden = relation(page["A_12"] @ N, Matrix.zeros(page.plant.outputs, count))
+    facts = (hidden, relation(page["A_22"] @ N, N @ X), relation(N.apply("rank"), count))
+    return (page.s @ page.identity(count) - X).apply("det"), facts
+
+
+def _impossible(page: Page, design: ReducedOrderObserver) -> None:
+    """No gain moves the modes that A₁₂ does not show, and they are not wanted."""
+    fixed, facts = _fixed_modes(page, design)
+    modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
+    page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)
+
+
+def _sum(pairs: list[tuple[Term, Term]]) -> Term:
+    total = pairs[0][0] @ pairs[0][1]
+    for matrix, signal in pairs[1:]:
+        total = total + matrix @ signal
+    return total
+
+
+def _combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
+    """Return the sum with numbers: what is zero is left out, and a 1×1 matrix is a number."""
+    total: Term | None = None
+    for matrix, signal in pairs:
+        value = matrix.value
+        if value.is_zero:
+            continue
+        single = value[0, 0] if value.shape == (1, 1) else None
+        negative = single is not None and single.is_constant and single.fraction() < 0 and total is not None
+        if single is not None:
+            size = -single if negative else single
+            part = signal if size.is_one else page.value(size) * signal
+        else:
+            part = page.value(value) @ signal
+        total = part if total is None else total - part if negative else total + part
+    return _sum(pairs) if total is None else total

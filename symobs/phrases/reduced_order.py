@@ -1,0 +1,40 @@
+"""The reduced-order observer."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "coordinates": "In the coordinates",
+    "measured_first": "the measured states come first:",
+    "coordinates_assumed": "These are coordinates where {condition}; elsewhere other rows must complete $C$.",
+    "parts": "Only {unmeasured} has to be estimated, since {measured} is measured. The plant falls into two parts,",
+    "parts_with_feedthrough": "Only {unmeasured} has to be estimated, since {measured} is known. The plant falls into two parts,",
+    "first_part_measures": "Everything in the first but the last state is known, so it is a measurement of $x_2$ through $A_12$. The pair "
+    "($A_12$, $A_22$) is observable because ($C$, $A$) is: {rank}.",
+    "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
+    "reduced_error": "Whatever the input, the error {error} then obeys",
+    "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",
+    "wanted_polynomial": "and is to become",
+    "compare": "Equal coefficients require",
+    "hence_gain": "hence",
+    "derivative_of_output": "The right-hand side of the observer contains the derivative of the output. It disappears if not the estimate itself "
+    "but {state} is kept as the state:",
+    "next_output": "The right-hand side of the observer contains the next output. It disappears if not the estimate itself but {state} is kept "
+    "as the state:",
+    "reduced_final": "With numbers, and with the output in place of $x_1$, the observer is",
+    "assembled": "and the whole state is estimated by",
+    "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the modes "
+    "{modes}, and they are not among the poles asked for: there is no such observer.",
+    "reduced_not_unique": "No $L$ moves the modes {modes}, but they are among the poles asked for. A gain that places the others is",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "reduced_impossible": ("not_polynomial",),
+    "reduced_not_unique": ("polynomial",),
+}
+
+OPENS = ("reduced_observer", "derivative_of_output", "next_output", "parts", "parts_with_feedthrough")
+
+RESTS_ON: dict[str, str] = {
+    "first_part_measures": "reduced_pair",
+    "reduced_observer": "reduced_order",
+}

@@ -1,0 +1,212 @@
+"""The reduced-order observer: printed values, the equations it must satisfy in plain SymPy, what is refused, its page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from sympy import Matrix, Rational
+
+import symobs
+from symobs import StateSpace
+from symobs.errors import CertificateRejected, InputError
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+s = sympy.Symbol("s")
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+THIRD_ORDER = StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]")
+CART = StateSpace("[0 0 0 1; 0 0 1 0; 0 10.78 0 0; 0 -0.98 0 0]", "[0; 0; -1; 1]", "[1 0 0 0]")
+
+#: plant, poles, and what the sources print (or what follows from it exactly).
+PRINTED: dict[str, tuple[StateSpace, str, dict[str, Any]]] = {
+    "S0-Ex4.3": (
+        StateSpace("[0 -1 0; 1 0 1; 0 0 0]", C="[1 0 0]"),
+        "-1, -1",
+        {
+            "L": Matrix([-2, -1]),
+            "F": Matrix([[-2, 1], [-1, 0]]),
+            "G": None,
+            "H": Matrix([4, 2]),
+            "M": Matrix([[1, 0, 0], [-2, 1, 0], [-1, 0, 1]]),
+        },
+    ),
+    "S0-Ex4.4": (SERVO, "-10", {"L": Matrix([9]), "F": Matrix([-10]), "G": Matrix([1]), "H": Matrix([-90])}),
+    "S0-MIN-GENC": (
+        THIRD_ORDER,
+        "-5, -6",
+        {
+            "T": Matrix([[1, 0, -2], [0, 1, 0], [0, 0, 1]]),
+            "L": Matrix([-19, 30]),
+            "F": Matrix([[19, 20], [-30, -30]]),
+            "G": Matrix([90, -120]),
+            "H": Matrix([180, -242]),
+            "M": Matrix([[61, 0, 2], [-19, 1, 0], [30, 0, 1]]),
+        },
+    ),
+    "S2-FHG": (
+        StateSpace("[0 1; 0 -1]", "[0; 1]", "[2 0]"),
+        "-10",
+        {"L": Matrix([Rational(9, 2)]), "F": Matrix([-10]), "G": Matrix([1]), "H": Matrix([-45])},
+    ),
+    "S2-EX-PEND": (
+        CART,
+        "-20, -20+20i, -20-20i",
+        {
+            "L": Matrix([-Rational(80539, 49), -Rational(832340, 49), 60]),
+            "F": Matrix(
+                [
+                    [0, 1, Rational(80539, 49)],
+                    [Rational(539, 50), 0, Rational(832340, 49)],
+                    [-Rational(49, 50), 0, -60],
+                ]
+            ),
+            "G": Matrix([0, -1, 1]),
+            "H": Matrix([Rational(4000000, 49), Rational(2453609479, 2450), -Rational(99461, 50)]),
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("row", PRINTED)
+def test_printed_values(row: str) -> None:
+    plant, poles, values = PRINTED[row]
+    found = symobs.reduced_order_observer(plant, poles=poles)
+    assert found.verdict == "yes"
+    for name, value in values.items():
+        assert getattr(found, name) == value, name
+
+
+def holds(found: Any, A: Any, B: Any, C: Any, D: Any, phi: Any) -> None:
+    """Hold an observer against its equations, in SymPy alone."""
+    T, L, F, G, H, M = (getattr(found, name) for name in "TLFGHM")
+    measured = C.rows
+    P = T[measured:, :] - L * T[:measured, :]
+    assert T[:measured, :] == C
+    zero = P * A - F * P - H * C
+    assert zero.applyfunc(sympy.cancel) == sympy.zeros(*zero.shape)
+    if B is not None:
+        driven = G - P * B + H * D
+        assert driven.applyfunc(sympy.cancel) == sympy.zeros(*driven.shape)
+    assert (M * C.col_join(P)).applyfunc(sympy.cancel) == sympy.eye(A.rows)
+    assert sympy.cancel((s * sympy.eye(F.rows) - F).det() - phi) == 0
+
+
+entries = st.integers(-4, 4)
+
+
+@st.composite
+def plants(draw: st.DrawFn) -> tuple[Any, Any, Any, Any]:
+    order = draw(st.integers(2, 4))
+    rows = [[draw(entries) for _ in range(order)] for _ in range(order)]
+    column, output = [draw(entries) for _ in range(order)], [draw(entries) for _ in range(order)]
+    return Matrix(rows), Matrix(column), Matrix([output]), Matrix([[draw(entries)]])
+
+
+@given(plants(), st.lists(st.fractions(-5, 5, max_denominator=3), min_size=3, max_size=3))
+def test_the_equations_hold_for_any_plant(drawn: tuple[Any, Any, Any, Any], poles: list[Fraction]) -> None:
+    A, B, C, D = drawn
+    assume(any(C))
+    order = A.rows
+    wanted = poles[: order - 1]
+    found = symobs.reduced_order_observer(StateSpace(A, B, C, D), poles=wanted)
+    rank = Matrix.vstack(*[C * A**k for k in range(order)]).rank()
+    if rank == order:
+        assert found.verdict == "yes"
+    if found.verdict == "yes":
+        phi = sympy.prod(s - Rational(p.numerator, p.denominator) for p in wanted)
+        holds(found, A, B, C, D, phi)
+    else:
+        assert rank < order
+        assert found.fixed_modes
+
+
+def test_other_coordinates_give_the_same_estimate() -> None:
+    T = Matrix([[1, 0, -2], [1, 1, 0], [0, 2, 1]])
+    first = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
+    second = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6", T=T)
+    assert second.T == T
+    holds(second, THIRD_ORDER.A, THIRD_ORDER.B, THIRD_ORDER.C, Matrix([[0]]), (s + 5) * (s + 6))
+
+    def response(found: Any) -> Any:
+        return found.M * sympy.Matrix([[1]]).col_join((s * sympy.eye(2) - found.F).inv() * found.H)
+
+    assert (response(first) - response(second)).applyfunc(sympy.cancel) == sympy.zeros(3, 1)
+
+
+def test_the_exceptions_of_a_parameter_are_cases() -> None:
+    a, b, p = sympy.symbols("a b p")
+    plant = StateSpace("[0 1; -2 -3]", "[0; 1]", "[a b]")
+    found = symobs.reduced_order_observer(plant, poles=["-p"])
+    holds(found, plant.A, plant.B, plant.C, Matrix([[0]]), s + p)
+    assert found.verdict == "conditional"
+    assert {sympy.factor(c.lhs) for c in found.conditions} == {a, a - b, a - 2 * b}
+    cases = {case.when[0].lhs: case.result for case in found.cases}
+    assert set(cases) == {a, a - b, a - 2 * b}
+    assert [cases[value].verdict for value in (a - b, a - 2 * b)] == ["no", "no"]
+    there = cases[a]
+    assert Matrix([[0, b], [1, 0]]) == there.T
+    holds(there, plant.A, plant.B, Matrix([[0, b]]), Matrix([[0]]), s + p)
+
+
+@pytest.mark.parametrize("name", ["L", "F", "G", "H", "M", "T"])
+def test_no_entry_can_be_changed(name: str) -> None:
+    found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
+    value = found.answer[name]
+    with pytest.raises(CertificateRejected):
+        found.with_answer(name, value + value)
+
+
+def test_discrete_time_with_feedthrough() -> None:
+    plant = StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True)
+    found = symobs.reduced_order_observer(plant, poles=[0])
+    assert (Matrix([1]), Matrix([0]), Matrix([-1]), Matrix([4])) == (found.L, found.F, found.H, found.G)
+    text = found.to("text")
+    assert "wₖ₊₁" in text
+    assert "contains the next output" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "where"),
+    [
+        ({"poles": "-5"}, "specification.poles"),
+        ({"poles": "-5, -6, -7"}, "specification.poles"),
+        ({"poles": "-5+i, -6"}, "specification.poles"),
+        ({"poles": "-5, -6", "T": "[1 0 0; 0 1 0; 0 0 1]"}, "specification.T"),
+        ({"poles": "-5, -6", "T": "[1 0 -2; 0 1 0; 1 1 -2]"}, "specification.T"),
+        ({"poles": "-5, -6", "T": "[1 0; 0 1]"}, "specification.T"),
+    ],
+)
+def test_what_does_not_fit_is_refused(arguments: dict[str, str], where: str) -> None:
+    with pytest.raises(InputError) as caught:
+        symobs.reduced_order_observer(THIRD_ORDER, **arguments)
+    assert caught.value.where == where
+    assert caught.value.repair
+
+
+def test_nothing_left_to_estimate() -> None:
+    with pytest.raises(InputError, match="nothing is left to estimate"):
+        symobs.reduced_order_observer(StateSpace("[-1]", "[1]", "[2]"), poles=[])
+    with pytest.raises(InputError, match="depend on each other"):
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[0 0]"), poles=[-1])
+
+
+def test_the_page_follows_the_book() -> None:
+    text = " ".join(symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6").to("text").split())
+    order = [
+        "T A T⁻¹",
+        "falls into two parts",
+        "is observable because",
+        "dx̂₂/dt",
+        "de₂/dt",
+        "Equal coefficients",
+        "as required",
+    ]
+    order += ["derivative of the output", "ż = F z + G u + H y", "x̂ ="]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
