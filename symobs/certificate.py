@@ -11,14 +11,15 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import math
 import random
 from dataclasses import dataclass, replace
 from math import log2
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import never_zero, sign_of
+from symobs.conditions import FACTORED_UP_TO, never_zero, real_consequences, sign_of, vanishing_factors
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Ideal, Matrix, Scalar
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
@@ -38,7 +39,7 @@ from symobs.formula import (
 from symobs.formula.plain import plain_relation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 #: Claims whose values have at most this many terms are checked exactly.
 EXACT_UP_TO = 60
@@ -254,7 +255,8 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "!=":
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
-        return any(_excluded_from_zero(entry, environment, arithmetic) for entry in entries)
+        sure = any(_excluded_from_zero(entry, environment) for entry in entries)
+        return sure or never_together_zero(entries, environment.relations, environment.signs)
     sign = sign_of(as_scalar(left) - as_scalar(right), environment.signs)
     return (
         sign
@@ -277,16 +279,32 @@ def as_scalar(value: Any) -> Scalar:
     return value
 
 
-def _excluded_from_zero(value: Scalar, environment: Environment, arithmetic: Exact) -> bool:
-    """Tell whether signs, stated conditions and what is known to vanish keep a value from 0, factor by factor."""
+def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
+    """Tell whether signs and stated conditions keep a value from 0, factor by factor."""
     if value.is_zero:
         return False
     if never_zero(value, environment.signs):
         return True
-    if isinstance(arithmetic, Restricted):
-        return arithmetic.excludes(value) or never_zero(arithmetic.ideal.remainder(value), environment.signs)
+    if environment.relations or value.size > FACTORED_UP_TO:
+        return False
     assumed = set(environment.assumed)
     return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
+
+
+def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
+    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+
+    With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0.
+    """
+    known = [math.prod(vanishing_factors([value], signs), start=Scalar.of(1)) for value in values if value]
+    ideal = Ideal.of((*relations, *known))
+    while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
+        news = [c for g in ideal.generators for c in real_consequences(g, signs) if c not in ideal]
+        if not news:
+            return False
+        ideal = ideal.having(*news)
+    return True
 
 
 def _holds_at_points(

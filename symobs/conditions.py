@@ -12,13 +12,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from symobs.exact import Scalar
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from symobs.exact import Scalar
-
 #: What may be declared of a symbol.  Each implies that the symbol is real.
 SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
+
+#: A polynomial with more terms than this is not factored: it counts as one factor.
+FACTORED_UP_TO = 1_500
 
 _OPPOSITE = {
     "positive": "negative",
@@ -93,7 +96,7 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     if value.is_zero:
         return "zero"
     whole = _product_sign(_sum_of_terms(value.numerator, signs), _sum_of_terms(value.denominator, signs))
-    if whole not in {"real", "nonnegative", "nonpositive"}:
+    if whole not in {"real", "nonnegative", "nonpositive"} or value.size > FACTORED_UP_TO:
         return whole
     unit, factors = value.factors()
     sign = "positive" if unit.fraction() > 0 else "negative"
@@ -108,15 +111,51 @@ def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
 
 
 def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
-    """Return the distinct irreducible factors of numerators that can be 0 under the declared signs."""
+    """Return the distinct irreducible factors of numerators that can be 0 under the declared signs.
+
+    A numerator of more than `FACTORED_UP_TO` terms is returned as it is: factoring it might not end.
+    """
     found: dict[Scalar, None] = {}
     for value in values:
         if value.is_constant or never_zero(value, signs):
+            continue
+        if value.numerator.size > FACTORED_UP_TO:
+            found[value.numerator] = None
             continue
         for factor, _ in value.numerator.factors()[1]:
             if not never_zero(factor, signs):
                 found[factor] = None
     return tuple(found)
+
+
+def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return polynomials that vanish, for real parameters of these signs, wherever `polynomial` does.
+
+    a² + b² = 0 only where a = b = 0: where no two terms have opposite signs, all of them vanish.  α x² + β x + γ = 0
+    with 4αγ − β² ≥ 0 and α ≠ 0 only where 2αx + β = 0 and 4αγ − β² = 0.  Nothing is returned where neither applies.
+    """
+    if polynomial.size > FACTORED_UP_TO:
+        return ()
+    terms = polynomial.terms()
+    if len(terms) > 1 and _sum_of_terms(polynomial, signs) != "real":
+        return tuple(_radical(powers, signs) for _, powers in terms)
+    for name in sorted(polynomial.names):
+        if polynomial.degree(name) != 2:  # noqa: PLR2004 - a quadratic polynomial
+            continue
+        lead, linear, constant = polynomial.coefficients(name)
+        rest = 4 * lead * constant - linear**2
+        if not rest.is_zero and never_zero(lead, signs) and sign_of(rest, signs) in {"positive", "nonnegative"}:
+            return 2 * lead * Scalar.symbol(name) + linear, rest
+    return ()
+
+
+def _radical(powers: tuple[tuple[str, int], ...], signs: Mapping[str, str]) -> Scalar:
+    """Return the product of those generators of a monomial that can be 0."""
+    product = Scalar.of(1)
+    for name, _ in powers:
+        generator = Scalar.symbol(name)
+        product = product if never_zero(generator, signs) else product * generator
+    return product
 
 
 def opposite(sign: str) -> str:

@@ -6,15 +6,41 @@ observable.  With parameters the rank is the generic one, and every stratum wher
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from symobs.analysis.loci import EVERYWHERE, Region, maximal
 from symobs.analysis.pages import given, rank_cases, square_test
-from symobs.analysis.strata import strata
-from symobs.certificate import Claim
-from symobs.conditions import Condition, vanishing_factors
-from symobs.exact import Matrix, Root, Scalar, echelon, independent_rows, roots_of
+from symobs.analysis.rank_cases import (
+    Piece,
+    Stratum,
+    answer_on,
+    answer_with,
+    generic_claims,
+    kernel_claims,
+    minors_claim,
+    piece_of,
+    stratum_claims,
+    stratum_of,
+    undecided_conditions,
+)
+from symobs.analysis.rank_tree import (
+    ELIMINATED_UP_TO,
+    EXPANDED,
+    Kernel,
+    Node,
+    Tree,
+    determinant_terms,
+    exclusions,
+    minor_at_a_point,
+    rank_tree,
+    with_restriction,
+)
+from symobs.certificate import Certificate, Claim, check_all
+from symobs.conditions import Condition
+from symobs.errors import CertificateRejected
+from symobs.exact import Matrix, Root, Scalar, TooLarge, echelon, independent_rows, roots_of
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, letter
 from symobs.method import Case, Result, choose, method, task
@@ -41,20 +67,14 @@ def rank_answer(A: Matrix, C: Matrix) -> dict[str, Any]:
     Witnesses: rows and columns of an r×r minor, rows of a minor of N, and X with A N = N X.
     """
     O = power_rows(A, C)
+    order = A.shape[0]
+    minor = minor_at_a_point(O) if O.size > ELIMINATED_UP_TO else None
+    if minor is not None and len(minor[0]) == order:
+        return answer_with(O, order, with_restriction(Matrix.zeros(order, 0), A), minor)
     columns, vectors = echelon(O)
-    order, count = A.shape[0], len(vectors)
-    N = Matrix.of([[v[i, 0] for v in vectors] for i in range(order)], count)
-    free = independent_rows(N)
-    X = N.select(free, range(count)).solve((A @ N).select(free, range(count))) if count else Matrix.zeros(0, 0)
-    return {
-        "matrix": O,
-        "rank": len(columns),
-        "kernel": N,
-        "restricted": X.normal(),
-        "rows": independent_rows(O.select(range(O.shape[0]), columns)),
-        "columns": columns,
-        "free": free,
-    }
+    N = Matrix.of([[v[i, 0] for v in vectors] for i in range(order)], len(vectors))
+    rows = independent_rows(O.select(range(O.shape[0]), columns))
+    return answer_with(O, len(columns), with_restriction(N, A), (rows, columns))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,6 +83,8 @@ class RankResult(Result):
 
     Claims: the blocks of M follow each other by A; M N = 0; an r×r minor of M and a minor of N are not zero; A N = N X.
     """
+
+    piece: Piece | None = None
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str) -> Self:
@@ -77,24 +99,27 @@ class RankResult(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield structure, rank from below, kernel and rank from above, invariance."""
         A, C = self.pair(self.plant)
-        O, N, outputs = self.answer["matrix"], self.answer["kernel"], C.shape[0]
+        O, N, X, outputs = (*(self.answer[name] for name in ("matrix", "kernel", "restricted")), C.shape[0])
         every, states = range(O.shape[0]), range(self.plant.order)
         values = {
             "A": A,
             "C": C,
             "O": O,
             "N": N,
-            "X": self.answer["restricted"],
+            "X": X,
             "upper": Matrix.block([[C], [O.select(every[:-outputs], states) @ A]]),
         }
-        e = Environment(variable=self.plant.variable, values=values)
+        e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
         yield Claim(relation(letter("O", e), letter("upper", e)), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
         found, hidden = self.answer["rank"], self.plant.order - self.answer["rank"]
         witnesses = len(self.answer["rows"]), len(self.answer["columns"])
         yield Claim(relation(found, *witnesses), e, "the minor has the order of the rank")
-        beside = N.shape[1], len(self.answer["free"]), *self.answer["restricted"].shape
+        beside = N.shape[1], len(self.answer["free"]), *X.shape
         yield Claim(relation(hidden, *beside), e, "the kernel has the dimension n - rank")
-        if found:
+        if self.piece is not None:
+            e = replace(e, relations=self.piece.relations(c.expression for c in self.domain))
+            yield from self._at_every_point(self.piece, e)
+        elif found:
             minor = O.select(self.answer["rows"], self.answer["columns"])
             yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {self.answer['rank']} is not zero")
         if N.shape[1]:
@@ -103,15 +128,31 @@ class RankResult(Result):
             yield Claim(relation(_det(N.select(self.answer["free"], count), e), "!==", 0), e, "rank N = n - rank M")
             yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
 
+    def _at_every_point(self, piece: Piece, e: Environment) -> Iterator[Claim]:
+        """Yield that rank and kernel are right wherever the conditions of the piece hold, not only in general."""
+        first = self.answer["rows"], self.answer["columns"]
+        orders = {len(part) for minor in (first, *piece.minors) for part in minor}
+        yield Claim(relation(len(orders), 1), e, "the minors are of one order")
+        yield from minors_claim(self.answer["matrix"], (first, *piece.minors[1:]), e, "here")
+        yield from kernel_claims(self.answer["kernel"], self.answer["restricted"], e, "here")
+
     @cached_property
     def test_determinant(self) -> Scalar | None:
-        """The determinant of a square test matrix, None otherwise."""
+        """The determinant of a square test matrix; None where it is not square, or too long to be written down."""
         matrix: Matrix = self.answer["matrix"]
-        return matrix.determinant() if matrix.shape[0] == matrix.shape[1] else None
+        square = matrix.shape[0] == matrix.shape[1]
+        return matrix.determinant() if square and not self.is_too_long else None
+
+    @cached_property
+    def is_too_long(self) -> bool:
+        """Whether the minors have more terms than can be dealt with."""
+        return determinant_terms(self.answer["matrix"].select(self.answer["rows"], range(self.plant.order))) > EXPANDED
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """What vanishes wherever the rank is below the generic one: the determinant, or a minor of that order."""
+        if self.piece is not None or self.is_too_long:
+            return ()
         if self.test_determinant:
             return (self.test_determinant,)
         minor = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"])
@@ -119,38 +160,96 @@ class RankResult(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where the rank is below n everywhere, else whether it can drop."""
+        """`no` where the rank is below n everywhere, else whether it can drop.
+
+        A part of the parameters about which nothing is known leaves the verdict undecided, unless the condition that
+        keeps away from it is exact: the determinant of a square matrix.
+        """
         if self.answer["rank"] < self.plant.order:
             return "no"
-        if self.test_determinant is None:
-            return self._verdict_of_strata
-        return "conditional" if self._binding_conditions else "yes"
-
-    @property
-    def _verdict_of_strata(self) -> str:
-        """Whether a matrix that is not square loses its rank somewhere: asked stratum by stratum of one minor."""
-        verdicts = {"undecided" if case.result is None else case.result.verdict for case in self.case_tree}
-        if verdicts <= {"yes"}:
-            return "yes"
-        return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"
+        lost = [case for case in self.case_tree if case.result is not None and case.result.verdict == "no"]
+        unknown = [case for case in self.case_tree if case.result is None]
+        if lost or (unknown and self.test_determinant is not None):
+            return "conditional"
+        return "undecided" if unknown else "yes"
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
-        """The plant's domain, and the factors on whose vanishing the rank falls below n."""
-        factors = vanishing_factors(self.existence, self.plant.symbols.signs)
-        if self.answer["rank"] < self.plant.order:
-            factors = ()
-        elif self.test_determinant is None:
-            lost = [c.when[0].expression for c in self.case_tree if c.result is not None and c.result.verdict == "no"]
-            factors = tuple(f for f in factors if f in lost)
-        listed = {c.expression for c in self.domain}
-        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
+        """The plant's domain, and what must not vanish for the rank to be n.
+
+        One condition for each irreducible factor of the determinant; for a matrix that is not square, where the rank
+        drops on several equations at once, the sum of their squares: not all of them vanish.
+        """
+        if self.piece is not None:
+            return (*self.domain, *self.piece.conditions)
+        if self.answer["rank"] < self.plant.order or self._tree is None:
+            return self.domain
+        lower = [node.locus for node in self._tree.strata if node.rank < self.plant.order]
+        lost = Node(EVERYWHERE, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
+        try:
+            excluded = exclusions(lost, self._region)
+        except TooLarge:
+            excluded = tuple(f for value in self.existence for f in self._region.vanishing(value))
+        return (*self.domain, *(Condition("existence", value) for value in excluded))
 
     @cached_property
+    def _region(self) -> Region:
+        return Region(self.plant.symbols.signs, frozenset(c.expression for c in self.domain))
+
+    @cached_property
+    def _tree(self) -> Tree | None:
+        """The strata of the rank; None where there are no parameters, or more than can be dealt with."""
+        matrix: Matrix = self.answer["matrix"]
+        if self.piece is not None or self.is_too_long or not matrix.names:
+            return None
+        answer, (A, _) = self.answer, self.pair(self.plant)
+        kernel = Kernel(answer["kernel"], answer["restricted"], answer["free"])
+        return rank_tree(matrix, A, self._region, (answer["rows"], answer["columns"]), kernel)
+
+    @cached_property
+    def _checked_cases(self) -> tuple[tuple[Case, ...], tuple[Certificate, ...]]:
+        """The cases, and the certificates that outside them nothing else is true."""
+        if self._tree is None:
+            return ((Case((), {}, None),) if self.is_too_long else ()), ()
+        cases, certificates = [Case(undecided_conditions(locus), {}, None) for locus in self._tree.undecided], []
+        found = []
+        for node in self._tree.strata:
+            try:
+                stratum = stratum_of(node, self._region)
+                certificates += check_all(stratum_claims(stratum, self._region))
+                found.append(self._case(stratum))
+            except (CertificateRejected, TooLarge):  # a claim beyond the limits of what can be checked
+                cases.append(Case(undecided_conditions(node.locus), {}, None))
+        try:
+            certificates += check_all(generic_claims(self.answer["matrix"], self._tree, self._region))
+        except (CertificateRejected, TooLarge):
+            cases += [Case((Condition("existence", value, "=="),), {}, None) for value in self.existence]
+        return (*found, *cases), tuple(certificates)
+
+    def _case(self, stratum: Stratum) -> Case:
+        """Return the case of a stratum, on a plant of its own where its equations can be solved."""
+        matrix, (A, _) = self.answer["matrix"], self.pair(self.plant)
+        for values in (stratum.substitution, {}):
+            if values is None:
+                continue
+            try:
+                plant = self.plant.substitute(values) if values else self.plant
+                answer = answer_on(matrix, A, stratum, values)
+                result = type(self)(plant, self.method, answer, piece_of(stratum, values, self._region))
+            except (CertificateRejected, ZeroDivisionError):
+                continue
+            return Case(stratum.when, values, result)
+        return Case(stratum.when, {}, None)
+
+    @property
     def case_tree(self) -> tuple[Case, ...]:
         """Rank and kernel on every stratum where they are not the generic ones."""
-        found = strata(self.plant, self.existence, lambda plant, _: type(self).of(plant, self.method))
-        return tuple(case for case in found if case.result is None or _other(case.result, self))
+        return self._checked_cases[0]
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the result, and that its cases are all."""
+        return (*self.certificates, *self._checked_cases[1])
 
     @cached_property
     def modes(self) -> tuple[Root, ...]:
@@ -231,11 +330,6 @@ class Controllability(RankResult):
             page.define("Ctr", block([columns]), say="controllability_matrix")
             square_test(page, "Ctr", self, "controllability")
             rank_cases(page, "Ctr", self, "controllability")
-
-
-def _other(found: Result, generic: RankResult) -> bool:
-    """Whether a stratum's rank differs from the generic one, there or further down."""
-    return found.answer["rank"] != generic.answer["rank"] or bool(found.case_tree)
 
 
 def _det(matrix: Matrix, environment: Environment) -> Term:

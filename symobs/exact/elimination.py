@@ -7,28 +7,41 @@ from typing import TYPE_CHECKING
 from flint import fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
+from symobs.exact.ideal import Ideal, TooLarge
 from symobs.exact.matrix import Matrix, build
+from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symobs.exact.field import Field
-    from symobs.exact.scalar import Scalar
+
+#: The most terms of an entry that an elimination modulo relations may meet.
+TERMS = 400
 
 
-def echelon(matrix: Matrix, relation: Scalar | None = None) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
-    """Return (pivot columns, basis of the kernel), where `relation` = 0 holds if one is given.
+def echelon(
+    matrix: Matrix, relations: Ideal | Scalar | None = None
+) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
+    """Return (pivot columns, basis of the kernel), where `relations` = 0 hold if any are given.
 
-    The kernel vectors are columns with polynomial entries without common factor.  `relation` must be an irreducible
-    polynomial: what it divides counts as zero.
+    The kernel vectors are columns with polynomial entries without common factor.  What lies in the ideal of the
+    relations counts as zero; both answers are sure where no pivot vanishes, and everywhere in general where the ideal
+    is prime (of a single relation: where it is irreducible).  Raises `TooLarge` where relations are given and an entry
+    grows beyond `TERMS`.
     """
-    field = matrix.field if relation is None else matrix.field | relation.field
-    lifted = matrix.within(field)
-    rows = lifted.polynomials
-    modulus = None if relation is None else relation.within(field).numerator_part
+    if isinstance(relations, Scalar):
+        relations = Ideal.of([relations])
+    field = matrix.field if relations is None else matrix.field | relations.field
+    rows = matrix.within(field).polynomials
 
     def vanishes(entry: fmpz_mpoly) -> bool:
-        return not entry or (modulus is not None and not entry % modulus)
+        if not entry or relations is None:
+            return not entry
+        if len(entry) > TERMS:
+            message = "an entry is too long to be decided"
+            raise TooLarge(message)
+        return Scalar(field, entry, field.one) in relations
 
     pivots, reduced = ring.echelon(rows, vanishes)
     columns = range(matrix.shape[1])
@@ -72,9 +85,9 @@ def kernel(matrix: Matrix) -> Matrix:
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(matrix.shape[1])], len(vectors))
 
 
-def independent_rows(matrix: Matrix) -> tuple[int, ...]:
-    """Return as many rows as the rank, chosen so that they are independent."""
-    return echelon(matrix.T)[0] if matrix.shape[1] else ()
+def independent_rows(matrix: Matrix, relations: Ideal | None = None) -> tuple[int, ...]:
+    """Return as many rows as the rank, chosen so that they are independent (where the relations hold)."""
+    return echelon(matrix.T, relations)[0] if matrix.shape[1] else ()
 
 
 def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:

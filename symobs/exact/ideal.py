@@ -16,12 +16,18 @@ from symobs.exact.field import Field
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from flint import fmpz_mpoly
 
 #: The most polynomials of a basis, terms of one of them, and bits of a coefficient, before the work is given up.
 LIMITS = (120, 600, 4_000)
+#: The most terms that the generators may have together.
+TERMS = 1_000
+
+
+#: What the names of the coordinates of a vector begin with; no parameter's name begins so.
+_UNIT = "_e"
 
 
 class TooLarge(ArithmeticError):
@@ -62,6 +68,18 @@ class Ideal:
         moved = field.lift(value.numerator_part, value.field).project_to_context(self.home)
         return self._back(moved.reduction_primitive_part(self.basis))  # type: ignore[attr-defined]
 
+    def reduced_column(self, entries: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """Return the normal forms of the entries of a vector, times one common rational number.
+
+        Entries are polynomials.  They are reduced as the linear form Σ entryᵢ eᵢ in new generators, which keeps their
+        proportions.
+        """
+        names = [f"{_UNIT}{index}" for index in range(len(entries))]
+        form = sum((e * Scalar.symbol(n) for e, n in zip(entries, names, strict=True)), Scalar.of(0))
+        rest = self.remainder(form)
+        zeros = {name: Scalar.of(0) for name in names}
+        return tuple(rest.substitute({**zeros, name: Scalar.of(1)}) for name in names)
+
     def __contains__(self, value: Scalar) -> bool:
         return self.remainder(value).is_zero
 
@@ -82,6 +100,9 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):
         return Ideal(field, fmpz_mpoly_vec([home.constant(1)], home), home)
+    if len(moved) > 1 and sum(len(polynomial) for polynomial in moved) > TERMS:
+        message = "the equations have too many terms"
+        raise TooLarge(message)
     basis, complete = fmpz_mpoly_vec(moved, home).buchberger_naive(limits=LIMITS)
     if not complete:
         message = "the equations are too long to be decided"

@@ -22,7 +22,6 @@ class Restricted(Exact):
         """Raise `TooLarge` where the relations are too long to be decided."""
         super().__init__(environment)
         self.ideal = Ideal.of(environment.relations)
-        self.signs = environment.signs
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
         """Refuse a value that has no meaning here."""
@@ -50,10 +49,6 @@ class Restricted(Exact):
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (difference,)
         return all(entry in self.ideal for entry in entries)
-
-    def excludes(self, value: Scalar) -> bool:
-        """Tell whether a value vanishes nowhere where the relations hold, not even at complex points."""
-        return self.ideal.having(value).is_whole
 
     def _meaningful(self, value: Scalar | Matrix) -> None:
         below = value.common_denominator()
