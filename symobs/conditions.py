@@ -140,7 +140,7 @@ def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Sca
     if len(terms) > 1 and _sum_of_terms(polynomial, signs) != "real":
         return tuple(_radical(powers, signs) for _, powers in terms)
     for name in sorted(polynomial.names):
-        if polynomial.degree(name) != 2:  # noqa: PLR2004 - a quadratic polynomial
+        if polynomial.degree(name) != 2:
             continue
         lead, linear, constant = polynomial.coefficients(name)
         rest = 4 * lead * constant - linear**2

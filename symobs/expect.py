@@ -165,6 +165,8 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return {_relation(entry, names, where) for entry in expected} == {
             _relation(str(entry), names, where) for entry in found
         }
+    if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
+        return sorted(found) == sorted(expected)
     if all(isinstance(entry, list) for entry in found):
         return _same_span(found, expected, names, where)
     return bool(found == expected)

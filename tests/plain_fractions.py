@@ -262,10 +262,12 @@ class World:
                     for name, label in labels:
                         yield f"label {name}", self.value(label)
                 case Case(when, substitution, inside):
-                    yield "condition", single(self.difference(when))
                     stratum = self.copy()
                     stratum.meanings |= dict(substitution)
-                    yield "zero", single(stratum.difference(when))
+                    for relation in when.relations if isinstance(when, Together) else (when,):
+                        yield "condition", single(self.difference(relation))
+                        if relation.operators == ("=",):
+                            yield "zero", single(stratum.difference(relation))
                     yield from stratum.read(inside)
             sentence = getattr(step, "sentence", None)
             if sentence is not None:

@@ -177,7 +177,7 @@ class Reader:
             elif not isinstance(slot, str):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
-    def case(self, when: Relation, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
+    def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
         """Read on with the parameters replaced; letters that have no value there are forgotten."""
         outside, letters = self.names, self.letters
         replaced = {sympy.Symbol(name): value for name, value in substitution.items()}
@@ -187,7 +187,11 @@ class Reader:
             moved = value.subs(replaced)
             if not moved.has(sympy.zoo, sympy.nan, sympy.oo):
                 self.letters[name] = moved
-        self.fact(when)
+        for relation in when.relations if isinstance(when, Together) else (when,):
+            if relation.operators == ("!=",):
+                self.assumed.append(scalar(self.value(relation.members[0])) - scalar(self.value(relation.members[1])))
+            else:
+                self.fact(relation)
         for step in steps:
             self.step(step)
         self.names, self.letters = outside, letters

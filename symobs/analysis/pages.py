@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, cast
 
+from symobs.analysis.missing import in_words
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
-from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of, unit_rows
 from symobs.formula import Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
-from symobs.page import Page, predicate, relation, sentence
+from symobs.formula.term import block
+from symobs.page import Page, Slot, predicate, relation, sentence
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
-    from symobs.analysis.observability import RankResult
+    from symobs.analysis.rank_result import RankResult
+    from symobs.conditions import Condition
     from symobs.formula import Formula, Relation
     from symobs.formula.term import Term
     from symobs.method import Case
     from symobs.specification import DesiredPolynomial
+
+
+#: A polynomial of more terms is not written out among words.
+WRITTEN_UP_TO = 200
+#: More sets of states are not named in one sentence.
+NAMED_SETS = 6
 
 
 def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
@@ -141,6 +151,9 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
         page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
         return
     signs = page.plant.symbols.signs
+    if determinant.size > WRITTEN_UP_TO:
+        page.conclude(f"long_{kind}", count=str(determinant.numerator.size - 1))
+        return
     det = page[letter].apply("det")
     shown = determinant_form(page, determinant)
     open_factors = vanishing_factors([determinant], signs)
@@ -157,24 +170,79 @@ def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
 
 
+def conditions_of(case: Case) -> Relation | Together:
+    """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
+    relations = tuple(_as_written(condition) for condition in case.when)
+    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
+
+
+def _as_written(condition: Condition) -> Relation:
+    value, operator = condition.expression, condition.operator.replace("==", "=")
+    terms = value.terms()
+    if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):
+        first, second = (
+            math.prod((Scalar.symbol(name) ** power for name, power in powers), start=Scalar.of(abs(coefficient)))
+            for coefficient, powers in sorted(terms, key=lambda term: term[0] < 0)
+        )
+        return relation(first, operator, second)
+    return relation(value, operator, 0)
+
+
 def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
     if case.result is None:
         return undecided(page, case)
-    rank = relation(page[letter].apply("rank"), case.result.answer["rank"])
-    steps: list[Step] = [Conclude(sentence("case_rank", {"rank": rank}))]
-    matrix = page[letter] if kind == "observability" else page[letter].T
-    for vector in case.result.kernel_vectors:
-        zero = Matrix.zeros(matrix.value.shape[0], 1)
-        steps.append(Equal((relation(matrix @ page.value(vector), zero),), sentence(f"kernel_{kind}", {})))
-    steps += [_rank_case(page, letter, inner, kind) for inner in case.result.case_tree]
-    return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), tuple(steps))
+    result = cast("RankResult", case.result)
+    answer, matrix = result.answer, page[letter] if kind == "observability" else page[letter].T
+    steps: list[Step] = []
+    if not answer["rank"]:
+        steps.append(Conclude(sentence("case_zero", {}), (relation(page[letter], page[letter].value * 0),)))
+    elif result.piece is not None and any(c.operator == "==" for c in result.piece.conditions):
+        minors = Matrix.column([answer["matrix"].select(*minor).determinant() for minor in result.piece.minors])
+        slots: dict[str, Slot] = {"order": str(answer["rank"])}
+        if minors.shape[0] == 1:
+            slots["minor"] = page.value(minors[0, 0])
+        said = sentence("case_minor" if "minor" in slots else "case_minors", slots)
+        steps.append(Conclude(said, (relation(minors, "!=", minors * 0),)))
+    else:
+        rank = relation(page[letter].apply("rank"), answer["rank"])
+        steps.append(Conclude(sentence("case_rank", {"rank": rank})))
+    N, vectors = answer["kernel"], answer["kernel"].shape[1]
+    if answer["rank"] and vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], vectors)
+        words = sentence(f"kernel_{kind}" if vectors == 1 else f"kernel_basis_{kind}", {})
+        steps.append(Equal((relation(matrix @ page.value(N), zero),), words))
+    steps += repair(page, letter, result, kind)
+    return CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(steps))
+
+
+def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]:
+    """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
+    sets, order = result.repaired, page.plant.order
+    on_equations = result.piece is not None and any(c.operator == "==" for c in result.piece.conditions)
+    if not 0 < len(sets) <= NAMED_SETS or on_equations:
+        return []
+    test, A = (page[letter], page["A"]) if kind == "observability" else (page[letter].T, page["A"].T)
+    facts = []
+    for numbers in sets:
+        rows = page.value(unit_rows(order, tuple(number - 1 for number in numbers)))
+        below = [[rows], *([rows @ A**k] for k in range(1, order))]
+        facts.append(relation(block([[test], *below]).apply("rank"), order))
+    words = "one" if len(sets[0]) == 1 else "several"
+    return [Conclude(sentence(f"repair_{words}_{kind}", {"states": in_words(sets)}), tuple(facts))]
 
 
 def undecided(page: Page, case: Case) -> Step:
     """Return the remark that names a part of the parameters that the page does not decide."""
-    first, *others = (page.value(condition.expression) for condition in case.when)
+    if not case.when:
+        return Note(sentence("undecided_rank", {}))
+    simplest, *others = sorted((condition.expression for condition in case.when), key=lambda value: value.size)
+    if simplest.size > WRITTEN_UP_TO:
+        return Note(sentence("undecided_long", {"count": str(simplest.numerator.size - 1)}))
+    first = page.value(simplest)
+    if len(others) > 1 or any(other.size > WRITTEN_UP_TO for other in others):
+        return Note(sentence("undecided_many", {"when": first, "count": str(len(others))}))
     if others:
-        return Note(sentence("undecided_together", {"when": first, "other": others[0]}))
+        return Note(sentence("undecided_together", {"when": first, "other": page.value(others[0])}))
     return Note(sentence("undecided_case", {"when": first}))
 
 
@@ -185,6 +253,7 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     for vector in result.kernel_vectors:
         zero = Matrix.zeros(matrix.value.shape[0], 1)
         page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
+    page.steps += repair(page, letter, result, kind)
     page.set("N", result.answer["kernel"])
     page.set("X", result.answer["restricted"])
     polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)

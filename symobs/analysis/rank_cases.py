@@ -11,7 +11,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symobs.analysis.rank_tree import WITNESS, Kernel, Minor, Node, cuts_out, exclusions, maximal_minors, primitive, with_restriction
+from symobs.analysis.rank_tree import (
+    WITNESS,
+    Kernel,
+    Minor,
+    Node,
+    cuts_out,
+    exclusions,
+    maximal_minors,
+    primitive,
+    with_restriction,
+)
 from symobs.certificate import Claim
 from symobs.conditions import Condition
 from symobs.exact import Matrix, Scalar

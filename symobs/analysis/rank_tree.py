@@ -71,7 +71,7 @@ class Tree:
     undecided: tuple[Locus, ...]
 
 
-class _Exhausted(Exception):  # noqa: N818 - control flow, never leaves this module
+class _Exhausted(Exception):
     """The budget of eliminations is spent, or one of them grows too large."""
 
 
@@ -178,7 +178,8 @@ def _with_kernels(search: _Search, A: Matrix, nodes: list[Node], undecided: list
     while waiting:
         node = waiting.popleft()
         below = [*(each for each in known if each != node.locus and each.lies_in(node.locus)), *node.below]
-        found, failing = node.kernel, ()
+        found = node.kernel
+        failing: tuple[Locus, ...] = ()
         if found is None:
             found, failing = _best_kernel(search.matrix, A, node, below, search.region)
         elif found.basis.shape[1]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NoReturn, TypeAlias, assert_never
 
-from symobs.certificate import SENSELESS, as_scalar, verify
+from symobs.certificate import SENSELESS, as_scalar, never_together_zero, verify
 from symobs.conditions import never_zero
 from symobs.derivation.steps import (
     Case,
@@ -26,7 +26,7 @@ from symobs.derivation.steps import (
     Step,
 )
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, roots_are
+from symobs.exact import Ideal, Matrix, Scalar, roots_are
 from symobs.formula import (
     Derivative,
     Environment,
@@ -275,10 +275,11 @@ def _established(formula: Formula, environment: Environment) -> None:
             _reject(f"{name} is used before it is established")
 
 
-def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: Environment) -> Environment:
+def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], environment: Environment) -> Environment:
     """Return the environment on a stratum, after verifying that the substitution describes it.
 
-    `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere too.
+    A single `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere
+    too.  Of several equations and inequations it is verified that each value put in follows from them.
     """
     replaced = {}
     for name, value in environment.values.items():
@@ -288,12 +289,40 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
             continue
     named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}
     inside = replace(environment, values=replaced, coefficients={**substitution, **named}, assumed=())
+    if isinstance(when, Together):
+        return replace(inside, relations=_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
     factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
     says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)
     if not says_no_more or verify(when, inside)[0] == "":
         _reject(plain_relation(when, environment.variable))
     return inside
+
+
+def _left_of(when: Together, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
+    """Return what of the equations (1 − w p = 0 for an inequation of p) is left when parameters are put in.
+
+    Nothing is left where all equations became 0: the other parameters are free.
+    """
+    equations: list[Scalar] = []
+    relations: list[Scalar] = []
+    for relation in when.relations:
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+        if relation.operators == ("=",):
+            equations.append((left - right).numerator)
+        elif relation.operators == ("!=",):
+            relations.append(1 - Scalar.symbol(f"_w{len(relations)}") * (left - right).numerator)
+        else:
+            _reject(plain_relation(relation, environment.variable))
+    known = Ideal.of((*equations, *relations))
+    for name, value in substitution.items():
+        solved = (Scalar.symbol(name) * value.denominator - value.numerator) in known
+        if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):
+            _reject(f"{name} = {value}")
+    left_over = [equation.substitute(substitution).numerator for equation in equations]
+    if not any(left_over):
+        return ()
+    return tuple(value for value in (*left_over, *(r.substitute(substitution).numerator for r in relations)) if value)
 
 
 def _reject(line: str) -> NoReturn:

@@ -12,7 +12,7 @@ from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.formula import Fact, Formula, Relation
+    from symobs.formula import Fact, Formula, Relation, Together
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +98,12 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it."""
+    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
-    when: Relation
+    Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.
+    """
+
+    when: Relation | Together
     substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None

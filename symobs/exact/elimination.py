@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 TERMS = 400
 
 
-def echelon(
-    matrix: Matrix, relations: Ideal | Scalar | None = None
-) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
+def echelon(matrix: Matrix, relations: Ideal | Scalar | None = None) -> tuple[tuple[int, ...], tuple[Matrix, ...]]:
     """Return (pivot columns, basis of the kernel), where `relations` = 0 hold if any are given.
 
     The kernel vectors are columns with polynomial entries without common factor.  What lies in the ideal of the

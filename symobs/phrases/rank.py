@@ -11,7 +11,21 @@ PHRASES: dict[str, str] = {
     "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
     "generic_rank_observability": "In general {rank}, and the pair ($C$, $A$) is observable; the exceptions follow.",
     "generic_rank_controllability": "In general {rank}, and the pair ($A$, $B$) is controllable; the exceptions follow.",
+    "repair_one_observability": "It becomes observable when {states} is measured as well.",
+    "repair_several_observability": "It becomes observable when {states} are measured as well.",
+    "repair_one_controllability": "It becomes controllable when {states} is actuated as well.",
+    "repair_several_controllability": "It becomes controllable when {states} are actuated as well.",
     "case_rank": "There {rank}.",
+    "case_minor": "There the rank is {order}: {minor}, a minor of that order, does not vanish.",
+    "case_minors": "There the rank is {order}: the minors of that order do not vanish together.",
+    "case_zero": "There the matrix is zero.",
+    "kernel_basis_observability": "States in the span of these columns are never seen at the output:",
+    "kernel_basis_controllability": "The input never moves the state along these directions:",
+    "long_observability": "Its determinant has {count} terms and is not written out. The pair ($C$, $A$) is observable exactly where it is not zero.",
+    "long_controllability": "Its determinant has {count} terms and is not written out. The pair ($A$, $B$) is controllable exactly where it is not zero.",
+    "undecided_long": "What is true where a factor of {count} terms vanishes is not decided here.",
+    "undecided_many": "What is true where {when} and {count} further polynomials vanish together is not decided here.",
+    "undecided_rank": "Where the rank is lower than in general is not decided here: the minors are too long to be written down.",
     "undecided_case": "What is true where {when} vanishes is not decided here.",
     "undecided_together": "What is true where {when} and {other} vanish together is not decided here.",
     "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
@@ -24,7 +38,7 @@ PHRASES: dict[str, str] = {
     "modes_controllability": "The uncontrollable modes are {modes}.",
 }
 
-NAMING = ("undecided_case", "undecided_together")
+NAMING = ("undecided_case", "undecided_together", "undecided_many", "case_minor")
 
 RESTS_ON: dict[str, str] = {
     "yes_observability": "observability_rank",

@@ -47,7 +47,7 @@ def _formulas(step: Step) -> Iterator[Formula]:
             for inner in steps:
                 yield from _formulas(inner)
         case Case(when=when, steps=steps, sentence=sentence):
-            yield from (*when.members, *_in_sentence(sentence))
+            yield from (*_in_facts((when,)), *_in_sentence(sentence))
             for inner in steps:
                 yield from _formulas(inner)
         case Given(relations=relations, sentence=sentence) | Equal(relations=relations, sentence=sentence):

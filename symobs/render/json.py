@@ -59,4 +59,6 @@ def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
     inner = {name: to_json(value) for name, value in case.result.fields.items()}
     differing = {name: value for name, value in inner.items() if outer.get(name) != value}
     nested = [_case_object(deeper, inner) for deeper in case.result.case_tree]
-    return {"when": when, "verdict": case.result.verdict, **differing, **({"cases": nested} if nested else {})}
+    certificates = [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in case.result.all_certificates]
+    whole = {"when": when, "verdict": case.result.verdict, **differing, "certificates": certificates}
+    return {**whole, "cases": nested} if nested else whole

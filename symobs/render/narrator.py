@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
+from symobs.formula import Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
@@ -215,12 +216,15 @@ class _Page:
                 self.tell_step(step)
         self.numbers.pop()
 
-    def tell_case(self, when: Relation, steps: Sequence[Step], sentence: Sentence | None) -> None:
+    def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
         inner = _Page(given=self.given, numbered=False)
         inner.say(sentence)
         inner.tell(steps)
-        self.blocks.append(CaseBlock((f"{LABELS['case']} ", when, "."), _punctuated(inner.blocks)))
+        label: list[Inline] = [f"{LABELS['case']} "]
+        for place, relation in enumerate(when.relations if isinstance(when, Together) else (when,)):
+            label += [", ", relation] if place else [relation]
+        self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
 
     def say(self, sentence: Sentence | None) -> None:
         """Add a sentence, to the paragraph before it where there is one."""
