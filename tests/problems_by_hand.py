@@ -94,6 +94,7 @@ def compare(difference: Any, operator: str) -> bool:
 s, z = symbols("s z")
 omega, b, p, q, h1, h2, k1, k2, c, d = symbols("omega b p q h1 h2 k1 k2 c d")
 M, m, l, g = symbols("M m l g")
+a, k, m1, m2, R1, R2, C1, C2 = symbols("a k m1 m2 R1 R2 C1 C2")
 p1, p2, p3, p4, q1, q2, q3, q4 = symbols("p1:5 q1:5")
 
 
@@ -213,6 +214,22 @@ PROBLEMS = {
     "fixed_mode_wanted": Hand(**hidden, observer=(s + 1) * (s + 5)),
     "fixed_modes_all_wanted": Hand(**hidden, observer=(s + 1) * (s + 2)),
     "deadbeat_observer": Hand(A=Matrix([[1, 1], [0, 1]]), C=Matrix([[1, 0]]), observer=z**2, variable=z),
+    "bridge_circuit": Hand(
+        A=sympy.diag(-1 / (R1 * C1), -1 / (R2 * C2)),
+        C=Matrix([[1, -1]]),
+        signs=dict.fromkeys(["R1", "R2", "C1", "C2"], "positive"),
+    ),
+    "two_masses_sum_measured": Hand(
+        A=Matrix([[0, 1, 0, 0], [-(k1 + k) / m1, 0, k / m1, 0], [0, 0, 0, 1], [k / m2, 0, -(k2 + k) / m2, 0]]),
+        C=Matrix([[1, 0, 1, 0]]),
+        signs=dict.fromkeys(["m1", "m2", "k1", "k2"], "positive") | {"k": "nonnegative"},
+    ),
+    "pendulum_angle_and_rate_combined": Hand(
+        A=hanging["A"], C=Matrix([[a, c]]), signs=pendulum | {"a": "real", "c": "real"}
+    ),
+    "three_modes_one_sum": Hand(
+        A=sympy.diag(a, b, c), C=Matrix([[1, 1, 1]]), signs={"a": "real", "b": "real", "c": "real"}
+    ),
     "cart_pole": Hand(
         **cart_pole,
         control=(s + p1) * (s + p2) * (s + p3) * (s + p4),

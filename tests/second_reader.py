@@ -189,7 +189,8 @@ class Reader:
                 self.letters[name] = moved
         for relation in when.relations if isinstance(when, Together) else (when,):
             if relation.operators == ("!=",):
-                self.assumed.append(scalar(self.value(relation.members[0])) - scalar(self.value(relation.members[1])))
+                assert not is_zero(scalar(self.value(relation.members[0])) - scalar(self.value(relation.members[1])))
+                self.tally.compared += 1
             else:
                 self.fact(relation)
         for step in steps:

@@ -161,6 +161,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
                 "kernel": (),
                 "unobservable_modes": (),
                 "determinant": test.det(),
+                "missing_measurements": (),
             }
         case "controllability":
             test = observability_matrix(A.T, B.T).T
@@ -170,6 +171,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
                 "kernel": (),
                 "uncontrollable_modes": (),
                 "determinant": test.det(),
+                "missing_inputs": (),
             }
         case "characteristic_polynomial":
             polynomial = characteristic(A, variable)
