@@ -11,15 +11,14 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import math
 import random
 from dataclasses import dataclass, replace
 from math import log2
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import FACTORED_UP_TO, never_zero, real_consequences, sign_of, vanishing_factors
+from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Ideal, Matrix, Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
@@ -30,16 +29,16 @@ from symobs.formula import (
     Literal,
     Modular,
     Relation,
-    Restricted,
     agree,
     children,
     differ,
     evaluate,
 )
 from symobs.formula.plain import plain_relation
+from symobs.pointwise import Pointwise, never_together_zero
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
 #: Claims whose values have at most this many terms are checked exactly.
 EXACT_UP_TO = 60
@@ -239,7 +238,7 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
-    arithmetic = Restricted(environment) if environment.relations else Exact(environment)
+    arithmetic = Pointwise(environment) if environment.relations else Exact(environment)
     values = [evaluate(member, environment, arithmetic) for member in relation.members]
     return all(
         _compare(left, operator, right, environment, arithmetic)
@@ -289,22 +288,6 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
         return False
     assumed = set(environment.assumed)
     return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
-
-
-def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
-
-    With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
-    parameters imply is added to it: a² + b² = 0 only where a = b = 0.
-    """
-    known = [math.prod(vanishing_factors([value], signs), start=Scalar.of(1)) for value in values if value]
-    ideal = Ideal.of((*relations, *known))
-    while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
-        news = [c for g in ideal.generators for c in real_consequences(g, signs) if c not in ideal]
-        if not news:
-            return False
-        ideal = ideal.having(*news)
-    return True
 
 
 def _holds_at_points(

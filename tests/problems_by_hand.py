@@ -246,6 +246,8 @@ def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
         point = {}
         for parameter, sign in PROBLEMS[name].signs.items():
             size = Rational(chance.randint(1, 40), chance.randint(1, 9))
-            point[sympy.Symbol(parameter)] = size if sign == "positive" or chance.random() < 0.5 else -size
+            point[sympy.Symbol(parameter)] = (
+                size if sign in {"positive", "nonnegative"} or chance.random() < 0.5 else -size
+            )
         if point.get(c) not in {Rational(1, 2), 1}:
             yield point

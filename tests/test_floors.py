@@ -27,6 +27,7 @@ FLOORS = {
     "expression": 2,
     "formula": 2,
     "conditions": 2,
+    "pointwise": 3,
     "stability": 3,
     "face": 3,
     "system": 3,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from symobs.certificate import verify
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge
-from symobs.formula import Environment, Letter, Literal, Power, Product, Relation
+from symobs.formula import Apply, Environment, Letter, Literal, Power, Product, Relation
 from tests.plain import seeded
 
 a, b, c, d = (Scalar.symbol(name) for name in "abcd")
@@ -87,3 +87,18 @@ def test_members_are_those_of_another_system(drawn: list[tuple[int, ...]], weigh
         expected = basis.contains(probe) if basis is not None else sympy.expand(probe) == 0
         assert (value in ideal) == expected
     assert ideal.is_whole == (basis is not None and basis.exprs == [1])
+
+
+def test_a_rank_is_that_of_every_point() -> None:
+    row, zero = Matrix.of([[a, b]]), Matrix.of([[a - b, 0]])
+
+    def ranked(matrix: Matrix, order: int, *relations: Scalar, **signs: str) -> bool:
+        return holds(Relation((Apply("rank", Literal(matrix)), Literal(Scalar.of(order))), ("=",)), *relations, **signs)
+
+    assert ranked(row, 1, a + b - 1)  # not both are 0
+    assert not ranked(row, 1, a - b)  # at a = b = 0 the rank is 0
+    assert ranked(row, 1, a - b, a="positive")
+    assert ranked(zero, 0, a - b)
+    assert not ranked(zero, 1, a - b)
+    assert not ranked(zero, 1, a - b * c)
+    assert ranked(row, 1, 1 - c * (a**2 + b**2))

@@ -10,9 +10,10 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from symobs.certificate import Claim, never_together_zero
+from symobs.certificate import Claim
 from symobs.exact import Matrix, TooLarge, rank, unit_rows
 from symobs.page import relation
+from symobs.pointwise import never_together_zero
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ from symobs.derivation import Conclude, Equal, Note, Step
 from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of, unit_rows
 from symobs.formula import Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
 from symobs.formula.term import block
-from symobs.page import Page, Slot, predicate, relation, sentence
+from symobs.page import Page, predicate, relation, sentence
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
@@ -196,13 +196,6 @@ def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
     steps: list[Step] = []
     if not answer["rank"]:
         steps.append(Conclude(sentence("case_zero", {}), (relation(page[letter], page[letter].value * 0),)))
-    elif result.piece is not None and any(c.operator == "==" for c in result.piece.conditions):
-        minors = Matrix.column([answer["matrix"].select(*minor).determinant() for minor in result.piece.minors])
-        slots: dict[str, Slot] = {"order": str(answer["rank"])}
-        if minors.shape[0] == 1:
-            slots["minor"] = page.value(minors[0, 0])
-        said = sentence("case_minor" if "minor" in slots else "case_minors", slots)
-        steps.append(Conclude(said, (relation(minors, "!=", minors * 0),)))
     else:
         rank = relation(page[letter].apply("rank"), answer["rank"])
         steps.append(Conclude(sentence("case_rank", {"rank": rank})))
@@ -218,8 +211,7 @@ def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
 def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]:
     """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
     sets, order = result.repaired, page.plant.order
-    on_equations = result.piece is not None and any(c.operator == "==" for c in result.piece.conditions)
-    if not 0 < len(sets) <= NAMED_SETS or on_equations:
+    if not 0 < len(sets) <= NAMED_SETS:
         return []
     test, A = (page[letter], page["A"]) if kind == "observability" else (page[letter].T, page["A"].T)
     facts = []

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NoReturn, TypeAlias, assert_never
 
-from symobs.certificate import SENSELESS, as_scalar, never_together_zero, verify
+from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
 from symobs.derivation.steps import (
     Case,
@@ -48,6 +48,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
+from symobs.pointwise import never_together_zero
 from symobs.stability import monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
@@ -302,7 +303,7 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
 def _left_of(when: Together, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
     """Return what of the equations (1 − w p = 0 for an inequation of p) is left when parameters are put in.
 
-    Nothing is left where all equations became 0: the other parameters are free.
+    What is said of the stratum is held to them, and so to each of its points.
     """
     equations: list[Scalar] = []
     relations: list[Scalar] = []
@@ -320,8 +321,6 @@ def _left_of(when: Together, substitution: dict[str, Scalar], environment: Envir
         if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):
             _reject(f"{name} = {value}")
     left_over = [equation.substitute(substitution).numerator for equation in equations]
-    if not any(left_over):
-        return ()
     return tuple(value for value in (*left_over, *(r.substitute(substitution).numerator for r in relations)) if value)
 
 

@@ -16,8 +16,6 @@ PHRASES: dict[str, str] = {
     "repair_one_controllability": "It becomes controllable when {states} is actuated as well.",
     "repair_several_controllability": "It becomes controllable when {states} are actuated as well.",
     "case_rank": "There {rank}.",
-    "case_minor": "There the rank is {order}: {minor}, a minor of that order, does not vanish.",
-    "case_minors": "There the rank is {order}: the minors of that order do not vanish together.",
     "case_zero": "There the matrix is zero.",
     "kernel_basis_observability": "States in the span of these columns are never seen at the output:",
     "kernel_basis_controllability": "The input never moves the state along these directions:",
@@ -38,7 +36,7 @@ PHRASES: dict[str, str] = {
     "modes_controllability": "The uncontrollable modes are {modes}.",
 }
 
-NAMING = ("undecided_case", "undecided_together", "undecided_many", "case_minor")
+NAMING = ("undecided_case", "undecided_together", "undecided_many")
 
 RESTS_ON: dict[str, str] = {
     "yes_observability": "observability_rank",

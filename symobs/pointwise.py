@@ -1,0 +1,77 @@
+"""What holds at every real point where some polynomials vanish: values that are never 0 together, and ranks (trusted)."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import never_zero, real_consequences, vanishing_factors
+from symobs.exact import Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.formula import Restricted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from symobs.formula import Environment
+
+#: The most minors of one order that are looked at.
+_MINORS = 100
+
+
+def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
+    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+
+    With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0.
+    """
+    known = [math.prod(vanishing_factors([value], signs), start=Scalar.of(1)) for value in values if value]
+    ideal = Ideal.of((*relations, *known))
+    while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
+        news = [c for g in ideal.generators for c in real_consequences(g, signs) if c not in ideal]
+        if not news:
+            return False
+        ideal = ideal.having(*news)
+    return True
+
+
+class Pointwise(Restricted):
+    """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
+
+    def __init__(self, environment: Environment) -> None:
+        """Keep relations and signs."""
+        super().__init__(environment)
+        self.relations, self.signs = environment.relations, environment.signs
+
+    def apply(self, function: str, value: Matrix) -> Any:
+        """Return det, adj, or the rank: r where r×r minors never vanish together and a kernel of dimension n − r is seen.
+
+        Raises TypeError where that cannot be shown.
+        """
+        if function != "rank":
+            return super().apply(function, value)
+        columns, vectors = echelon(value, self.ideal)
+        kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))
+        sent_to_zero = all(entry in self.ideal for entry in (value @ kernel).entries)
+        rows = independent_rows(value.select(range(value.shape[0]), columns), self.ideal)
+        if not (
+            sent_to_zero
+            and self._has_minor(value, len(columns), (rows, columns))
+            and self._has_minor(kernel, len(vectors))
+        ):
+            message = "the rank is not seen to be the same everywhere"
+            raise TypeError(message)
+        return Scalar.of(len(columns))
+
+    def _has_minor(
+        self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
+    ) -> bool:
+        """Tell whether at every point a minor of some order is not zero; a likely one may be tried first."""
+        if not order or (first is not None and self._never_zero([matrix.select(*first)])):
+            return True
+        chosen = itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
+        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(chosen, _MINORS))
+
+    def _never_zero(self, parts: Iterable[Matrix]) -> bool:
+        minors = (part.determinant() for part in parts)
+        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs)
