@@ -72,8 +72,19 @@ LETTERS: dict[str, LetterForm] = {
     "z_o": LetterForm("z", "z", "state of the reduced-order observer"),
     "w_o": LetterForm("w", "w", "state of the reduced-order observer"),
     "P": LetterForm("P({v})", "P({v})", "plant"),
+    "Phi": LetterForm(r"\Phi(t,t_0)", "Φ(t, t₀)", "transition matrix"),
+    "Phi_": LetterForm(r"\Phi", "Φ", "transition matrix"),
+    "W": LetterForm("W", "W", "observability Gramian"),
+    "x_0": LetterForm("x_0", "x₀", "initial state"),
+    "xi": LetterForm(r"\xi", "ξ", "output without the part that the input forces"),
+    "u_t": LetterForm("u(t)", "u(t)", "input, given as a function of time"),
+    "y_t": LetterForm("y(t)", "y(t)", "output, given as a function of time"),
+    "x_t": LetterForm("x(t)", "x(t)", "state as a function of time"),
     "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
 }
+
+#: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
+TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0")}
 
 FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),

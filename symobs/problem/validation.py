@@ -243,7 +243,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
             return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
         others = _Errors()
         for name in given:
-            _read_cells(table[name], symbols, f"plant.{name}", others)
+            _read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
         errors.add_elsewhere(others)
     return None
 
