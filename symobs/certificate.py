@@ -246,8 +246,7 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
     """Whether a relation differentiates or integrates in time: residues, and named coefficients, cannot tell how."""
-    moving = {TIME, *environment.rates}
-    timed = any(not moving.isdisjoint(value.field.names) for value in (*leaves, *environment.coefficients.values()))
+    timed = any(TIME in value.field.position for value in (*leaves, *environment.coefficients.values()))
     kinds = (Derivative, At, Integral) if timed else (At, Integral)
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
     return any(contains(formula, kinds) for formula in formulas)

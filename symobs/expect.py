@@ -172,6 +172,9 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return {_relation(entry, names, where) for entry in expected} == {
             _relation(str(entry), names, where) for entry in found
         }
+    if all(isinstance(entry, Scalar) for entry in found):
+        read = [parse_scalar(entry, names, where=f"{where}[{i}]") for i, entry in enumerate(expected)]
+        return bool(found == read)
     if all(isinstance(entry, Matrix) for entry in found):
         alike = len(found) == len(expected)
         return alike and all(parse_matrix(e, names, where=where) == f for e, f in zip(expected, found, strict=True))

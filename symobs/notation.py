@@ -77,6 +77,7 @@ LETTERS: dict[str, LetterForm] = {
     "W": LetterForm("W", "W", "observability Gramian"),
     "x_0": LetterForm("x_0", "x₀", "initial state"),
     "xi": LetterForm(r"\xi", "ξ", "output without the part that the input forces"),
+    "x_u": LetterForm("x_u", "x_u", "state that the input alone leads to"),
     "u_t": LetterForm("u(t)", "u(t)", "input, given as a function of time"),
     "y_t": LetterForm("y(t)", "y(t)", "output, given as a function of time"),
     "x_t": LetterForm("x(t)", "x(t)", "state as a function of time"),
@@ -203,5 +204,11 @@ THEOREMS: dict[str, Theorem] = {
     "reduced_pair": Theorem("observability of the unmeasured part", "S0, Lemma 4.1"),
     "separation": Theorem("separation principle", "S0, (4.23)-(4.24)"),
     "compensator": Theorem("compensator in transfer form", "S0, (4.25)"),
+    "time_varying_rank": Theorem(
+        "rank test for time-varying plants",
+        "L. M. Silverman and H. E. Meadows, SIAM J. Control 5 (1967), 64-73",
+    ),
+    "time_varying_gramian": Theorem("initial state through the Gramian", "S4, time-varying plants"),
+    "peano_baker": Theorem("Peano-Baker series", "W. J. Rugh, Linear System Theory, 2nd ed. (1996), chapter 3"),
     "closed_loop": Theorem("closed loop in state and error", "S0, (4.26)-(4.29)"),
 }

@@ -35,12 +35,13 @@ def transition(A: Matrix) -> Transition | None:
     return _series(A) or _triangular(A) or _direction(A)
 
 
-def since_start(value: Matrix | None) -> Matrix | None:
-    """Return the antiderivative less its value at t₀."""
-    if value is None or value.size > TERMS_UP_TO:
+def antiderivative_since(value: Matrix, start: Scalar) -> Matrix | None:
+    """Return the antiderivative in t that is 0 at `start`, None where none is rational (or it is too large)."""
+    found = antiderivative(value, TIME)
+    if found is None or found.size > TERMS_UP_TO:
         return None
     try:
-        return (value - value.substitute({TIME: Scalar.symbol(START)})).normal()
+        return (found - found.substitute({TIME: start})).normal()
     except ZeroDivisionError:
         return None
 
@@ -51,7 +52,7 @@ def _series(A: Matrix) -> Transition | None:
     term = total = Matrix.identity(order)
     terms: list[Matrix] = []
     for _ in range(order):
-        found = since_start(antiderivative((A @ term).normal(), TIME))
+        found = antiderivative_since((A @ term).normal(), Scalar.symbol(START))
         if found is None:
             return None
         if found.is_zero:

@@ -1,7 +1,7 @@
 """Derivatives and antiderivatives of rational functions of one generator, the time.
 
 Antiderivatives are sought among rational functions (Ostrogradsky's method): where a logarithm would be needed there is
-none.  `rates` gives generators that are functions of the time themselves (e^{λt}, cos ωt) their derivatives.
+none.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from symobs.exact.polynomial import from_coefficients
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
 Value = TypeVar("Value", Scalar, Matrix)
 
@@ -22,27 +22,19 @@ Value = TypeVar("Value", Scalar, Matrix)
 DEGREE_UP_TO = 12
 
 
-def derivative(value: Value, name: str, rates: Mapping[str, Scalar] | None = None) -> Value:
-    """Return d value / d name, by the chain rule through the generators whose rates are given."""
-    moving = {name: Scalar.of(1), **(rates or {})}
+def derivative(value: Value, name: str) -> Value:
+    """Return d value / d name, entry by entry."""
     if isinstance(value, Matrix):
-        return Matrix.of([[_derivative(entry, moving) for entry in row] for row in value.rows], value.shape[1])
-    return _derivative(value, moving)
+        return Matrix.of([[_derivative(entry, name) for entry in row] for row in value.rows], value.shape[1])
+    return _derivative(value, name)
 
 
-def _derivative(value: Scalar, moving: Mapping[str, Scalar]) -> Scalar:
-    total = Scalar.of(0)
-    for generator, rate in moving.items():
-        if generator in value.names:
-            total = total + _partial(value, generator) * rate
-    return total
-
-
-def _partial(value: Scalar, name: str) -> Scalar:
-    field, index = value.field, value.field.position[name]
-    above, below = value.numerator_part, value.denominator_part
-    top = above.derivative(index) * below - above * below.derivative(index)
-    return Scalar.reduced(field, top, below * below)
+def _derivative(value: Scalar, name: str) -> Scalar:
+    field = value.field
+    if name not in field.position:
+        return Scalar.of(0)
+    index, above, below = field.position[name], value.numerator_part, value.denominator_part
+    return Scalar.reduced(field, above.derivative(index) * below - above * below.derivative(index), below * below)
 
 
 def antiderivative(value: Value, name: str) -> Value | None:

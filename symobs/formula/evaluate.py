@@ -49,7 +49,6 @@ class Environment:
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
-    rates       a generator that is a function of the time t → its derivative
     """
 
     variable: str = "s"
@@ -61,7 +60,6 @@ class Environment:
     signs: Mapping[str, str] = field(default_factory=dict)
     assumed: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
-    rates: Mapping[str, Scalar] = field(default_factory=dict)
 
     def knows(self, name: str) -> bool:
         """Whether a letter is established."""
@@ -128,7 +126,6 @@ class Exact:
     def __init__(self, environment: Environment) -> None:
         """Replace named coefficients by what they stand for whenever a value enters."""
         self.coefficients = dict(environment.coefficients)
-        self.rates = environment.rates
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
         for name in reversed(self.coefficients):
@@ -270,7 +267,7 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             value = evaluate(operand, environment, arithmetic)
             if isinstance(value, Signal):
                 return _derivative(value, environment, arithmetic)
-            return calculus.rate(value, arithmetic)
+            return calculus.rate(value, constant=environment.variable == calculus.TIME)
         case At(operand, name, instant):
             return calculus.at(evaluate(operand, environment, arithmetic), name, instant, arithmetic)
         case Integral(integrand, primitive, name, lower, upper):
@@ -368,8 +365,8 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
     for name, coefficient in signal.coefficients.items():
         rate = evaluate(environment.dynamics[name], environment, arithmetic)
         image = times(coefficient, rate, arithmetic)
-        if isinstance(arithmetic, Exact) and not coefficient.names.isdisjoint({calculus.TIME, *arithmetic.rates}):
-            slope = Signal(signal.size, {name: calculus.rate(coefficient, arithmetic)})
+        if isinstance(arithmetic, Exact) and calculus.TIME in coefficient.names:
+            slope = Signal(signal.size, {name: calculus.rate(coefficient, constant=True)})
             image = add(image, slope, arithmetic)
         total = image if total is None else add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient

@@ -175,6 +175,8 @@ class Printer(Glyphs[B]):
 
     def derivative(self, operand: Formula) -> B:
         """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if isinstance(operand, Letter) and operand.name not in SIGNALS:
+            return self.rate(self.letter(operand.name, ""))
         if self.discrete:
             if isinstance(operand, Letter):
                 return self.letter(operand.name, "k+1")
