@@ -111,12 +111,14 @@ def _exponential(page: Page, terms: tuple[Matrix, ...]) -> None:
 
 def _series(page: Page, terms: tuple[Matrix, ...]) -> None:
     order = page.plant.order
-    total, before = page.identity(order), None
+    before = None
     for k, term in enumerate(terms, 1):
         member = _integral_of_A(page, before, term)
         page.define(f"Phi_{k}", member, page.value(term), say="peano_baker" if k == 1 else "", closing=False)
         before = page[f"Phi_{k}"]
-        total = total + before
+    total = page.identity(order)
+    for k in range(1, len(terms) + 1):
+        total = total + page[f"Phi_{k}"]
     end = relation(page["A"] @ page[f"Phi_{len(terms)}"], Matrix.zeros(order, order))
     page.define("Phi", total, say="peano_baker_sum", end=end, answer=True)
 
@@ -187,7 +189,8 @@ def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
     elif determinant is not None and answer["point"] is not None:
         instant = at(page["O"], TIME, answer["point"]).apply("det")
         value = determinant.substitute({TIME: answer["point"]})
-        page.conclude("stack_yes_at", instant=relation(instant, value, "!=", 0))
+        key = "stack_yes_at" if result.asked_for.interval is None else "stack_yes_on"
+        page.conclude(key, instant=relation(instant, value, "!=", 0))
     else:
         page.conclude("stack_yes", rank=found)
     drop = _instant_of_drop(result)
@@ -217,7 +220,7 @@ def _hidden(page: Page, result: TimeVaryingObservability) -> None:
     page.define("V", page.value(V), say="stack_moving")
     page.set("X", X)
     unseen = relation(page["C"] @ page["V"], Matrix.zeros(page.plant.outputs, V.shape[1]))
-    stays = relation(page["A"] @ page["V"] - page["V"].derivative, page["V"] @ X)
+    stays = relation(page["A"] @ page["V"] - page["V"].derivative, page["V"] @ page["X"], page["V"] @ page.value(X))
     page.equal(stays, say="stack_invariant", unseen=unseen)
 
 
@@ -286,28 +289,32 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
     """Find x₀ from the output: x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ, ξ the output without what the input forces."""
     asked, answer, m = result.asked_for, result.answer, page.plant.matrices
     assert asked.output is not None  # noqa: S101 - asked by the caller
-    page.define("y_t", page.value(asked.output), say="output_given")
+    page.define("y_t", _signal(page, asked.output), say="output_given")
     if answer["forced"] is None or answer["gramian"] is None:
         page.remark("x0_open")
         return
-    xi = page["y_t"]
     if asked.input is None:
-        page.define("xi", xi, say="xi_same")
+        page.define("xi", page["y_t"], say="xi_same")
     else:
-        page.define("u_t", page.value(asked.input), say="input_given")
+        page.define("u_t", _signal(page, asked.input), say="input_given")
         _forced(page, result)
-        xi = xi - page["C"] @ page["x_u"]
+        xi = page["y_t"] - page["C"] @ page["x_u"]
         page.define("xi", xi - page["D"] @ page["u_t"] if m.has_feedthrough else xi, say="xi_forced")
     if answer["x0"] is None:
         page.conclude("x0_none" if answer["rank"] == page.plant.order else "x0_not_unique")
         return
     seen = _seen(page, result)
-    moment = antiderivative_since((seen.value.T @ page["xi"].value).normal(), asked.start)
+    moment = antiderivative_since((seen.T @ page["xi"]).value.normal(), asked.start)
     assert moment is not None  # noqa: S101 - x₀ was found by it
     Phi = at(page["Phi"], START, asked.start)
     whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, moment)
     page.define("x_0", page["W"].inverse @ whole, say="x0_formula", answer=True)
     page.verified("x0_checked", output=relation(seen @ page["x_0"], page["xi"]))
+
+
+def _signal(page: Page, value: Matrix) -> Term:
+    """Return a signal written out, without brackets where it has one component."""
+    return page.value(value[0, 0] if value.shape == (1, 1) else value)
 
 
 def _forced(page: Page, result: TimeVaryingObservability) -> None:

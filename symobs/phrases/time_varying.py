@@ -10,7 +10,7 @@ PHRASES: dict[str, str] = {
     "on_interval": "The interval of time runs from {start} to {end}.",
     "output_given": "The output is",
     "input_given": "the input is",
-    "transition_nilpotent": "Without input the state is $x = Phi x_0$. The matrix $A$ commutes with its integral {commutes}, where",
+    "transition_nilpotent": "Without input the state is $x = Phi x_0$. The matrix $A$ commutes with its integral, {commutes}, where",
     "transition_exponential": "so that $Phi$ is the exponential of $M$. Since {power}, its series ends:",
     "peano_baker": "Without input the state is $x = Phi x_0$. The Peano-Baker series of $Phi$ ends here: its terms after the first are",
     "peano_baker_sum": "each the integral of $A$ times the one before, and {end}. Their sum is",
@@ -34,8 +34,9 @@ PHRASES: dict[str, str] = {
     "added:",
     "stack_matrix": "Under one another they are",
     "stack_yes": "Since {rank} for almost all $t$, the plant is observable on every interval of time on which $A$ and $C$ have no pole.",
-    "stack_yes_at": "Full rank at one instant is enough: {instant}, so the plant is observable on every interval that contains it. For almost "
-    "all $t$ the rank is the same, so on every other interval without a pole of $A$ and $C$ as well.",
+    "stack_yes_at": "Full rank at one instant is enough: {instant}, so the plant is observable on every interval that contains this instant. The "
+    "rank is the same for almost all $t$, hence on every other interval without a pole of $A$ and $C$ as well.",
+    "stack_yes_on": "Full rank at one instant of the interval is enough: {instant}, so the plant is observable on it.",
     "stack_yes_if": "It is not identically 0 as long as {condition}, which we assume from here on. Then the plant is observable on every interval "
     "of time on which $A$ and $C$ have no pole.",
     "stack_drops": "That {rank} at this one instant does not matter.",
@@ -68,6 +69,7 @@ PHRASES: dict[str, str] = {
 RESTS_ON: dict[str, str] = {
     "stack_yes": "time_varying_rank",
     "stack_yes_at": "time_varying_rank",
+    "stack_yes_on": "time_varying_rank",
     "stack_yes_if": "time_varying_rank",
     "stack_no": "time_varying_rank",
     "gramian": "time_varying_gramian",
