@@ -79,6 +79,7 @@ LETTERS: dict[str, LetterForm] = {
     "xi": LetterForm(r"\xi", "ξ", "output without the part that the input forces"),
     "x_u": LetterForm("x_u", "x_u", "state that the input alone leads to"),
     "u_t": LetterForm("u(t)", "u(t)", "input, given as a function of time"),
+    "x_t": LetterForm("x(t)", "x(t)", "state as a function of time"),
     "u_t_": LetterForm("u", "u", "input"),
     "y_t_": LetterForm("y", "y", "output"),
     "y_t": LetterForm("y(t)", "y(t)", "output, given as a function of time"),

@@ -63,7 +63,7 @@ def _vanishes_between(factor: Scalar, first: Scalar, last: Scalar, halvings: int
 
 
 def instant_where_not_zero(plant: StateSpace, interval: tuple[Scalar, Scalar] | None, minor: Matrix) -> Scalar | None:
-    """Return an instant of the interval at which a minor is certainly not 0, None where none is found."""
+    """Return an instant of the interval at which a minor is certainly not 0 and no pole lies, None where none is found."""
     if not minor.shape[0]:
         return None
     value, signs = minor.determinant(), plant.symbols.signs
@@ -74,6 +74,8 @@ def instant_where_not_zero(plant: StateSpace, interval: tuple[Scalar, Scalar] | 
         tried = [end, start, *((start * (k - 1) + end) / k for k in range(2, 6))]
     for instant in tried:
         try:
+            for part in (plant.matrices.A, plant.matrices.C):
+                part.substitute({TIME: instant})
             if never_zero(value.substitute({TIME: instant}), signs):
                 return instant
         except ZeroDivisionError:

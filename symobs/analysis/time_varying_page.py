@@ -309,7 +309,12 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
     Phi = at(page["Phi"], START, asked.start)
     whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, moment)
     page.define("x_0", page["W"].inverse @ whole, say="x0_formula", answer=True)
-    page.verified("x0_checked", output=relation(seen @ page["x_0"], page["xi"]))
+    free = at(page["Phi"], START, asked.start) @ page["x_0"]
+    page.define("x_t", free if asked.input is None else free + page["x_u"], say="state_history")
+    output = page["C"] @ page["x_t"]
+    if asked.input is not None and m.has_feedthrough:
+        output = output + page["D"] @ page["u_t"]
+    page.verified("x0_checked", output=relation(output, page["y_t"]))
 
 
 def _signal(page: Page, value: Matrix) -> Term:

@@ -60,6 +60,7 @@ PHRASES: dict[str, str] = {
     "xi_forced": "Its part of the output is taken away,",
     "xi_same": "Without input all of the output comes from the initial state,",
     "x0_formula": "and the initial state is",
+    "state_history": "The state at all times follows by variation of constants,",
     "x0_checked": "{output}: this is the given output.",
     "x0_none": "No initial state has this output: none makes $C Phi x_0$ equal to it.",
     "x0_open": "An initial state in closed form is not given here.",
