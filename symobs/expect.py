@@ -177,10 +177,17 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return bool(found == read)
     if all(isinstance(entry, Matrix) for entry in found):
         alike = len(found) == len(expected)
-        return alike and all(parse_matrix(e, names, where=where) == f for e, f in zip(expected, found, strict=True))
+        return alike and all(
+            _is_matrix(entry, value, names, where) for entry, value in zip(expected, found, strict=True)
+        )
     if all(isinstance(entry, list) for entry in found):
         return _same_span(found, expected, names, where)
     return bool(found == expected)
+
+
+def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
+    """Tell whether an entry of a list is this matrix; a number alone is none."""
+    return isinstance(expected, (str, list)) and parse_matrix(expected, names, where=where) == found
 
 
 # -- relations ------------------------------------------------------------------------------------------------------

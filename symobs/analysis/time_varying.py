@@ -19,7 +19,7 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, kernel
 from symobs.formula import At, Environment, Literal
-from symobs.formula.term import Term, identity, letter
+from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task_in_time
 from symobs.page import relation
 from symobs.specification import read_interval, read_signal
@@ -92,6 +92,7 @@ class TimeVaryingObservability(Result):
         moved = A @ V - derivative(V, TIME)
         X = V.select(free, count).solve(moved.select(free, count)) if vectors else Matrix.zeros(0, 0)
         answer: dict[str, Any] = {
+            "matrix": O,
             "stack": stack,
             "rank": len(columns),
             "hidden": V,
@@ -108,7 +109,15 @@ class TimeVaryingObservability(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield the stack, the rank from below and above, and the closed forms where there are any."""
         m, answer, order = self.plant.matrices, self.answer, self.plant.order
-        values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "V": answer["hidden"], "X": answer["restricted"]}
+        values = {
+            "A": m.A,
+            "B": m.B,
+            "C": m.C,
+            "D": m.D,
+            "O": answer["matrix"],
+            "V": answer["hidden"],
+            "X": answer["restricted"],
+        }
         values |= {f"N_{k}": row for k, row in enumerate(answer["stack"])}
         values |= {"Phi": answer["transition_matrix"], "G": answer["gramian_in_time"], "v": answer["kernel"]}
         values |= {"f": answer["forced"], "x_0": answer["x0"], "y": self.asked_for.output, "u": self.asked_for.input}
@@ -119,6 +128,8 @@ class TimeVaryingObservability(Result):
         for k in range(order - 1):
             row = letter(f"N_{k}", e)
             yield Claim(relation(letter(f"N_{k + 1}", e), row @ letter("A", e) + row.derivative), e)
+        stacked = block([[letter(f"N_{k}", e)] for k in range(order)])
+        yield Claim(relation(letter("O", e), stacked), e, "O = [N_0; N_1; ...]")
         yield from self._rank_claims(e)
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
@@ -135,7 +146,7 @@ class TimeVaryingObservability(Result):
             relation(hidden, V.shape[1], len(answer["free"])), e, "the hidden states have the dimension n - rank"
         )
         if found:
-            minor = _det(self.test_matrix.select(answer["rows"], answer["columns"]), e)
+            minor = _det(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
                 instant = Term(At(minor.formula, TIME, answer["point"]), e)
@@ -180,14 +191,9 @@ class TimeVaryingObservability(Result):
     # -- what follows ------------------------------------------------------------------------------------------------
 
     @cached_property
-    def test_matrix(self) -> Matrix:
-        """N₀, …, N_{n−1} under one another."""
-        return Matrix.block([[row] for row in self.answer["stack"]]).normal()
-
-    @cached_property
     def minor(self) -> Scalar:
         """The minor of the order of the rank that shows it; 1 where the rank is 0."""
-        chosen = self.test_matrix.select(self.answer["rows"], self.answer["columns"])
+        chosen = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"])
         return chosen.determinant() if chosen.shape[0] else Scalar.of(1)
 
     @property
@@ -231,7 +237,7 @@ class TimeVaryingObservability(Result):
         return tuple(c for c in found if c.result is None or c.result.answer["rank"] != rank or c.result.case_tree)
 
     @property
-    def kernel(self) -> Matrix:
+    def never_seen(self) -> Matrix:
         """The states that are never seen: at the start where Φ is known, else moving with t."""
         found: Matrix | None = self.answer["kernel"]
         hidden: Matrix = self.answer["hidden"]
@@ -240,9 +246,10 @@ class TimeVaryingObservability(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """Stack, rank and kernel; transition matrix, Gramian and its determinant where they have a closed form; x0."""
-        answer, basis = self.answer, self.kernel
+        answer, basis = self.answer, self.never_seen
         columns = [[basis[i, j] for i in range(basis.shape[0])] for j in range(basis.shape[1])]
-        found: dict[str, Any] = {"stack": list(answer["stack"]), "rank": answer["rank"], "kernel": columns}
+        found: dict[str, Any] = {"stack": list(answer["stack"]), "matrix": answer["matrix"]}
+        found |= {"rank": answer["rank"], "kernel": columns}
         for name in ("transition_matrix", "gramian"):
             if answer[name] is not None:
                 found[name] = answer[name]

@@ -181,7 +181,7 @@ def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
         _hidden(page, result)
         return
     conditions = [c.expression for c in result.holds_where if c.kind == "existence"]
-    determinant = result.test_matrix.determinant() if page.plant.outputs == 1 else None
+    determinant = result.answer["matrix"].determinant() if page.plant.outputs == 1 else None
     if determinant is not None:
         page.equal(relation(page["O"].apply("det"), determinant_form(page, determinant)))
     if conditions:
@@ -202,7 +202,7 @@ def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
 
 def _instant_of_drop(result: TimeVaryingObservability) -> Scalar | None:
     """Return the first instant that comes to mind at which the stack loses rank, in the interval."""
-    O, asked = result.test_matrix, result.asked_for
+    O, asked = result.answer["matrix"], result.asked_for
     for instant in (asked.start, asked.end) if asked.interval else map(Scalar.of, (0, 1, -1)):
         try:
             if rank(O.substitute({TIME: instant})) < result.answer["rank"]:
