@@ -163,8 +163,11 @@ class TimeVaryingObservability(Result):
         yield Claim(relation(Phi.derivative, letter("A", e) @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
         yield Claim(relation(_at(Phi, TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
         seen = letter("C", e) @ _at(Phi, START, asked.start)
-        if answer["kernel"] is not None and answer["kernel"].shape[1]:
-            v, hidden = letter("v", e), order - answer["rank"]
+        hidden = order - answer["rank"]
+        if answer["kernel"] is not None:
+            yield Claim(relation(answer["kernel"].shape[1], hidden), e, "there are n - rank vectors v")
+        if answer["kernel"] is not None and hidden:
+            v = letter("v", e)
             yield Claim(relation(v.derivative, Matrix.zeros(order, hidden)), e, "v does not depend on t")
             yield Claim(relation(seen @ v, Matrix.zeros(self.plant.outputs, hidden)), e, "C*Phi*v = 0")
             yield Claim(relation((v.T @ v).apply("det"), "!==", 0), e, "the vectors v are independent")
