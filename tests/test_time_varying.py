@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.derivation import Case, Define, Given
-from symobs.errors import CertificateRejected, DerivationRejected, InputError
+from symobs.errors import BudgetExceeded, CertificateRejected, DerivationRejected, InputError
 from symobs.exact import Matrix, Scalar, antiderivative, derivative, exponential_of_integral
 from symobs.expression import parse_scalar
 from symobs.formula import (
@@ -246,6 +246,12 @@ def test_every_other_task_refuses_the_time_and_names_this_one(task: str) -> None
 def test_wrong_input_is_refused(plant: Any, specification: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.time_varying_observability(symobs.StateSpace(*plant), **specification)
+
+
+def test_what_would_grow_too_long_is_refused() -> None:
+    A = [[f"{i + 1}*t + a{i}{j}" for j in range(5)] for i in range(5)]
+    with pytest.raises(BudgetExceeded, match="terms"):
+        symobs.time_varying_observability(symobs.StateSpace(A, None, [[1, 0, 0, 0, 0]]))
 
 
 def test_no_pole_where_there_is_none() -> None:

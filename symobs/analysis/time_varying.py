@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.analysis.intervals import END, instant_where_not_zero, reject_poles, reject_sizes_and_names
 from symobs.analysis.strata import strata
 from symobs.analysis.time_varying_page import write
-from symobs.analysis.transition import START, TIME, antiderivative_since, transition
+from symobs.analysis.transition import START, TERMS_UP_TO, TIME, antiderivative_since, transition
 from symobs.certificate import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
+from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, kernel
 from symobs.formula import At, Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
@@ -58,10 +59,13 @@ class Asked:
 
 
 def stack_of(A: Matrix, C: Matrix) -> tuple[Matrix, ...]:
-    """Return N₀ = C, N₁ = N₀ A + N₀', …, N_{n−1}."""
+    """Return N₀ = C, N₁ = N₀ A + N₀', …, N_{n−1}; raises `BudgetExceeded` where they grow too long."""
     rows = [C]
     for _ in range(A.shape[0] - 1):
         rows.append((rows[-1] @ A + derivative(rows[-1], TIME)).normal())
+        if rows[-1].size > TERMS_UP_TO:
+            message = f"N_{len(rows) - 1} has {rows[-1].size} terms, more than {TERMS_UP_TO}"
+            raise BudgetExceeded(message, where="plant", repair="give some of the parameters values")
     return tuple(rows)
 
 
