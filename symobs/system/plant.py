@@ -152,7 +152,7 @@ class StateSpace:
             )
         m = self.matrices
         plant = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=self.symbols)
-        plant.matrices, plant.time = m, TimeVarying()
+        plant.matrices, plant.time, plant.is_from_floats = m, TimeVarying(), self.is_from_floats
         return plant
 
     @cached_property
