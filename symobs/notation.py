@@ -89,6 +89,14 @@ LETTERS: dict[str, LetterForm] = {
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
 TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
 
+_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1"}
+
+
+def is_of_time(name: str) -> bool:
+    """Whether a letter is no signal but a value that may contain the time: its derivative is d/dt, not a dot."""
+    return name in _OF_TIME or name.startswith(("N_", "Phi_"))
+
+
 FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
     "adj": (r"\operatorname{adj}", "adj"),

@@ -30,7 +30,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import TIMED
+from symobs.notation import TIMED, is_of_time
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -175,7 +175,7 @@ class Printer(Glyphs[B]):
 
     def derivative(self, operand: Formula) -> B:
         """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
-        if isinstance(operand, Letter) and operand.name not in SIGNALS:
+        if isinstance(operand, Letter) and is_of_time(operand.name):
             return self.rate(self.letter(operand.name, ""))
         if self.discrete:
             if isinstance(operand, Letter):
