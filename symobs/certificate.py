@@ -22,18 +22,23 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
+    At,
+    Derivative,
     Environment,
     Exact,
     Formula,
+    Integral,
     Letter,
     Literal,
     Modular,
     Relation,
     agree,
     children,
+    contains,
     differ,
     evaluate,
 )
+from symobs.formula.calculus import TIME
 from symobs.formula.plain import plain_relation
 from symobs.pointwise import Pointwise, never_together_zero
 
@@ -226,15 +231,25 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
 
 
 def _verified(relation: Relation, environment: Environment) -> tuple[str, float]:
+    leaves = _distinct(relation, environment)
+    if _needs_values(relation, environment, leaves):
+        return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
     free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
-    leaves = _distinct(relation, environment)
     exactly = pointwise or environment.relations != () or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
     if exactly and (free is environment or "!==" not in relation.operators) and _holds_exactly(relation, free):
         return "exact", 0.0
     if exactly and (pointwise or environment.relations or not environment.coefficients):
         return "", 0.0
     return _holds_at_points(relation, environment, leaves)
+
+
+def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
+    """Whether a relation differentiates or integrates in time: residues, and named coefficients, cannot tell how."""
+    timed = any(TIME in value.field.position for value in (*leaves, *environment.coefficients.values()))
+    kinds = (Derivative, At, Integral) if timed else (At, Integral)
+    formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
+    return any(contains(formula, kinds) for formula in formulas)
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:

@@ -89,7 +89,7 @@ def _with_member(result: Result, name: str, entry: Any, where: str) -> Result:
 
 def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[SymobsError]:
     """Return what can be said of expected answers without results: the texts that are no mathematics at all."""
-    known = None if names is None else {**names, variable: "real"}
+    known = None if names is None else {**names, variable: "real", "t": "real", "t0": "real", "t1": "real"}
     errors: list[SymobsError] = []
     waiting: list[tuple[str, Any]] = [("expect", expect)]
     while waiting:
@@ -129,7 +129,13 @@ def _found(result: Result, name: str) -> Any:
 
 
 def _names(result: Result) -> Any:
-    return result.plant.symbols.names
+    """Return the declared names, and those that the answers use by themselves, such as t and t0."""
+    declared, plant = result.plant.symbols.names, result.plant
+    if declared is None:
+        return None
+    used = {name for value in result.answer.values() for name in getattr(value, "names", ())}
+    used = used | {plant.variable} if plant.is_time_varying else used - {plant.variable}
+    return {**dict.fromkeys(sorted(used), "real"), **declared}
 
 
 def _shown(value: Any) -> str:
@@ -145,7 +151,8 @@ def met(result: Result, name: str, expected: Any, where: str) -> bool:
         return parse_matrix(expected, names, where=where) == found
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
-        return parse_scalar(expected, names, variable=variable, where=where) == value
+        free = None if names is not None and variable in names else variable
+        return parse_scalar(expected, names, variable=free, where=where) == value
     if isinstance(found, int) and not isinstance(found, bool):
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
     if found is None or isinstance(found, (str, bool)):
@@ -167,9 +174,22 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         }
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
+    if all(isinstance(entry, Scalar) for entry in found):
+        read = [parse_scalar(entry, names, where=f"{where}[{i}]") for i, entry in enumerate(expected)]
+        return bool(found == read)
+    if all(isinstance(entry, Matrix) for entry in found):
+        alike = len(found) == len(expected)
+        return alike and all(
+            _is_matrix(entry, value, names, where) for entry, value in zip(expected, found, strict=True)
+        )
     if all(isinstance(entry, list) for entry in found):
         return _same_span(found, expected, names, where)
     return bool(found == expected)
+
+
+def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
+    """Tell whether an entry of a list is this matrix; a number alone is none."""
+    return isinstance(expected, (str, list)) and parse_matrix(expected, names, where=where) == found
 
 
 # -- relations ------------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from dataclasses import fields as parts_of
-from functools import cached_property
+from functools import cached_property, wraps
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar, get_args
 
@@ -250,11 +250,39 @@ class Document:
 
 
 _TASKS: dict[str, Task] = {}
+_IN_TIME: list[str] = []
 _METHODS: dict[str, Method] = {}
 _FORMATS: dict[str, Any] = {}
 
 
 def task(function: Callback) -> Callback:
+    """Register a task for plants with constant matrices; its keywords are its specification."""
+    return _registered(_of_constant_plants(function))
+
+
+def task_in_time(function: Callback) -> Callback:
+    """Register a task that takes time-varying plants as well."""
+    _IN_TIME.append(function.__name__)
+    return _registered(function)
+
+
+def _of_constant_plants(function: Callback) -> Callback:
+    """Refuse a plant whose matrices contain the time t, naming the tasks that take it."""
+
+    @wraps(function)
+    def refusing(plant: StateSpace, *arguments: Any, **keywords: Any) -> Result:
+        if plant.is_time_varying:
+            message = f"{function.__name__} is for plants with constant matrices, and this plant depends on the time t"
+            tasks()
+            repair = f"use {' or '.join(_IN_TIME)}, or give a constant that is called t another name"
+            raise InputError(message, where="plant", repair=repair)
+        result: Result = function(plant, *arguments, **keywords)
+        return result
+
+    return refusing  # type: ignore[return-value]
+
+
+def _registered(function: Callback) -> Callback:
     """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
     keywords = {
         name: _kind(parameter.annotation)

@@ -72,8 +72,30 @@ LETTERS: dict[str, LetterForm] = {
     "z_o": LetterForm("z", "z", "state of the reduced-order observer"),
     "w_o": LetterForm("w", "w", "state of the reduced-order observer"),
     "P": LetterForm("P({v})", "P({v})", "plant"),
+    "Phi": LetterForm(r"\Phi(t,t_0)", "Φ(t, t₀)", "transition matrix"),
+    "Phi_": LetterForm(r"\Phi", "Φ", "transition matrix"),
+    "W": LetterForm("W", "W", "observability Gramian"),
+    "x_0": LetterForm("x_0", "x₀", "initial state"),
+    "xi": LetterForm(r"\xi", "ξ", "output without the part that the input forces"),
+    "x_u": LetterForm("x_u", "x_u", "state that the input alone leads to"),
+    "u_t": LetterForm("u(t)", "u(t)", "input, given as a function of time"),
+    "x_t": LetterForm("x(t)", "x(t)", "state as a function of time"),
+    "u_t_": LetterForm("u", "u", "input"),
+    "y_t_": LetterForm("y", "y", "output"),
+    "y_t": LetterForm("y(t)", "y(t)", "output, given as a function of time"),
     "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
 }
+
+#: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
+TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
+
+_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1"}
+
+
+def is_of_time(name: str) -> bool:
+    """Whether a letter is no signal but a value that may contain the time: its derivative is d/dt, not a dot."""
+    return name in _OF_TIME or name.startswith(("N_", "Phi_"))
+
 
 FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
@@ -192,5 +214,11 @@ THEOREMS: dict[str, Theorem] = {
     "reduced_pair": Theorem("observability of the unmeasured part", "S0, Lemma 4.1"),
     "separation": Theorem("separation principle", "S0, (4.23)-(4.24)"),
     "compensator": Theorem("compensator in transfer form", "S0, (4.25)"),
+    "time_varying_rank": Theorem(
+        "rank test for time-varying plants",
+        "L. M. Silverman and H. E. Meadows, SIAM J. Control 5 (1967), 64-73",
+    ),
+    "time_varying_gramian": Theorem("initial state through the Gramian", "S4, time-varying plants"),
+    "peano_baker": Theorem("Peano-Baker series", "W. J. Rugh, Linear System Theory, 2nd ed. (1996), chapter 3"),
     "closed_loop": Theorem("closed loop in state and error", "S0, (4.26)-(4.29)"),
 }

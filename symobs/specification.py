@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, TypeAlias
 
+from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import parse_poles, parse_polynomial
@@ -21,6 +22,8 @@ Poles: TypeAlias = Annotated[Any, "Poles"]
 PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
 GainText: TypeAlias = Annotated[Any, "GainText"]
 MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
+IntervalText: TypeAlias = Annotated[Any, "IntervalText"]
+SignalText: TypeAlias = Annotated[Any, "SignalText"]
 Name: TypeAlias = Annotated[str, "Name"]
 
 KINDS: dict[str, dict[str, Any]] = {
@@ -36,6 +39,14 @@ KINDS: dict[str, dict[str, Any]] = {
     "MatrixText": {
         "description": 'a matrix, "[1 0; 0 1]"',
         "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "IntervalText": {
+        "description": 'an interval of time, "0, T"',
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["number", "string"]}}],
+    },
+    "SignalText": {
+        "description": 'a signal as a function of the time t, "t^2" or "[t; 1]"',
+        "oneOf": [{"type": "string"}, {"type": "number"}, {"type": "array"}],
     },
     "Name": {"description": "a name", "type": "string"},
 }
@@ -191,6 +202,36 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
     return gain
+
+
+def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
+    """Return the ends of an interval of time; raises `InputError` unless there are two, real and free of t, in order."""
+    where = "specification.interval"
+    ends = read_poles(value, plant.symbols, where)
+    if len(ends) != 2 or not all(end.is_real for end in ends):
+        message = f"an interval has two real ends, but {len(ends)} came"
+        raise InputError(message, where=where, repair='write for example interval = "0, T"')
+    start, end = (end.real for end in ends)
+    if plant.variable in start.names | end.names:
+        message = f"the ends of the interval contain the time {plant.variable}"
+        raise InputError(message, where=where, repair='write another name: interval = "0, T"')
+    if sign_of(end - start, plant.symbols.signs) in {"zero", "negative", "nonpositive"}:
+        message = f"the interval from {start} to {end} has no length"
+        raise InputError(message, where=where, repair="give the earlier end first")
+    return start, end
+
+
+def read_signal(value: object, plant: StateSpace, name: str, size: int) -> Matrix:
+    """Return a signal of `size` components, rational in t; raises `ShapeMismatch`."""
+    where = f"specification.{name}"
+    symbols = plant.symbols.seen(value, "t").with_time()
+    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
+    signal = read_matrix(listed, symbols, where)
+    signal = signal.T if signal.shape == (1, size) else signal
+    if signal.shape != (size, 1):
+        message = f"{name} has {signal.shape[0]}×{signal.shape[1]} entries, expected a column of {size}"
+        raise ShapeMismatch(message, where=where, repair=f"write {size} entries, set apart by semicolons")
+    return signal
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object) -> None:

@@ -193,6 +193,9 @@ cart_pole = {
     "signs": dict.fromkeys(["M", "m", "l", "g", "b", *(f"{x}{k}" for x in "pq" for k in range(1, 5))], "positive"),
 }
 
+#: Worked examples in which the time t stands in the matrices: `test_time_varying` reads their pages, with SymPy's calculus.
+IN_TIME = {"time_varying_integrator", "frozen_time_misleads"}
+
 PROBLEMS = {
     "servo_observer": Hand(**servo, observer=(s + 10) ** 2),
     "output_feedback_servo": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2),

@@ -144,6 +144,8 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
         hidden = hidden_at(transposed(A), transposed(B), s)
         return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": hidden}
+    if part.task == "time_varying_observability":
+        return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
     assert part.task == "compensator"
     if "F" not in answer:
         return {}

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 #: Rows of the catalogue of sources that the examples must cover.
-ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP"}
+ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP", "S4-LTV"}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 
@@ -146,6 +146,7 @@ def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the file's expectations, each with one change, and the place of the change."""
     assert found.plant is not None
     names, whole = found.plant.symbols.signs, dict(found.expect)
+    names = {**names, "t": "real", "t0": "real"} if found.plant.is_time_varying else names
     tasks = {task.name for task in found.tasks}
     for key, entry in whole.items():
         table = entry if key in tasks else {key: entry}

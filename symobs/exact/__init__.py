@@ -3,6 +3,7 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
+from symobs.exact.calculus import antiderivative, derivative, exponential_of_integral
 from symobs.exact.complex import Complex
 from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
@@ -24,10 +25,13 @@ __all__ = [
     "Root",
     "Scalar",
     "TooLarge",
+    "antiderivative",
     "apply_polynomial",
     "companion",
     "controller",
+    "derivative",
     "echelon",
+    "exponential_of_integral",
     "factored",
     "from_coefficients",
     "hankel_of",

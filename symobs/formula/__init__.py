@@ -1,14 +1,17 @@
 """Formulas: the tree, its evaluation, and terms (a formula with its exact value)."""
 
-from symobs.formula.evaluate import Arithmetic, Environment, Exact, Modular, Signal, agree, differ, evaluate
+from symobs.formula.comparison import agree, differ
+from symobs.formula.evaluate import Arithmetic, Environment, Exact, Modular, Signal, evaluate
 from symobs.formula.nodes import (
     Apply,
+    At,
     Block,
     Derivative,
     Exactly,
     Fact,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -23,6 +26,7 @@ from symobs.formula.nodes import (
     Together,
     Transpose,
     children,
+    contains,
     letters,
     with_children,
 )
@@ -31,6 +35,7 @@ from symobs.formula.restricted import Restricted
 __all__ = [
     "Apply",
     "Arithmetic",
+    "At",
     "Block",
     "Derivative",
     "Environment",
@@ -39,6 +44,7 @@ __all__ = [
     "Fact",
     "Formula",
     "Identity",
+    "Integral",
     "Letter",
     "Literal",
     "Modular",
@@ -57,6 +63,7 @@ __all__ = [
     "Transpose",
     "agree",
     "children",
+    "contains",
     "differ",
     "evaluate",
     "letters",

@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.modular import block, scaled
+from symobs.formula import calculus
 from symobs.formula.nodes import (
     Apply,
+    At,
     Block,
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -237,18 +240,18 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
         case Sum(terms):
             total = evaluate(terms[0], environment, arithmetic)
             for term in terms[1:]:
-                total = _add(total, evaluate(term, environment, arithmetic), arithmetic)
+                total = add(total, evaluate(term, environment, arithmetic), arithmetic)
             return total
         case Negative(operand):
-            return _times(arithmetic.leaf(_MINUS_ONE), evaluate(operand, environment, arithmetic), arithmetic)
+            return times(arithmetic.leaf(_MINUS_ONE), evaluate(operand, environment, arithmetic), arithmetic)
         case Product(factors):
             value = evaluate(factors[-1], environment, arithmetic)
             for factor in reversed(factors[:-1]):
-                value = _times(evaluate(factor, environment, arithmetic), value, arithmetic)
+                value = times(evaluate(factor, environment, arithmetic), value, arithmetic)
             return value
         case Quotient(above, below):
-            divisor = _scalar(evaluate(below, environment, arithmetic), arithmetic)
-            return _times(arithmetic.invert(divisor), evaluate(above, environment, arithmetic), arithmetic)
+            divisor = scalar(evaluate(below, environment, arithmetic), arithmetic)
+            return times(arithmetic.invert(divisor), evaluate(above, environment, arithmetic), arithmetic)
         case Power(base, exponent):
             return _power(evaluate(base, environment, arithmetic), exponent, arithmetic)
         case Transpose(operand):
@@ -261,7 +264,15 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
         case Derivative(operand):
-            return _derivative(evaluate(operand, environment, arithmetic), environment, arithmetic)
+            value = evaluate(operand, environment, arithmetic)
+            if isinstance(value, Signal):
+                return _derivative(value, environment, arithmetic)
+            return calculus.rate(value, constant=environment.variable == calculus.TIME)
+        case At(operand, name, instant):
+            return calculus.at(evaluate(operand, environment, arithmetic), name, instant, arithmetic)
+        case Integral(integrand, primitive, name, lower, upper):
+            slope, whole = evaluate(integrand, environment, arithmetic), evaluate(primitive, environment, arithmetic)
+            return calculus.integral(slope, whole, name, (lower, upper), arithmetic)
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
@@ -274,20 +285,22 @@ def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Sign
     return value
 
 
-def _add(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+def add(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+    """Return the sum of two signals or values, a 1×1 matrix read as a scalar beside one."""
     if isinstance(left, Signal) and isinstance(right, Signal):
         total = dict(left.coefficients)
         for name, coefficient in right.coefficients.items():
             total[name] = arithmetic.add(total[name], coefficient) if name in total else coefficient
         return Signal(left.size, total)
     if arithmetic.shape(left) != arithmetic.shape(right):
-        left, right = _scalar(left, arithmetic), _scalar(right, arithmetic)
+        left, right = scalar(left, arithmetic), scalar(right, arithmetic)
     return arithmetic.add(left, right)
 
 
-def _times(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+def times(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
+    """Return the product of a value with a value or a signal."""
     if isinstance(right, Signal):
-        products = {name: _times(left, value, arithmetic) for name, value in right.coefficients.items()}
+        products = {name: times(left, value, arithmetic) for name, value in right.coefficients.items()}
         shape = arithmetic.shape(left)
         return Signal(right.size if shape is None else shape[0], products)
     left_shape, right_shape = arithmetic.shape(left), arithmetic.shape(right)
@@ -299,10 +312,10 @@ def _times(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
         return arithmetic.matmul(left, right)
     if left_shape == (1, 1):
         return arithmetic.scale(right, arithmetic.entry(left))
-    return arithmetic.scale(left, _scalar(right, arithmetic))
+    return arithmetic.scale(left, scalar(right, arithmetic))
 
 
-def _scalar(value: Any, arithmetic: Arithmetic) -> Any:
+def scalar(value: Any, arithmetic: Arithmetic) -> Any:
     """Read a 1×1 matrix as its entry."""
     if arithmetic.shape(value) == (1, 1):
         return arithmetic.entry(value)
@@ -315,7 +328,7 @@ def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
     shape = arithmetic.shape(base)
     power = arithmetic.leaf(Scalar.of(1) if shape is None else Matrix.identity(shape[0]))
     for _ in range(exponent):
-        power = _times(power, base, arithmetic)
+        power = times(power, base, arithmetic)
     return power
 
 
@@ -351,36 +364,10 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
     total: Signal | None = None
     for name, coefficient in signal.coefficients.items():
         rate = evaluate(environment.dynamics[name], environment, arithmetic)
-        image = _times(coefficient, rate, arithmetic)
-        total = image if total is None else _add(total, image, arithmetic)
+        image = times(coefficient, rate, arithmetic)
+        if isinstance(arithmetic, Exact) and calculus.TIME in coefficient.names:
+            slope = Signal(signal.size, {name: calculus.rate(coefficient, constant=True)})
+            image = add(image, slope, arithmetic)
+        total = image if total is None else add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient
     return total
-
-
-def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
-    if isinstance(left, Signal) and isinstance(right, Signal):
-        difference = _add(left, _times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
-        return all(
-            arithmetic.equal(value, arithmetic.leaf(Matrix.zeros(*arithmetic.shape(value))))  # type: ignore[misc]
-            for value in difference.coefficients.values()
-        )
-    left, right = _alike(left, right, arithmetic)
-    return left is not None and arithmetic.equal(left, right)
-
-
-def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values of one kind and shape are different; values that cannot be compared do not count."""
-    left, right = _alike(left, right, arithmetic)
-    return left is not None and not arithmetic.equal(left, right)
-
-
-def _alike(left: Any, right: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
-    """Return two values as one kind and shape, a 1×1 matrix read as a scalar; (None, None) where they cannot be."""
-    if isinstance(left, Signal) or isinstance(right, Signal):
-        return None, None
-    if arithmetic.shape(left) != arithmetic.shape(right):
-        left, right = _scalar(left, arithmetic), _scalar(right, arithmetic)
-        if arithmetic.shape(left) != arithmetic.shape(right):
-            return None, None
-    return left, right

@@ -1,6 +1,6 @@
 """The formula tree: what a line of a derivation says, as its author wrote it.
 
-Twelve kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
+Fourteen kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
 environment (`evaluate`), and is printed only by a format.
 """
 
@@ -95,13 +95,46 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Derivative:
-    """d/dt of a signal; the shift x(k+1) in discrete time."""
+    """d/dt of a signal or of a value that contains t; the shift x(k+1) in discrete time."""
 
     operand: Formula
 
 
+@dataclass(frozen=True, slots=True)
+class At:
+    """The operand with the generator `name` (a time) replaced by `instant`."""
+
+    operand: Formula
+    name: str
+    instant: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Integral:
+    """∫ integrand d(name) from `lower` to `upper`; `primitive` is the witness, whose derivative is the integrand."""
+
+    integrand: Formula
+    primitive: Formula
+    name: str
+    lower: Scalar
+    upper: Scalar
+
+
 Formula: TypeAlias = (
-    Letter | Literal | Identity | Sum | Negative | Product | Power | Transpose | Quotient | Apply | Block | Derivative
+    Letter
+    | Literal
+    | Identity
+    | Sum
+    | Negative
+    | Product
+    | Power
+    | Transpose
+    | Quotient
+    | Apply
+    | Block
+    | Derivative
+    | At
+    | Integral
 )
 
 
@@ -167,8 +200,10 @@ def children(formula: Formula) -> tuple[Formula, ...]:
             return factors
         case Quotient(above, below):
             return above, below
-        case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _):
+        case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _) | At(inner):
             return (inner,)
+        case Integral(integrand, primitive):
+            return integrand, primitive
         case Block(rows):
             return tuple(entry for row in rows for entry in row)
         case _:
@@ -190,6 +225,10 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
             return Transpose(parts[0])
         case Derivative():
             return Derivative(parts[0])
+        case At(_, name, instant):
+            return At(parts[0], name, instant)
+        case Integral(_, _, name, lower, upper):
+            return Integral(parts[0], parts[1], name, lower, upper)
         case Apply(function, _):
             return Apply(function, parts[0])
         case Power(_, exponent):
@@ -199,6 +238,11 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
             return Block(tuple(tuple(next(entries) for _ in row) for row in rows))
         case _:
             return formula
+
+
+def contains(formula: Formula, kinds: tuple[type, ...]) -> bool:
+    """Tell whether a formula has a node of one of these kinds."""
+    return isinstance(formula, kinds) or any(contains(part, kinds) for part in children(formula))
 
 
 def letters(formula: Formula) -> frozenset[str]:

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 from symobs.formula.nodes import (
     Apply,
+    At,
     Block,
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -76,6 +78,10 @@ def plain(formula: Formula, variable: str) -> str:
             return "[" + "; ".join(", ".join(plain(entry, variable) for entry in row) for row in rows) + "]"
         case Derivative(operand):
             return f"d/dt {inner(operand)}"
+        case At(operand, name, instant):
+            return f"{inner(operand)}({name} = {instant})"
+        case Integral(integrand, _, name, lower, upper):
+            return f"integral({plain(integrand, variable)}, {name}, {lower}, {upper})"
 
 
 def _literal(value: Scalar | Matrix) -> str:

@@ -243,7 +243,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
             return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
         others = _Errors()
         for name in given:
-            _read_cells(table[name], symbols, f"plant.{name}", others)
+            _read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
         errors.add_elsewhere(others)
     return None
 
@@ -289,8 +289,11 @@ def _read_alone(
                     read_poles(value, symbols, where)
                 case "PolynomialText":
                     parse_polynomial(value, variable, symbols.names, where=where)
-                case "GainText" | "MatrixText":
-                    _read_cells(value, symbols, where, others)
-                    read_matrix(value, symbols, where)
+                case "IntervalText":
+                    read_poles(value, symbols, where)
+                case "GainText" | "MatrixText" | "SignalText" as kind:
+                    known = symbols.with_time() if kind == "SignalText" else symbols
+                    _read_cells(value, known, where, others)
+                    read_matrix(value, known, where)
     others.found += unreadable(expect, symbols.names, variable)
     errors.add_elsewhere(others)

@@ -102,6 +102,10 @@ class Glyphs(ABC, Generic[B]):
     def rate(self, box: B) -> B:
         """d/dt of something other than a letter."""
 
+    @abstractmethod
+    def integral(self, limits: tuple[B, B], integrand: B, name: B) -> B:
+        """The integral of what binds at least as a product, over the generator `name`."""
+
     # -- of lines -------------------------------------------------------------------------------------------------
 
     @abstractmethod

@@ -204,6 +204,13 @@ class LatexPrinter(Printer[LatexBox]):
         """d/dt before a stack."""
         return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{dt}}{box.source}", max(1, box.height))
 
+    def integral(self, limits: tuple[LatexBox, LatexBox], integrand: LatexBox, name: LatexBox) -> LatexBox:
+        r"""`\int_{a}^{b} … \,dt`."""
+        lower, upper = limits
+        source = rf"\int_{{{lower.source}}}^{{{upper.source}}} {integrand.source}\,d {name.source}"
+        width = 1.2 + widths.SCRIPT * max(lower.width, upper.width) + integrand.width + name.width + 0.7
+        return LatexBox(width, Level.PRODUCT, source, max(1, integrand.height))
+
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[LatexBox]) -> tuple[LatexBox, LatexBox]:

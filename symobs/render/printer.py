@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Apply,
+    At,
     Block,
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -28,6 +30,7 @@ from symobs.formula import (
     children,
     with_children,
 )
+from symobs.notation import TIMED, is_of_time
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -95,6 +98,11 @@ class Printer(Glyphs[B]):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
             case Derivative(operand):
                 return self.derivative(operand)
+            case At(operand, name, instant):
+                return self.at_instant(operand, {name: instant})
+            case Integral(integrand, _, name, lower, upper):
+                limits = self.scalar(lower), self.scalar(upper)
+                return self.integral(limits, self.at_least(Level.PRODUCT, self.typeset(integrand)), self.symbol(name))
         raise TypeError(formula)
 
     def scalar(self, value: Scalar) -> B:
@@ -167,6 +175,8 @@ class Printer(Glyphs[B]):
 
     def derivative(self, operand: Formula) -> B:
         """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if isinstance(operand, Letter) and is_of_time(operand.name):
+            return self.rate(self.letter(operand.name, ""))
         if self.discrete:
             if isinstance(operand, Letter):
                 return self.letter(operand.name, "k+1")
@@ -174,6 +184,33 @@ class Printer(Glyphs[B]):
         if isinstance(operand, Letter):
             return self.letter(operand.name, "dot")
         return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)))
+
+    def symbol(self, name: str) -> B:
+        """A parameter's name."""
+        return self.leaf(Scalar.symbol(name))
+
+    def at_instant(self, operand: Formula, instants: dict[str, Scalar]) -> B:
+        """B(σ), Φ(t₁, t₀); what is no letter is followed by (t = t₁)."""
+        match operand:
+            case At(inner, name, instant):
+                return self.at_instant(inner, {name: instant, **instants})
+            case Letter(name) if name in TIMED:
+                shown = [self.scalar(instants.get(time, Scalar.symbol(time))) for time in TIMED[name]]
+                return self.called(self.letter(f"{name}_", ""), shown)
+            case Letter(name):
+                return self.called(self.letter(name, ""), [self.scalar(instant) for instant in instants.values()])
+        equations = [
+            self.joined([self.symbol(name), self.comparison("="), self.scalar(instant)], Level.SUM)
+            for name, instant in instants.items()
+        ]
+        return self.called(self.at_least(Level.ATOM, self.typeset(operand)), equations)
+
+    def called(self, function: B, arguments: Sequence[B]) -> B:
+        """A function before its arguments in parentheses."""
+        inside = [arguments[0]]
+        for argument in arguments[1:]:
+            inside += [self.separators()[0], argument]
+        return self.joined([function, self.grouped(self.joined(inside, Level.SUM))], Level.ATOM)
 
     def plain_matrix(self, matrix: Matrix) -> B:
         """A matrix, entry by entry."""

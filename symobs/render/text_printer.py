@@ -183,6 +183,11 @@ class TextPrinter(Printer[TextBox]):
         """d/dt before a stack."""
         return self.joined([text_box("d/dt "), box], Level.PRODUCT)
 
+    def integral(self, limits: tuple[TextBox, TextBox], integrand: TextBox, name: TextBox) -> TextBox:
+        """∫ from a to b."""
+        parts = [text_box("∫("), limits[0], text_box(" … "), limits[1], text_box(") "), integrand, text_box(" d"), name]
+        return self.joined(parts, Level.PRODUCT)
+
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[TextBox]) -> tuple[TextBox, TextBox]:

@@ -11,19 +11,21 @@ from symobs.exact import Field, Matrix, Scalar, companion
 from symobs.expression import parse_scalar
 from symobs.system.reading import read_matrix, read_scalar
 from symobs.system.symbols import Symbols
-from symobs.system.time import Continuous, Discrete, read_time
+from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
 class StateSpace:
-    """A linear time-invariant plant: ẋ = A x + B u, y = C x + D u (x(k+1) = … in discrete time).
+    """A linear plant: ẋ = A x + B u, y = C x + D u (x(k+1) = … in discrete time).
 
     A  n×n, B  n×m, C  p×n, D  p×m; each a MATLAB-style text `"[0 1; 0 -1]"`, nested lists of integers and texts, or a
     SymPy matrix.  B, C may be left out where a task does not need them; D is zero if left out.
     dt       0 continuous time; True or a positive value: discrete time
     symbols  name → sign ("positive", …, "real"); when given, no other names exist
+
+    The name t is the time: a plant with t in a matrix is time-varying, ẋ = A(t) x + B(t) u, and need not declare it.
 
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
@@ -46,7 +48,7 @@ class StateSpace:
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = None if value is None else read_matrix(value, known, f"plant.{name}")
+                parts[name] = None if value is None else read_matrix(value, known.with_time(), f"plant.{name}")
             except SymobsError as error:
                 errors.append(error)
         if "A" in parts:
@@ -58,8 +60,11 @@ class StateSpace:
         self.time = read_time(dt, known)
         self.origin = transfer_function
         self.is_from_floats = False
+        if any("t" in part.names for part in parts.values() if part is not None):
+            self._let_vary()
         given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
-        if self.variable in known.signs or any(self.variable in part.names for part in given):
+        clash = self.variable in known.signs or any(self.variable in part.names for part in given)
+        if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
 
@@ -121,6 +126,34 @@ class StateSpace:
     def is_discrete(self) -> bool:
         """Whether time is discrete."""
         return isinstance(self.time, Discrete)
+
+    @property
+    def is_time_varying(self) -> bool:
+        """Whether the matrices may contain the time t."""
+        return isinstance(self.time, TimeVarying)
+
+    def _let_vary(self) -> None:
+        """Take t as the time; raises `InputError` where there is no such time."""
+        if self.is_discrete or self.origin is not None:
+            message = "t is the time, and " + (
+                "in discrete time no matrix may contain it" if self.is_discrete else "a transfer function has none"
+            )
+            raise InputError(message, where="plant", repair="give the parameter another name")
+        self.time = TimeVarying()
+
+    def in_time(self) -> StateSpace:
+        """Return the same plant as one whose matrices may contain t; raises `InputError` in discrete time."""
+        if self.is_time_varying:
+            return self
+        if self.is_discrete:
+            message = "the plant is given in discrete time"
+            raise InputError(
+                message, where="plant.dt", repair="leave dt out: a time-varying plant is in continuous time"
+            )
+        m = self.matrices
+        plant = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=self.symbols)
+        plant.matrices, plant.time, plant.is_from_floats = m, TimeVarying(), self.is_from_floats
+        return plant
 
     @cached_property
     def field(self) -> Field:

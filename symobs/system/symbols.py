@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from symobs.conditions import SIGNS
@@ -58,6 +58,10 @@ class Symbols:
             if "latex" in details:
                 latex[name] = _latex(details["latex"], f"{place}.latex")
         return Symbols(signs, latex, objects, closed=True)
+
+    def with_time(self) -> Symbols:
+        """Return these symbols with the time t among them, which a plant need not declare."""
+        return replace(self, signs={**self.signs, "t": self.sign("t")}) if self.closed else self
 
     def seen(self, values: object, variable: str = "") -> Symbols:
         """Return these symbols with those of SymPy objects in `values` added, the variable of polynomials left out.

@@ -1,4 +1,4 @@
-"""The time domain as a type: `Continuous` or `Discrete`."""
+"""The time domain as a type: `Continuous`, `TimeVarying` or `Discrete`."""
 
 from __future__ import annotations
 
@@ -18,6 +18,13 @@ class Continuous:
     """Continuous time: ẋ, the variable s, stability in the open left half plane."""
 
     variable = "s"
+
+
+@dataclass(frozen=True, slots=True)
+class TimeVarying(Continuous):
+    """Continuous time t, which the matrices themselves may contain: ẋ = A(t) x + B(t) u."""
+
+    variable = "t"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,45 @@
+"""Derivatives, values at an instant, and integrals of exact values that contain the time (trusted).
+
+They need the values themselves, not residues: a claim with one of them is checked in the exact kernel.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Matrix, Scalar, derivative
+
+if TYPE_CHECKING:
+    from symobs.formula.evaluate import Arithmetic
+
+TIME = "t"
+
+
+def rate(value: Any, *, constant: bool) -> Any:
+    """Return d/dt of a value, entry by entry; only where time is the variable may it be a constant's."""
+    if not constant and TIME not in exact(value).names:
+        message = "a constant of a plant that does not vary has no derivative"
+        raise TypeError(message)
+    return derivative(exact(value), TIME)
+
+
+def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
+    """Return the value with the generator `name` replaced."""
+    return exact(value).substitute({name: exact(arithmetic.leaf(instant))})
+
+
+def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:
+    """Return primitive(upper) − primitive(lower), after holding the primitive's derivative to the integrand."""
+    if not arithmetic.equal(derivative(exact(primitive), name), integrand):
+        message = "the primitive is another function's"
+        raise ArithmeticError(message)
+    lower, upper = (at(primitive, name, limit, arithmetic) for limit in limits)
+    return upper - lower
+
+
+def exact(value: Any) -> Any:
+    """Return an exact value; anything else, such as a residue, has no derivative."""
+    if not isinstance(value, (Scalar, Matrix)):
+        message = f"{type(value).__name__} is not an exact value"
+        raise TypeError(message)
+    return value

@@ -1,0 +1,40 @@
+"""Whether two values agree or differ, in any arithmetic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Matrix, Scalar
+from symobs.formula.evaluate import Signal, add, scalar, times
+
+if TYPE_CHECKING:
+    from symobs.formula.evaluate import Arithmetic
+
+
+def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Tell whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
+    if isinstance(left, Signal) and isinstance(right, Signal):
+        difference = add(left, times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
+        return all(
+            arithmetic.equal(value, arithmetic.leaf(Matrix.zeros(*arithmetic.shape(value))))  # type: ignore[misc]
+            for value in difference.coefficients.values()
+        )
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and arithmetic.equal(left, right)
+
+
+def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Tell whether two values of one kind and shape are different; values that cannot be compared do not count."""
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and not arithmetic.equal(left, right)
+
+
+def _alike(left: Any, right: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
+    """Return two values as one kind and shape, a 1×1 matrix read as a scalar; (None, None) where they cannot be."""
+    if isinstance(left, Signal) or isinstance(right, Signal):
+        return None, None
+    if arithmetic.shape(left) != arithmetic.shape(right):
+        left, right = scalar(left, arithmetic), scalar(right, arithmetic)
+        if arithmetic.shape(left) != arithmetic.shape(right):
+            return None, None
+    return left, right
