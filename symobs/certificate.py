@@ -22,9 +22,11 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
+    Derivative,
     Environment,
     Exact,
     Formula,
+    Integral,
     Letter,
     Literal,
     Modular,
@@ -34,6 +36,7 @@ from symobs.formula import (
     children,
     differ,
     evaluate,
+    letters,
 )
 from symobs.formula.plain import plain_relation
 
@@ -226,6 +229,10 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
 
 
 def _verified(relation: Relation, environment: Environment) -> tuple[str, float]:
+    if any(_in_time(member, environment) for member in relation.members) or (
+        environment.relations and environment.coefficients
+    ):
+        return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
     free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
     leaves = _distinct(relation, environment)
@@ -235,6 +242,15 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
     if exactly and (pointwise or environment.relations or not environment.coefficients):
         return "", 0.0
     return _holds_at_points(relation, environment, leaves)
+
+
+def _in_time(formula: Formula, environment: Environment) -> bool:
+    """Whether derivatives or integrals of functions of time are asked for, which exist exactly only."""
+    if isinstance(formula, Integral) or (isinstance(formula, Apply) and formula.function == "at_0"):
+        return True
+    if isinstance(formula, Derivative) and not letters(formula) & environment.signals.keys():
+        return True
+    return any(_in_time(part, environment) for part in children(formula))
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:

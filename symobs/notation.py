@@ -37,6 +37,7 @@ LETTERS: dict[str, LetterForm] = {
     "v": LetterForm("v", "v", "vector"),
     "N": LetterForm("N", "N", "basis of the hidden subspace"),
     "X": LetterForm("X", "X", "plant on the hidden subspace"),
+    "Phi": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),
     "x": LetterForm("x", "x", "state"),
     "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
     "e": LetterForm("e", "e", "estimation error"),
@@ -59,6 +60,7 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
+    **{name: (rf"\{name}", name) for name in ("sin", "cos", "sinh", "cosh")},
     "phi_at": (r"\varphi", "φ"),
     "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
     "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
@@ -161,6 +163,7 @@ class Theorem:
 
 
 THEOREMS: dict[str, Theorem] = {
+    "exponential": Theorem("matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"),
     "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
     "duality": Theorem("duality", "S0, Theorem 4.1"),
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),

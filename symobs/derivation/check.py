@@ -27,6 +27,7 @@ from symobs.derivation.steps import (
 )
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, roots_are
+from symobs.exact.functions import substitute
 from symobs.formula import (
     Derivative,
     Environment,
@@ -280,10 +281,14 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
 
     `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere too.
     """
+    if not substitution and when.operators in {("<",), (">",)}:  # it narrows, and nothing is put in: all stays true
+        for member in when.members:
+            _established(member, environment)
+        return environment
     replaced = {}
     for name, value in environment.values.items():
         try:
-            replaced[name] = value.substitute(substitution)
+            replaced[name] = substitute(value, substitution)
         except ZeroDivisionError:  # the letter means nothing on this stratum
             continue
     named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
+from symobs.exact.functions import derivative, substitute
 from symobs.exact.modular import block, scaled
 from symobs.formula.nodes import (
     Apply,
@@ -18,6 +19,7 @@ from symobs.formula.nodes import (
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -156,6 +158,8 @@ class Exact:
             return value.determinant()
         if function == "adj":
             return value.adjugate()
+        if function == "at_0":
+            return substitute(value, {"t": Scalar.of(0)})
         return Scalar.of(rank(value))
 
     def block(self, rows: list[list[Any]]) -> Matrix:
@@ -261,7 +265,10 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
         case Derivative(operand):
-            return _derivative(evaluate(operand, environment, arithmetic), environment, arithmetic)
+            value = evaluate(operand, environment, arithmetic)
+            return _derivative(value, environment, arithmetic) if isinstance(value, Signal) else derivative(value)
+        case Integral(integrand, primitive, upper):
+            return _integral(*(evaluate(f, environment, arithmetic) for f in (primitive, integrand, upper)), arithmetic)
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
@@ -355,6 +362,14 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
         total = image if total is None else _add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient
     return total
+
+
+def _integral(primitive: Any, integrand: Any, upper: Scalar, arithmetic: Arithmetic) -> Any:
+    """Return a primitive at the upper limit; it must be 0 at t = 0 and have the integrand for its derivative."""
+    start = substitute(primitive, {"t": Scalar.of(0)})
+    if not (agree(derivative(primitive), integrand, arithmetic) and agree(start, start - start, arithmetic)):
+        raise ValueError(primitive)
+    return substitute(primitive, {"t": upper})
 
 
 def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:

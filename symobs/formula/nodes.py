@@ -1,6 +1,6 @@
 """The formula tree: what a line of a derivation says, as its author wrote it.
 
-Twelve kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
+Thirteen kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
 environment (`evaluate`), and is printed only by a format.
 """
 
@@ -95,13 +95,34 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Derivative:
-    """d/dt of a signal; the shift x(k+1) in discrete time."""
+    """d/dt of a signal or of a function of time; the shift x(k+1) of a signal in discrete time."""
 
     operand: Formula
 
 
+@dataclass(frozen=True, slots=True)
+class Integral:
+    """The integral over t from 0 to `upper`; `primitive`, not shown, is a witness that differentiation checks."""
+
+    integrand: Formula
+    primitive: Formula
+    upper: Formula
+
+
 Formula: TypeAlias = (
-    Letter | Literal | Identity | Sum | Negative | Product | Power | Transpose | Quotient | Apply | Block | Derivative
+    Letter
+    | Literal
+    | Identity
+    | Sum
+    | Negative
+    | Product
+    | Power
+    | Transpose
+    | Quotient
+    | Apply
+    | Block
+    | Derivative
+    | Integral
 )
 
 
@@ -167,6 +188,8 @@ def children(formula: Formula) -> tuple[Formula, ...]:
             return factors
         case Quotient(above, below):
             return above, below
+        case Integral(integrand, primitive, upper):
+            return integrand, primitive, upper
         case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _):
             return (inner,)
         case Block(rows):
@@ -194,6 +217,8 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
             return Apply(function, parts[0])
         case Power(_, exponent):
             return Power(parts[0], exponent)
+        case Integral():
+            return Integral(parts[0], parts[1], parts[2])
         case Block(rows):
             entries = iter(parts)
             return Block(tuple(tuple(next(entries) for _ in row) for row in rows))

@@ -10,6 +10,7 @@ from symobs.formula.nodes import (
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -76,6 +77,8 @@ def plain(formula: Formula, variable: str) -> str:
             return "[" + "; ".join(", ".join(plain(entry, variable) for entry in row) for row in rows) + "]"
         case Derivative(operand):
             return f"d/dt {inner(operand)}"
+        case Integral(integrand, _, upper):
+            return f"integral({plain(integrand, variable)}, t, 0, {plain(upper, variable)})"
 
 
 def _literal(value: Scalar | Matrix) -> str:

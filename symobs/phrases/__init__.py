@@ -11,9 +11,9 @@ from __future__ import annotations
 import string
 from typing import Any
 
-from symobs.phrases import compensation, gains, polynomials, rank, titles
+from symobs.phrases import compensation, gains, polynomials, rank, time, titles
 
-_MODULES = (titles, polynomials, rank, gains, compensation)
+_MODULES = (titles, polynomials, rank, gains, compensation, time)
 
 
 def _collected(name: str) -> dict[str, Any]:

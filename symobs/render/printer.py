@@ -7,6 +7,7 @@ A printed part is a `Box`: what is written, how wide it is, and how tightly it b
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
@@ -16,6 +17,7 @@ from symobs.formula import (
     Derivative,
     Formula,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -29,10 +31,13 @@ from symobs.formula import (
     with_children,
 )
 from symobs.render.glyphs import B, Glyphs, Level
+from symobs.exact.functions import known
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from symobs.exact.functions import Function
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat"})
@@ -95,15 +100,35 @@ class Printer(Glyphs[B]):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
             case Derivative(operand):
                 return self.derivative(operand)
+            case Integral(integrand, _, upper):
+                inside = self.at_least(Level.PRODUCT, self.typeset(integrand))
+                return self.integral(inside, self.typeset(upper))
         raise TypeError(formula)
 
     def scalar(self, value: Scalar) -> B:
         """An exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+            function = known(next(iter(value.names))) if is_leaf(value) and value.names else None
+            if function is not None:
+                box = self.function_of_time(function)
+            else:
+                box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
             self.known[value] = box
         return box
+
+    def function_of_time(self, function: Function) -> B:
+        """e^{−t}, sin ωt, √3; a root that has a letter of its own is written by it."""
+        if function.name in self.symbols:
+            return self.named(self.symbols[function.name])
+        if function.kind == "exp":
+            return self.exponential(function.argument)
+        argument = self.scalar(function.argument)
+        if function.kind == "sqrt":
+            return self.root(argument)
+        is_plain = argument.level >= Level.PRODUCT and not isinstance(spelled(function.argument, ""), Quotient)
+        box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
+        return replace(box, level=Level.POWER)
 
     def sum_parts(self, formula: Formula) -> list[B]:
         """The terms of a sum with their signs between them."""
@@ -159,6 +184,8 @@ class Printer(Glyphs[B]):
 
     def application(self, function: str, argument: Formula) -> B:
         """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        if function == "at_0":
+            return self.at_start(self.at_least(Level.POWER, self.typeset(argument)))
         is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
@@ -167,6 +194,8 @@ class Printer(Glyphs[B]):
 
     def derivative(self, operand: Formula) -> B:
         """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if isinstance(operand, Letter) and operand.name not in SIGNALS:
+            return self.rate(self.letter(operand.name, ""))
         if self.discrete:
             if isinstance(operand, Letter):
                 return self.letter(operand.name, "k+1")

@@ -183,6 +183,29 @@ class TextPrinter(Printer[TextBox]):
         """d/dt before a stack."""
         return self.joined([text_box("d/dt "), box], Level.PRODUCT)
 
+    # -- functions of time ----------------------------------------------------------------------------------------
+
+    def exponential(self, argument: Scalar) -> TextBox:
+        """exp(-t)."""
+        return self.joined([text_box("exp"), self.grouped(self.scalar(argument))], Level.POWER)
+
+    def root(self, argument: TextBox) -> TextBox:
+        """√3, √(ω² - b²)."""
+        return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
+
+    def named(self, form: str) -> TextBox:
+        """The letter: a Greek one by its glyph."""
+        return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
+
+    def at_start(self, box: TextBox) -> TextBox:
+        """X|t=0."""
+        return self.joined([box, text_box("|t=0")], Level.POWER)
+
+    def integral(self, integrand: TextBox, upper: TextBox) -> TextBox:
+        """∫(0..T) … dt."""
+        parts = [text_box("∫(0.."), upper, text_box(") "), integrand, text_box(" dt")]
+        return self.joined(parts, Level.PRODUCT)
+
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[TextBox]) -> tuple[TextBox, TextBox]:
