@@ -38,6 +38,11 @@ LETTERS: dict[str, LetterForm] = {
     "N": LetterForm("N", "N", "basis of the hidden subspace"),
     "X": LetterForm("X", "X", "plant on the hidden subspace"),
     "Phi": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),
+    "Phi_T": LetterForm("e^{AT}", "exp(A T)", "matrix exponential over the horizon"),
+    "Y": LetterForm("Ce^{At}", "C exp(A t)", "output of the matrix exponential"),
+    "W": LetterForm("W", "W", "Gramian"),
+    "M": LetterForm("M", "M", "finite sum"),
+    "P_l": LetterForm("P", "P", "solution of Lyapunov's equation"),
     "x": LetterForm("x", "x", "state"),
     "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
     "e": LetterForm("e", "e", "estimation error"),
@@ -163,6 +168,8 @@ class Theorem:
 
 
 THEOREMS: dict[str, Theorem] = {
+    "gramian": Theorem("Gramian criterion", "S0, Proposition 4.1 and (4.8)"),
+    "finite_sum": Theorem("equality of the kernels", "S0, Theorem 4.3"),
     "exponential": Theorem("matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"),
     "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
     "duality": Theorem("duality", "S0, Theorem 4.1"),

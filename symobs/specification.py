@@ -21,6 +21,9 @@ Poles: TypeAlias = Any
 PolynomialText: TypeAlias = Any
 GainText: TypeAlias = Any
 Name: TypeAlias = str
+Horizon: TypeAlias = Any
+TimeFunctions: TypeAlias = Any
+Intensity: TypeAlias = Any
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -33,6 +36,15 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "array"}],
     },
     "Name": {"description": "a name", "type": "string"},
+    "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
+    "TimeFunctions": {
+        "description": 'functions of t, one for each component: "exp(-t) + 2 t sin(3 t)"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
+    "Intensity": {
+        "description": 'the intensity of white noise, symmetric: "q" or "[q1 0; 0 q2]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
 }
 
 

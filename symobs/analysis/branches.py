@@ -6,6 +6,7 @@ for δ < 0, and every other sign is a case.  What a denominator of the answer ex
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -14,7 +15,7 @@ from symobs.conditions import Condition, sign_of, vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.exact import Matrix, Scalar
 from symobs.exact.exponential import OpenBranch
-from symobs.exact.functions import identities, known
+from symobs.exact.functions import identities, known, substitute
 from symobs.formula import Environment
 from symobs.method import Case, Result
 from symobs.page import Page, relation, sentence
@@ -49,6 +50,11 @@ class Branched(Result):
         raise NotImplementedError
 
     @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Polynomials in the parameters beyond the denominators whose zeros are cases."""
+        return ()
+
+    @property
     def verdict(self) -> str:
         """`undecided` where there is no closed form."""
         if self.answer.get("question") is not None:
@@ -76,7 +82,8 @@ class Branched(Result):
         taken: Signs = dict(self.answer["taken"])
         found: list[Case] = []
         signs = self.plant.symbols.signs
-        zeros: list[Scalar] = [c.expression for c in self.holds_where if c.kind == "claim" and c.operator == "!="]
+        zeros: list[Scalar] = [*self.further_zeros]
+        zeros += [c.expression for c in self.holds_where if c.kind == "claim" and c.operator == "!="]
         for delta in self.answer["chosen"]:
             if sign_of(delta, signs) not in {"nonpositive", "negative"}:
                 above = {**taken, delta: "positive"}
@@ -84,7 +91,20 @@ class Branched(Result):
                 found.append(Case(when, {}, self.again(self.plant, above)))
             zeros.append(delta)
             taken[delta] = "negative"
-        return (*found, *strata(self.plant, zeros, lambda plant, _: self.again(plant, {})))
+        zeros = list(dict.fromkeys(zeros))
+        return (*found, *strata(self.plant, zeros, self._on_stratum))
+
+    def _on_stratum(self, plant: StateSpace, substitution: dict[str, Scalar]) -> Result:
+        """Return the result on a stratum; ZeroDivisionError where the signs this one stands on exclude it."""
+        taken: Signs = {}
+        for delta, sign in self.answer["taken"].items():
+            moved = delta.substitute(substitution)
+            found = sign_of(moved, plant.symbols.signs)
+            if found not in {sign, "real"}:
+                message = f"{moved} is not {sign}"
+                raise ZeroDivisionError(message)
+            taken[moved] = sign
+        return self.again(plant, taken)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""
@@ -102,18 +122,18 @@ class Branched(Result):
             self.tell(page)
         else:
             page.steps.append(_branch(page, relation(_plain(next(iter(self.answer["chosen"]))), "<", 0), {}, self, "branch_under"))
-        for case in self.case_tree:
-            page.steps.append(_case(page, case))
+        page.steps += [_case(page, case, doubled=self.answer["chosen"]) for case in self.case_tree]
 
 
-def _case(page: Page, case: Case) -> Step:
+def _case(page: Page, case: Case, doubled: Signs) -> Step:
     from symobs.analysis.pages import undecided  # noqa: PLC0415
 
     if not isinstance(case.result, Branched):
         return undecided(page, case)
     condition = case.when[0]
     operator = "=" if condition.operator == "==" else condition.operator
-    say = {"=": "", ">": "branch_over", "<": "branch_under"}[operator]
+    is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
+    say = {"=": "branch_equal" if is_double else "", ">": "branch_over", "<": "branch_under"}[operator]
     return _branch(page, relation(condition.expression, operator, 0), dict(case.substitution), case.result, say)
 
 
@@ -121,13 +141,23 @@ def _branch(page: Page, when: Any, substitution: Mapping[str, Scalar], result: B
     """Write a result's steps inside a case, on a page that knows what this one knows."""
     inner = Page(result.plant)
     inner.start, inner.forms = page.start, page.forms
-    values = {name: value.substitute(substitution) for name, value in page.environment.values.items()}
-    inner.environment = page.environment.having(values=values)
+    inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
     result.tell(inner)
     for case in result.case_tree if substitution or say != "branch_under" else ():
-        inner.steps.append(_case(inner, case))
+        inner.steps.append(_case(inner, case, result.answer["chosen"]))
     because = sentence(say, {}) if say else None
     return CaseStep(when, tuple(substitution.items()), tuple(inner.steps), because)
+
+
+def _moved(values: Mapping[str, Any], substitution: Mapping[str, Scalar]) -> dict[str, Any]:
+    """Return what letters mean on a stratum; those that mean nothing there are left out."""
+    found = {}
+    for name, value in values.items():
+        try:
+            found[name] = substitute(value, substitution)
+        except ZeroDivisionError:
+            continue
+    return found
 
 
 def _plain(delta: Scalar) -> Scalar:

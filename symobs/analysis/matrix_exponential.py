@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 TIME = Scalar.symbol("t")
 #: Sums of up to this many matrices are shown before the entries.
 _SHOWN_SUM = 4
+#: Derivatives of matrices of up to this order are shown.
+_SHOWN_RATE = 3
 
 
 def closed_form(plant: StateSpace, taken: Signs) -> tuple[Exponential, Signs]:
@@ -105,7 +107,8 @@ class MatrixExponential(Branched):
         found, _ = closed_form(self.plant, {**self.answer["taken"], **self.answer["chosen"]})
         tell_exponential(page, found, self.answer["matrix"], answer=True)
         Phi = page["Phi"]
-        page.equal(relation(Phi.derivative, page["A"] @ Phi, (page["A"] @ Phi).shown), say="exponential_rate")
+        if not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
+            page.equal(relation(Phi.derivative, (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
         start = relation(Phi.apply("at_0"), page.identity(self.plant.order))
         page.verified("exponential_start", relation(Phi.derivative, page["A"] @ Phi), start=start)
 
@@ -145,7 +148,18 @@ def tell_roots(page: Page, *values: Matrix) -> None:
         root = known(name)
         if used and root is not None:
             square = page.term(Power(Literal(Scalar.symbol(name)), 2))
-            page.conclude("root_named", root=relation(square, root.argument))
+            page.conclude("root_named", root=relation(square, page.term(_term_by_term(root.argument))))
+
+
+def _term_by_term(value: Scalar) -> Formula:
+    """Return ω² − b²/4, a sum of its terms."""
+    terms: list[Formula] = []
+    for coefficient, powers in sorted(value.terms(), key=lambda term: term[0] < 0):
+        monomial = Scalar.of(abs(coefficient)) / value.denominator
+        for name, power in powers:
+            monomial = monomial * Scalar.symbol(name) ** power
+        terms.append(Negative(Literal(monomial)) if coefficient < 0 else Literal(monomial))
+    return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
 
 
 def _functions(value: Matrix) -> list[Any]:

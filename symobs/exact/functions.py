@@ -72,9 +72,15 @@ def leads_with_minus(value: Scalar) -> bool:
 
 
 def square_root(radicand: Scalar) -> Scalar:
-    """Return √radicand: square factors in front, numbers as products of roots of primes, the rest one generator."""
+    """Return √radicand: square factors in front, numbers as products of roots of primes, the rest one generator.
+
+    Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
+    """
     unit, factors = radicand.factors()
     number = unit.fraction()
+    if number < 0 and all(power % 2 == 0 for _, power in factors):
+        message = f"{radicand} has no real root"
+        raise ZeroDivisionError(message)
     front, odd = ONE, ONE
     for factor, power in factors:
         half, rest = divmod(power, 2)

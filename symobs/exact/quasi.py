@@ -295,6 +295,19 @@ def integral(table: Table) -> Table:
     return tuple(tuple(entry.integral() for entry in row) for row in table)
 
 
+def determinant(table: Table) -> Quasi:
+    """Return the determinant, by the first row."""
+    if len(table) == 1:
+        return table[0][0]
+    total = Quasi({})
+    for j, entry in enumerate(table[0]):
+        if not entry.is_zero:
+            rest = tuple(row[:j] + row[j + 1 :] for row in table[1:])
+            term = entry * determinant(rest)
+            total = total - term if j % 2 else total + term
+    return total
+
+
 def matrix_at(table: Table, time: Scalar) -> Matrix:
     """Return the matrix of values in functions of `time`."""
     return Matrix.of([[entry.value_at(time) for entry in row] for row in table], len(table[0]))
