@@ -246,7 +246,7 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 def _in_time(formula: Formula, environment: Environment) -> bool:
     """Whether derivatives or integrals of functions of time are asked for, which exist exactly only."""
-    if isinstance(formula, Integral) or (isinstance(formula, Apply) and formula.function == "at_0"):
+    if isinstance(formula, Integral) or (isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}):
         return True
     if isinstance(formula, Derivative) and not letters(formula) & environment.signals.keys():
         return True

@@ -121,7 +121,9 @@ class Branched(Result):
         if not self.answer["chosen"]:
             self.tell(page)
         else:
-            page.steps.append(_branch(page, relation(_plain(next(iter(self.answer["chosen"]))), "<", 0), {}, self, "branch_under"))
+            page.steps.append(
+                _branch(page, relation(_plain(next(iter(self.answer["chosen"]))), "<", 0), {}, self, "branch_under")
+            )
         page.steps += [_case(page, case, doubled=self.answer["chosen"]) for case in self.case_tree]
 
 

@@ -128,7 +128,9 @@ class Gramian(Branched):
         yield Claim(relation(count + found["rank"], self.plant.order), plain, "the kernel has the dimension n - rank")
         if found["rank"]:
             minor = Term(Literal(found["matrix"].select(found["rows"], found["columns"])), plain)
-            yield Claim(relation(minor.apply("det"), "!==", 0), plain, "a minor of O of the order of the rank is not zero")
+            yield Claim(
+                relation(minor.apply("det"), "!==", 0), plain, "a minor of O of the order of the rank is not zero"
+            )
         if count:
             zero = Matrix.zeros(self.plant.order, count)
             yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain, "finite_sum*N = 0")
@@ -215,9 +217,7 @@ def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
 
 
 @task
-def gramian(
-    plant: StateSpace, *, horizon: Horizon = None, of: Name = "observability", method: Name = "auto"
-) -> Result:
+def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observability", method: Name = "auto") -> Result:
     """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt).
 
     plant    n states; C (or B) must be given

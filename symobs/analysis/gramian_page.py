@@ -12,11 +12,11 @@ from symobs.analysis.matrix_exponential import (
     tell_question,
     tell_roots,
 )
-from symobs.analysis.pages import given
+from symobs.analysis.pages import given, hidden, hidden_polynomial
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
-from symobs.formula import Integral, Literal, Together
-from symobs.page import relation
+from symobs.formula import Exactly, Integral, Literal, Quotient
+from symobs.page import predicate, relation
 from symobs.stability import as_inequality
 from symobs.system import StateSpace
 
@@ -110,7 +110,7 @@ def tell_gramian(result: Gramian, page: Page) -> None:
     tell_exponential(page, found, shown)
     Phi = page["Phi"]
     seen = Phi @ page["B"] if is_dual else page["C"] @ Phi
-    page.equal(relation(seen, seen.shown), say="output_of_exponential")
+    page.equal(relation(seen, seen.shown), say="input_through_exponential" if is_dual else "output_of_exponential")
     integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
     whole = page.term(Integral(integrand.formula, Literal(answer["function"]), Literal(answer["horizon"])))
     W: Matrix = answer["matrix"]
@@ -127,25 +127,38 @@ def tell_gramian(result: Gramian, page: Page) -> None:
 
 
 def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
+    """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
     answer = result.answer
+    define_seen(result, page)
     if answer.get("verdict") == "no":
-        page.conclude("gramian_diverges")
+        page.conclude("gramian_diverges", predicate("unstable", page["chi"]))
         return
     page.set("W", answer["matrix"])
     W = page["W"]
-    if result.plant.is_discrete:
-        equation = relation(_transposed(A) @ W @ A - W, -_square(C))
-    else:
-        equation = relation(_transposed(A) @ W + W @ A, -_square(C))
+    moved = _transposed(A) @ W @ A - W if result.plant.is_discrete else _transposed(A) @ W + W @ A
+    equation = relation(moved, -_square(C))
     where = answer.get("exists_where", ())
     if where:
         found = [as_inequality(value, result.plant.symbols.signs) for value in where]
-        listed = Together(tuple(relation(left, operator, right) for left, operator, right in found))
-        page.assume_positive(listed)
-        page.equal(relation(W, answer["matrix"]), say="gramian_exists_if", answer=True, where=listed, equation=equation)
+        listed = tuple(relation(left, operator, right) for left, operator, right in found)
+        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", page["chi"]), listed), equation=equation)
     else:
-        page.equal(relation(W, answer["matrix"]), say="gramian_infinite", answer=True, equation=equation)
+        page.conclude("gramian_infinite", predicate("stable", page["chi"]), equation=equation)
+    page.equal(relation(W, answer["matrix"]), answer=True)
     page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
+
+
+def define_seen(result: Gramian, page: Page) -> None:
+    """Define χ, or its part that the output sees: the quotient by the polynomial of the hidden modes."""
+    kernel: Matrix = result.answer["kernel"]
+    tell_polynomial(page)
+    if not kernel.shape[1] or result.answer["of"] == "controllability":
+        return
+    page.set("N", kernel)
+    X = page.set("X", result.answer["rank"]["restricted"])
+    page.conclude_silently(*hidden(page, is_observer=True))
+    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0]).formula))
+    page.equal(relation(seen, result.answer["seen"]), say="seen_part")
 
 
 def _tell_finite_sum(result: Gramian, page: Page) -> None:
@@ -169,6 +182,6 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
         nothing = Matrix.zeros(result.plant.order, 1)
         page.equal(relation(v, v.value), say="kernel_shared")
         if page.knows("Phi"):
-            page.equal(relation(page["C"] @ page["Phi"] @ v, zero), say="kernel_unseen")
+            page.equal(relation(page["C"] @ page["Phi"] @ v, zero), say="kernel_unseen")  # what it says is shown
         shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
         page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")

@@ -49,7 +49,9 @@ def require_continuous(plant: StateSpace, task_name: str) -> None:
     """Raise `InputError` in discrete time, and where t is a parameter."""
     if plant.is_discrete:
         message = f"{task_name} belongs to continuous time"
-        raise InputError(message, where="plant.dt", repair="leave dt out; in discrete time the powers of A take its place")
+        raise InputError(
+            message, where="plant.dt", repair="leave dt out; in discrete time the powers of A take its place"
+        )
     if "t" in plant.field.names and "t" in plant.matrices.A.names:
         message = "t is the time and cannot be a parameter of the plant"
         raise InputError(message, where="plant.A", repair="give the parameter another name")
@@ -119,7 +121,7 @@ def tell_polynomial(page: Page) -> None:
     form = factored(polynomial, page.plant.variable)
     pencil = page.s @ page.identity(page.plant.order) - page["A"]
     members = [pencil.apply("det"), page.value(polynomial)]
-    if len(form.factors) > 1 or form.factors[0][1] > 1:
+    if len(polynomial.terms()) > 1 and (len(form.factors) > 1 or form.factors[0][1] > 1):
         members.append(page.term(formula_of_factored(form)))
     page.define("chi", *members, say="exponential_modes", closing=False)
 

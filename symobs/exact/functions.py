@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, isqrt, lcm
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, overload
 
 from flint import fmpz
 
@@ -19,8 +19,6 @@ from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-V = TypeVar("V", Scalar, Matrix)
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
@@ -174,7 +172,13 @@ def with_roots(value: Scalar, roots: Iterable[Function]) -> Scalar:
 # -- calculus ------------------------------------------------------------------------------------------------------
 
 
-def derivative(value: V, time: str = "t") -> V:
+@overload
+def derivative(value: Scalar, time: str = "t") -> Scalar: ...
+@overload
+def derivative(value: Matrix, time: str = "t") -> Matrix: ...
+@overload
+def derivative(value: Scalar | Matrix, time: str = "t") -> Scalar | Matrix: ...
+def derivative(value: Scalar | Matrix, time: str = "t") -> Scalar | Matrix:
     """Return d/dt, by the chain rule on each generator that contains the time."""
     if isinstance(value, Matrix):
         return Matrix.of([[derivative(entry, time) for entry in row] for row in value.rows], value.shape[1])
@@ -206,7 +210,13 @@ def _rate(name: str, time: str) -> Scalar:
     return derivative(found.argument, time) * generator(kind, found.argument) * sign
 
 
-def substitute(value: V, values: Mapping[str, Scalar]) -> V:
+@overload
+def substitute(value: Scalar, values: Mapping[str, Scalar]) -> Scalar: ...
+@overload
+def substitute(value: Matrix, values: Mapping[str, Scalar]) -> Matrix: ...
+@overload
+def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix: ...
+def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix:
     """Return the value with symbols replaced, in the arguments of functions too; raises ZeroDivisionError."""
     if isinstance(value, Matrix):
         return Matrix.of([[substitute(entry, values) for entry in row] for row in value.rows], value.shape[1])
@@ -264,10 +274,13 @@ def identities(values: Iterable[Scalar | Matrix]) -> tuple[dict[str, Scalar], tu
     roots |= {inner for f in found for name in f.argument.names if (inner := known(name)) is not None}
     moving = sorted((f for f in found if f.kind != "sqrt"), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
+    lean: dict[tuple[bool, Scalar], Fraction] = {}
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument).items():
             key = (f.kind in {"cos", "sin"}, monomial)
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
+            lean[key] = lean.get(key, Fraction(0)) + (coefficient if f.kind == "exp" else 0)
+    steps = {key: -step if lean[key] < 0 else step for key, step in steps.items()}  # what decays is its own base
     relations = [Scalar.symbol(root.name) ** 2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
     for (turns, monomial), step in steps.items():
         if turns:
@@ -304,4 +317,3 @@ def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction]) -> Scal
     if f.kind == "exp":
         return real
     return (real + 1 / real if f.kind == "cosh" else real - 1 / real) / 2
-

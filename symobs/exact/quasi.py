@@ -103,6 +103,14 @@ class Quasi:
         whole = Quasi.of(found)
         return whole - Quasi.constant(whole.at_zero)
 
+    def reversed(self) -> Quasi:
+        """Return the function of −t."""
+        found = []
+        for key, c in self.terms.items():
+            sign = (-1) ** key.power * (-1 if key.wave == "sin" else 1)
+            found.append((key._replace(rate=-key.rate), c * sign))
+        return Quasi.of(found)
+
     def value_at(self, time: Scalar) -> Scalar:
         """Return the scalar whose generators are functions of `time`, conjugate exponentials as cosh and sinh."""
         total = ZERO

@@ -160,6 +160,8 @@ class Exact:
             return value.adjugate()
         if function == "at_0":
             return substitute(value, {"t": Scalar.of(0)})
+        if function == "by_T":
+            return derivative(value, "T")
         return Scalar.of(rank(value))
 
     def block(self, rows: list[list[Any]]) -> Matrix:
@@ -268,7 +270,8 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             value = evaluate(operand, environment, arithmetic)
             return _derivative(value, environment, arithmetic) if isinstance(value, Signal) else derivative(value)
         case Integral(integrand, primitive, upper):
-            return _integral(*(evaluate(f, environment, arithmetic) for f in (primitive, integrand, upper)), arithmetic)
+            whole, rate, end = (evaluate(f, environment, arithmetic) for f in (primitive, integrand, upper))
+            return _integral(whole, rate, end, arithmetic)
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:

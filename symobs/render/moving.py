@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.functions import known
-from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
+from symobs.formula import Formula, Literal, Negative, Power, Quotient, Sum
 from symobs.render import scalars
 
 if TYPE_CHECKING:
@@ -48,6 +48,8 @@ def _over(above: Scalar, below: Scalar) -> Formula:
     content = scalars.common_divisor([c for group in parts.values() for c in group.values()])
     if content.is_constant:
         content = Scalar.of(1)
+    if content.terms()[0][0] < 0:
+        content = -content
     front = scalars.spelled(content / below, "")
     inside = _grouped({e: {w: c / content for w, c in group.items()} for e, group in parts.items()}, Scalar.of(1))
     if isinstance(inside, Negative):
@@ -59,7 +61,9 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
     """Return the coefficients of a numerator by exponential part and by the part that turns or grows."""
     found: dict[Part, dict[Part, Scalar]] = {}
     for coefficient, powers in above.terms():
-        rest, fading, turning = Scalar.of(coefficient), [], []
+        rest = Scalar.of(coefficient)
+        fading: list[tuple[str, int]] = []
+        turning: list[tuple[str, int]] = []
         for name, power in powers:
             function = known(name)
             if not moves(name):
@@ -141,7 +145,11 @@ def _with_sign(body: Formula, functions: Sequence[Formula]) -> Formula:
     if isinstance(body, Literal) and isinstance(body.value, Scalar) and body.value.is_one:
         return scalars.product(functions)
     if isinstance(body, Quotient) and isinstance(body.numerator, Literal) and body.numerator.value == Scalar.of(1):
-        return Quotient(scalars.product(functions), body.denominator) if len(functions) == 1 else _in_front(body, functions)
+        return (
+            Quotient(scalars.product(functions), body.denominator)
+            if len(functions) == 1
+            else _in_front(body, functions)
+        )
     return _in_front(body, functions)
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import known
 from symobs.formula import (
     Apply,
     Block,
@@ -31,7 +32,6 @@ from symobs.formula import (
     with_children,
 )
 from symobs.render.glyphs import B, Glyphs, Level
-from symobs.exact.functions import known
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
 if TYPE_CHECKING:

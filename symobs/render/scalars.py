@@ -197,8 +197,7 @@ def _rank(term: Monomial) -> tuple[int, list[tuple[str, int]]]:
 
 def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
     factors = [
-        _power(Literal(_symbol(name)), exponent)
-        for name, exponent in sorted(_roots_together(powers), key=_place)
+        _power(Literal(_symbol(name)), exponent) for name, exponent in sorted(_roots_together(powers), key=_place)
     ]
     parts = [factor for factor in factors if factor is not None]
     if abs(coefficient) != 1 or not parts:
