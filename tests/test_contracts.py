@@ -37,7 +37,9 @@ POLES = ["-1", "-p"]
 
 def keywords(task: str, poles: Any) -> dict[str, Any]:
     """Return a specification: every keyword that takes poles gets these."""
-    return {name: poles for name, kind in tasks()[task].keywords.items() if kind == "Poles"}
+    values = {"Poles": poles, "TimeFunctions": "0", "Intensity": "1"}
+    kinds = tasks()[task].keywords.items()
+    return {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
 
 
 def solve(name: str, plant: Any, poles: Any) -> Any:

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.analysis.strata import strata
 from symobs.conditions import Condition, sign_of, vanishing_factors
 from symobs.derivation import Case as CaseStep
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.exponential import OpenBranch
-from symobs.exact.functions import identities, known, substitute
-from symobs.formula import Environment
+from symobs.exact.functions import identities, known, substitute, symbols_in
+from symobs.formula import Environment, Literal
+from symobs.formula.term import Term
 from symobs.method import Case, Result
 from symobs.page import Page, relation, sentence
 
@@ -118,13 +119,14 @@ class Branched(Result):
         if not self.case_tree:
             self.tell(page)
             return
-        if not self.answer["chosen"]:
-            self.tell(page)
-        else:
-            page.steps.append(
-                _branch(page, relation(_plain(next(iter(self.answer["chosen"]))), "<", 0), {}, self, "branch_under")
-            )
-        page.steps += [_case(page, case, doubled=self.answer["chosen"]) for case in self.case_tree]
+        inner = _inside(page, self.plant, {})
+        self.tell(inner)
+        chosen = [_plain(delta) for delta in self.answer["chosen"]]
+        zeros = dict.fromkeys(case.when[0].expression for case in self.case_tree if case.when[0].operator == "==")
+        say = {"sentence": sentence("branch_under", {})} if chosen else {}
+        when = relation(chosen[0], "<", 0) if chosen else relation(product_of(zeros), "!=", 0)
+        page.steps.append(CaseStep(when, (), tuple(inner.steps), **say))
+        page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 
 def _case(page: Page, case: Case, doubled: Signs) -> Step:
@@ -135,20 +137,27 @@ def _case(page: Page, case: Case, doubled: Signs) -> Step:
     condition = case.when[0]
     operator = "=" if condition.operator == "==" else condition.operator
     is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
-    say = {"=": "branch_equal" if is_double else "", ">": "branch_over", "<": "branch_under"}[operator]
-    return _branch(page, relation(condition.expression, operator, 0), dict(case.substitution), case.result, say)
+    say = {"=": "branch_equal" if is_double else "", ">": "branch_over"}[operator]
+    inner = _inside(page, case.result.plant, case.substitution)
+    case.result.tell_branches(inner)
+    because = sentence(say, {}) if say else None
+    when = relation(condition.expression, operator, 0)
+    return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), because)
 
 
-def _branch(page: Page, when: Any, substitution: Mapping[str, Scalar], result: Branched, say: str) -> Step:
-    """Write a result's steps inside a case, on a page that knows what this one knows."""
-    inner = Page(result.plant)
+def _inside(page: Page, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Page:
+    """Return a page for the steps of a case, which knows what this one knows."""
+    inner = Page(plant)
     inner.start, inner.forms = page.start, page.forms
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
-    result.tell(inner)
-    for case in result.case_tree if substitution or say != "branch_under" else ():
-        inner.steps.append(_case(inner, case, result.answer["chosen"]))
-    because = sentence(say, {}) if say else None
-    return CaseStep(when, tuple(substitution.items()), tuple(inner.steps), because)
+    return inner
+
+
+def rate_of(term: Term) -> Term:
+    """Return d/dt of a function of time; of one that stands still the zero matrix."""
+    if "t" in symbols_in(term.value):
+        return term.derivative
+    return Term(Literal(term.value * 0), term.environment)
 
 
 def _moved(values: Mapping[str, Any], substitution: Mapping[str, Scalar]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, time_environment
+from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
 from symobs.analysis.gramian_page import write_gramian
 from symobs.analysis.horizons import INFINITE, infinite_gramian, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
@@ -152,7 +152,7 @@ class Gramian(Branched):
         horizon = self.answer["horizon"]
         if "exponential" in self.answer:
             Phi = letter("Phi", e)
-            yield Claim(relation(Phi.derivative, A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+            yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
             yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
             integrand = Phi.T @ C.T @ C @ Phi
             whole = Term(Integral(integrand.formula, letter("primitive", e).formula, Literal(horizon)), e)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, time_environment
+from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.initial_state_page import tell_initial_state
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
@@ -152,11 +152,11 @@ class InitialState(Branched):
 
     def _about_motion(self, e: Environment) -> Iterator[Claim]:
         A, Phi, free = letter("A", e), letter("Phi", e), letter("y_t", e)
-        yield Claim(relation(Phi.derivative, A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
         yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
         if "x_f" in e.values:
             x_f, u = letter("x_f", e), letter("u_t", e)
-            yield Claim(relation(x_f.derivative, A @ x_f + letter("B", e) @ u), e, "x_f' = A*x_f + B*u")
+            yield Claim(relation(rate_of(x_f), A @ x_f + letter("B", e) @ u), e, "x_f' = A*x_f + B*u")
             yield Claim(relation(x_f.apply("at_0"), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
             free = free - letter("C", e) @ x_f
             if self.plant.matrices.has_feedthrough:
@@ -173,7 +173,7 @@ class InitialState(Branched):
         at_zero = []
         for _ in range(self.plant.order):
             at_zero.append(free.apply("at_0"))
-            free = free.derivative
+            free = rate_of(free)
         start, O = block([[part] for part in at_zero]), letter("O", e)
         if "candidate" in e.values:
             state = letter("candidate", e)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, time_environment
+from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
 from symobs.analysis.covariance_page import tell_covariance
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
@@ -72,19 +72,8 @@ class InitialStateCovariance(Branched):
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time and of the horizon."""
-        names = (
-            "covariance",
-            "input_part",
-            "output_part",
-            "exponential",
-            "backwards",
-            "gramian",
-            "W",
-            "S_R",
-            "S_Q",
-            "V",
-        )
-        names += ("R_primitive", "Q_primitive")
+        parts = ("covariance", "input_part", "output_part", "W", "S_R", "S_Q", "V")
+        names = (*parts, "exponential", "backwards", "gramian", "R_primitive", "Q_primitive")
         return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
 
     @property
@@ -135,7 +124,7 @@ class InitialStateCovariance(Branched):
     def _about_parts(self, e: Environment) -> Iterator[Claim]:
         Phi, A, C, W, R = (letter(name, e) for name in ("Phi", "A", "C", "W", "R"))
         horizon = Literal(self.answer["horizon"])
-        yield Claim(relation(Phi.derivative, A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
         yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
         whole = Integral((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
         yield Claim(relation(W, Term(whole, e)), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t)")
@@ -267,7 +256,7 @@ class _Inverse:
 
 def _over(top: Matrix, below: Scalar) -> Matrix:
     """Return a quotient, its exponentials written in a common one so that what both share cancels."""
-    meanings, _ = identities([top, below])
+    meanings, _ = identities([top, below], falling=True)
     base = {name: value for name, value in meanings.items() if not value.names & {name} and name.startswith("exp(")}
     return Matrix.of([[entry.substitute(base) / below.substitute(base) for entry in row] for row in top.rows])
 

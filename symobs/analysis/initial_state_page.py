@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.analysis.branches import rate_of
 from symobs.analysis.matrix_exponential import closed_form, tell_exponential, tell_question
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
@@ -54,7 +55,7 @@ def _tell_forced(result: InitialState, page: Page) -> Term:
     moved = y - C @ x_f
     if result.plant.matrices.has_feedthrough:
         moved = moved - page["D"] @ page["u_t"]
-    equation = relation(x_f.derivative, A @ x_f + page["B"] @ page["u_t"])
+    equation = relation(rate_of(x_f), A @ x_f + page["B"] @ page["u_t"])
     start = relation(x_f.apply("at_0"), Matrix.zeros(result.plant.order, 1))
     page.conclude_silently(start)
     return page.define("y_0", moved, _entry(answer["free"]), say="output_solution", closing=False, equation=equation)
@@ -92,7 +93,7 @@ def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
     answer, C, Phi = result.answer, page["C"], page["Phi"]
     rates = [free]
     for _ in range(result.plant.order - 1):
-        rates.append(rates[-1].derivative)
+        rates.append(rate_of(rates[-1]))
     if "candidate" in answer:
         x0 = page.define("x_0", answer["candidate"], say="initial_candidate", closing=False, free=free)
         rest = relation(free - C @ Phi @ x0, _entry(answer["rest"]), "!==", _entry(answer["rest"] * 0))

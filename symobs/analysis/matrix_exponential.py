@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, time_environment, with_signs
+from symobs.analysis.branches import Branched, Signs, rate_of, time_environment, with_signs
 from symobs.analysis.pages import formula_of_factored, given
 from symobs.certificate import Claim
 from symobs.errors import InputError
@@ -84,7 +84,7 @@ class MatrixExponential(Branched):
             return
         e = time_environment(self.plant, {"A": self.plant.matrices.A, "Phi": self.answer["matrix"]})
         Phi = letter("Phi", e)
-        yield Claim(relation(Phi.derivative, letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
         yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
 
     @cached_property
@@ -110,9 +110,9 @@ class MatrixExponential(Branched):
         tell_exponential(page, found, self.answer["matrix"], answer=True)
         Phi = page["Phi"]
         if not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
-            page.equal(relation(Phi.derivative, (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
+            page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
         start = relation(Phi.apply("at_0"), page.identity(self.plant.order))
-        page.verified("exponential_start", relation(Phi.derivative, page["A"] @ Phi), start=start)
+        page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 
 
 def tell_polynomial(page: Page) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.errors import InputError, ShapeMismatch
-from symobs.exact import Matrix
 from symobs.exact.functions import symbols_in
 from symobs.exact.quasi import Table, table_of
 from symobs.expression import parse_matrix
 from symobs.system import is_sympy
 
 if TYPE_CHECKING:
+    from symobs.exact import Matrix
     from symobs.system import StateSpace
 
 _MOST_TERMS = 60

@@ -281,7 +281,11 @@ def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: En
 
     `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere too.
     """
-    if not substitution and when.operators in {("<",), (">",)}:  # it narrows, and nothing is put in: all stays true
+    if not substitution and when.operators in {
+        ("<",),
+        (">",),
+        ("!=",),
+    }:  # it narrows, and nothing is put in: all stays true
         for member in when.members:
             _established(member, environment)
         return environment

@@ -18,7 +18,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
@@ -190,6 +190,14 @@ def derivative(value: Scalar | Matrix, time: str = "t") -> Scalar | Matrix:
     return total
 
 
+def rate(value: Scalar | Matrix) -> Scalar | Matrix:
+    """Return d/dt of what depends on the time; raises TypeError for what does not, where it would mean nothing."""
+    if "t" not in symbols_in(value):
+        message = f"{value} does not depend on the time"
+        raise TypeError(message)
+    return derivative(value)
+
+
 def partial(value: Scalar, name: str) -> Scalar:
     """Return ∂ value / ∂ name."""
     field, index = value.field, value.field.position[name]
@@ -230,6 +238,16 @@ def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar |
     return value.substitute(images) if images else value
 
 
+def definite_integral(
+    primitive: Scalar | Matrix, integrand: object, upper: Scalar, agree: Callable[[object, object], bool]
+) -> Scalar | Matrix:
+    """Return a primitive at the upper limit; it must be 0 at t = 0 and have the integrand for its derivative."""
+    start = substitute(primitive, {"t": ZERO})
+    if not (agree(derivative(primitive), integrand) and agree(start, primitive * 0)):
+        raise ValueError(primitive)
+    return substitute(primitive, {"t": upper})
+
+
 def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
     """Return the plain symbols of a value, also those inside functions."""
     names: set[str] = set()
@@ -263,8 +281,12 @@ def _coordinates(argument: Scalar) -> Coordinates:
     return found
 
 
-def identities(values: Iterable[Scalar | Matrix]) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
+def identities(
+    values: Iterable[Scalar | Matrix], *, falling: bool = False
+) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
     """Return (what each generator is in a common base, the polynomials in the base that vanish).
+
+    Base exponentials rise with their monomial, or with `falling` fall with it.
 
     exp is a product of powers of base exponentials, cosh and sinh are sums of two of them, cos and sin of a multiple or
     a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1 and root² − radicand.
@@ -274,13 +296,12 @@ def identities(values: Iterable[Scalar | Matrix]) -> tuple[dict[str, Scalar], tu
     roots |= {inner for f in found for name in f.argument.names if (inner := known(name)) is not None}
     moving = sorted((f for f in found if f.kind != "sqrt"), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
-    lean: dict[tuple[bool, Scalar], Fraction] = {}
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument).items():
             key = (f.kind in {"cos", "sin"}, monomial)
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
-            lean[key] = lean.get(key, Fraction(0)) + (coefficient if f.kind == "exp" else 0)
-    steps = {key: -step if lean[key] < 0 else step for key, step in steps.items()}  # what decays is its own base
+    if falling:
+        steps = {key: step if key[0] else -step for key, step in steps.items()}
     relations = [Scalar.symbol(root.name) ** 2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
     for (turns, monomial), step in steps.items():
         if turns:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
-from symobs.exact.functions import derivative, substitute
+from symobs.exact.functions import definite_integral, derivative, rate, substitute
 from symobs.exact.modular import block, scaled
 from symobs.formula.nodes import (
     Apply,
@@ -150,8 +150,8 @@ class Exact:
     def invert(self, value: Any) -> Any:
         return value.inverse() if isinstance(value, Matrix) else 1 / value
 
-    def transpose(self, value: Matrix) -> Matrix:
-        return value.T
+    def transpose(self, value: Scalar | Matrix) -> Scalar | Matrix:
+        return value.T if isinstance(value, Matrix) else value
 
     def apply(self, function: str, value: Matrix) -> Any:
         if function == "det":
@@ -268,10 +268,10 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
         case Derivative(operand):
             value = evaluate(operand, environment, arithmetic)
-            return _derivative(value, environment, arithmetic) if isinstance(value, Signal) else derivative(value)
+            return _derivative(value, environment, arithmetic) if isinstance(value, Signal) else rate(value)
         case Integral(integrand, primitive, upper):
-            whole, rate, end = (evaluate(f, environment, arithmetic) for f in (primitive, integrand, upper))
-            return _integral(whole, rate, end, arithmetic)
+            whole, speed, end = (evaluate(f, environment, arithmetic) for f in (primitive, integrand, upper))
+            return definite_integral(whole, speed, end, lambda left, right: agree(left, right, arithmetic))
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
@@ -365,14 +365,6 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
         total = image if total is None else _add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient
     return total
-
-
-def _integral(primitive: Any, integrand: Any, upper: Scalar, arithmetic: Arithmetic) -> Any:
-    """Return a primitive at the upper limit; it must be 0 at t = 0 and have the integrand for its derivative."""
-    start = substitute(primitive, {"t": Scalar.of(0)})
-    if not (agree(derivative(primitive), integrand, arithmetic) and agree(start, start - start, arithmetic)):
-        raise ValueError(primitive)
-    return substitute(primitive, {"t": upper})
 
 
 def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:

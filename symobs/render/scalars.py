@@ -260,6 +260,7 @@ def _power(base: Formula, exponent: int) -> Formula | None:
 
 
 def product(factors: Iterable[Formula]) -> Formula:
+    """Return a product, products among the factors opened."""
     flat: list[Formula] = []
     for factor in factors:
         flat += factor.factors if isinstance(factor, Product) else (factor,)
@@ -271,6 +272,7 @@ def _terms_of(formula: Formula) -> tuple[Formula, ...]:
 
 
 def sum_of(terms: Sequence[Formula]) -> Formula:
+    """Return a sum; of one term the term, of none 0."""
     if not terms:
         return Literal(Scalar.of(0))
     return terms[0] if len(terms) == 1 else Sum(tuple(terms))

@@ -162,6 +162,8 @@ class TextPrinter(Printer[TextBox]):
     def applied(self, function: str, argument: TextBox) -> TextBox:
         """A function's name and its argument."""
         name = FUNCTIONS.get(function, (function, function.replace("_", " ")))[1]
+        if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
+            argument = self.grouped(argument)
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
         return self.joined([text_box(name + space), argument], Level.PRODUCT)
 
