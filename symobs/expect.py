@@ -181,6 +181,9 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return {_relation(entry, names, where) for entry in expected} == {
             _relation(str(entry), names, where) for entry in found
         }
+    if all(isinstance(entry, Scalar) for entry in found):
+        read = [parse_scalar(entry, names, variable="t", where=where, functions=True) for entry in expected]
+        return len(read) == len(found) and all(map(functions_agree, read, found))
     if all(isinstance(entry, list) for entry in found):
         return _same_span(found, expected, names, where)
     return bool(found == expected)
