@@ -10,7 +10,6 @@ from symobs.analysis.matrix_exponential import (
     tell_exponential,
     tell_polynomial,
     tell_question,
-    tell_roots,
 )
 from symobs.analysis.pages import given, hidden, hidden_polynomial
 from symobs.exact import Matrix, Scalar
@@ -123,15 +122,14 @@ def tell_gramian(result: Gramian, page: Page) -> None:
         page.define("W", whole, W, say="gramian_integral", answer=True, closing=False)
     if answer["determinant"] is not None:
         page.equal(relation(page["W"].apply("det"), answer["determinant"]), say="gramian_determinant")
-    tell_roots(page, W)
 
 
 def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
     answer = result.answer
-    define_seen(result, page)
+    seen = define_seen(result, page)
     if answer.get("verdict") == "no":
-        page.conclude("gramian_diverges", predicate("unstable", page["chi"]))
+        page.conclude("gramian_diverges", predicate("unstable", seen))
         return
     page.set("W", answer["matrix"])
     W = page["W"]
@@ -141,24 +139,25 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     if where:
         found = [as_inequality(value, result.plant.symbols.signs) for value in where]
         listed = tuple(relation(left, operator, right) for left, operator, right in found)
-        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", page["chi"]), listed), equation=equation)
+        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", seen), listed), equation=equation)
     else:
-        page.conclude("gramian_infinite", predicate("stable", page["chi"]), equation=equation)
+        page.conclude("gramian_infinite", predicate("stable", seen), equation=equation)
     page.equal(relation(W, answer["matrix"]), answer=True)
     page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
-def define_seen(result: Gramian, page: Page) -> None:
-    """Define χ, or its part that the output sees: the quotient by the polynomial of the hidden modes."""
+def define_seen(result: Gramian, page: Page) -> Term:
+    """Return χ, or its part that the output sees: the quotient by the polynomial of the hidden modes."""
     kernel: Matrix = result.answer["kernel"]
     tell_polynomial(page)
     if not kernel.shape[1] or result.answer["of"] == "controllability":
-        return
+        return page["chi"]
     page.set("N", kernel)
     X = page.set("X", result.answer["rank"]["restricted"])
     page.conclude_silently(*hidden(page, is_observer=True))
     seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0]).formula))
     page.equal(relation(seen, result.answer["seen"]), say="seen_part")
+    return seen
 
 
 def _tell_finite_sum(result: Gramian, page: Page) -> None:

@@ -96,9 +96,23 @@ def _grouped(parts: dict[Part, dict[Part, Scalar]], below: Scalar) -> Formula:
         elif _is_pulled(inside):
             terms.append(Negative(scalars.product((*factors, Sum(tuple(_turned(term) for term in inside))))))
         else:
-            terms.append(scalars.product((*factors, Sum(tuple(inside)))))
+            terms.append(_pulled(parts[fading], below, factors, inside))
     ordered = terms if not terms or not isinstance(terms[0], Negative) else _positive_first(terms)
     return scalars.sum_of(ordered)
+
+
+def _pulled(group: dict[Part, Scalar], below: Scalar, factors: Sequence[Formula], inside: list[Formula]) -> Formula:
+    """An exponential times a sum; what all coefficients share goes in front of it where that is shorter."""
+    plain = scalars.product((*factors, Sum(tuple(inside))))
+    content = scalars.common_divisor(list(group.values()))
+    if content.is_constant:
+        return plain
+    rest = _sum_of({key: c / content for key, c in group.items()}, Scalar.of(1))
+    front = _still(content / below)
+    if len(rest) < 2 or isinstance(front, Negative):
+        return plain
+    shared = scalars.product((front, *factors, Sum(tuple(rest))))
+    return shared if scalars.size(shared) < scalars.size(plain) else plain
 
 
 def _is_pulled(terms: Sequence[Formula]) -> bool:
