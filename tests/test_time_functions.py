@@ -65,7 +65,7 @@ def test_worked_examples_against_quadrature(name: str) -> None:
     found = problem.read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
     for result in found.solve():
         m = result.plant.matrices
-        A, C = numeric(m.A, POINT), numeric(m.C, POINT) if m.has_output else None
+        A, C = numeric(m.A, POINT), numeric(m.C, POINT)
         end = mpmath.mpf(7) / 5
         if result.task == "matrix_exponential":
             for time in ("1/3", "2"):

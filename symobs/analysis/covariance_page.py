@@ -23,7 +23,10 @@ def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
         tell_unobservable(result, page)
         return
     if answer.get("question") is not None:
-        tell_question(page, answer["factor"])
+        if answer["factor"] is None:
+            page.remark("inverse_too_long")
+        else:
+            tell_question(page, answer["factor"])
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
     tell_exponential(page, found, answer["exponential"])

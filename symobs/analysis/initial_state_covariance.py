@@ -21,8 +21,8 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, sign_of, vanishing_factors
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
-from symobs.exact.exponential import NoClosedForm
-from symobs.exact.functions import identities, substitute
+from symobs.exact.exponential import Exponential, NoClosedForm
+from symobs.exact.functions import identities, roots_in, substitute
 from symobs.exact.quasi import Quasi, Table, determinant, integral, matrix_at, product, quasi_of, table_of, transposed
 from symobs.formula import Environment, Integral, Literal
 from symobs.formula.term import Term, identity, letter
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 #: Orders for which the inverse of a Gramian in closed form is still readable.
 _MOST_STATES = 3
+#: Gramians of more terms than this are not inverted.
+_MOST_TERMS = 16
 END = Scalar.symbol("T")
 
 
@@ -63,6 +65,9 @@ class InitialStateCovariance(Branched):
             found, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
+        if _is_long(plant, found):
+            question = "the inverse of a Gramian of many terms"
+            return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
     def again(self, plant: StateSpace, taken: Signs) -> Self:
@@ -172,6 +177,20 @@ class InitialStateCovariance(Branched):
     def tell(self, page: Page) -> None:
         """Write one branch."""
         tell_covariance(self, page)
+
+
+def _is_long(plant: StateSpace, found: Exponential) -> bool:
+    """Whether e^{At} has square roots of parameters, or the Gramian more terms than can be inverted readably."""
+    table = found.table()
+    if plant.matrices.A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
+        return True
+    seen = product(table_of(plant.matrices.C), table)
+    return sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row) > _MOST_TERMS
+
+
+def roots_of_frequencies(value: Quasi) -> bool:
+    """Whether a root stands in a rate or a frequency."""
+    return any(roots_in(key.rate) or roots_in(key.frequency) for key in value.terms)
 
 
 def _parts(plant: StateSpace, exponential: Table, asked: Mapping[str, Any]) -> dict[str, Any]:

@@ -72,6 +72,7 @@ PHRASES: dict[str, str] = {
     "input_part": "and the one from the input noise",
     "covariance_is": "Together,",
     "horizon_tradeoff": "A longer horizon averages the output noise and gathers the input noise.",
+    "inverse_too_long": "The inverse of this Gramian is longer than what is computed here. The covariance is not decided.",
     "gramian_is": "The Gramian over the horizon is",
     "best_horizon": "The variance of component {number} is {variance}, with {rate}. It is least where the last factor vanishes.",
     "not_minimum_variance": "With input noise this estimate does not have the smallest variance possible; that one comes from a Riccati "
