@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import symbols_named
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
@@ -245,11 +246,21 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Whether a relation differentiates or integrates in time: residues, and named coefficients, cannot tell how."""
-    timed = any(TIME in value.field.position for value in (*leaves, *environment.coefficients.values()))
+    """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
+    if environment.relations and environment.coefficients:
+        return True
+    values = (*leaves, *environment.coefficients.values())
+    timed = any(TIME in symbols_named(name) for value in values for name in value.field.names)
     kinds = (Derivative, At, Integral) if timed else (At, Integral)
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
-    return any(contains(formula, kinds) for formula in formulas)
+    return any(contains(formula, kinds) or _in_time(formula) for formula in formulas)
+
+
+def _in_time(formula: Formula) -> bool:
+    """Whether the value at t = 0 or a derivative by T is asked for."""
+    if isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}:
+        return True
+    return any(_in_time(part) for part in children(formula))
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:

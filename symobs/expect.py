@@ -7,11 +7,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from symobs.certificate import verify
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank, root_of_pole
+from symobs.exact.functions import identities
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
+from symobs.formula import Environment, Literal, Relation
 
 if TYPE_CHECKING:
     from symobs.method import Result
@@ -19,6 +22,7 @@ if TYPE_CHECKING:
 _RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
 _COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
 _NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
+_FUNCTION = re.compile(r"\b(exp|sin|cos|sinh|cosh)\b|\bt\b")
 _WORD = re.compile(r"[A-Za-z]+")
 _MOST_SHOWN = 200
 
@@ -102,8 +106,10 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
             relation = _RELATION.match(value)
             try:
                 for part in (relation[1], relation[3]) if relation else (value,):
-                    read = parse_matrix if part.lstrip().startswith("[") else parse_poles
-                    read(part, known, where=where)
+                    if part.lstrip().startswith("[") or _FUNCTION.search(part):
+                        parse_matrix(part, known, variable="t", where=where, functions=True)
+                    else:
+                        parse_poles(part, known, where=where)
             except SymobsError as error:
                 errors.append(error)
     return errors
@@ -147,6 +153,9 @@ def _shown(value: Any) -> str:
 def met(result: Result, name: str, expected: Any, where: str) -> bool:
     """Tell whether an expected answer is the result's."""
     found, names, variable = _found(result, name), _names(result), result.plant.variable
+    if result.in_time and isinstance(found, (Matrix, Scalar)):
+        read = parse_matrix if isinstance(found, Matrix) else parse_scalar
+        return functions_agree(read(expected, names, variable="t", where=where, functions=True), found)
     if isinstance(found, Matrix):
         return parse_matrix(expected, names, where=where) == found
     if isinstance(found, (Scalar, Factored)):
@@ -162,6 +171,13 @@ def met(result: Result, name: str, expected: Any, where: str) -> bool:
     raise InputError(f"the field {name} cannot be compared", where=where, repair="leave it out")
 
 
+def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
+    """Tell whether two values are equal as functions: brought to common exponentials, sines and cosines."""
+    meanings, relations = identities([left, right])
+    environment = Environment(coefficients=meanings, relations=relations)
+    return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])
+
+
 def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: str) -> bool:
     names, variable = _names(result), result.plant.variable
     if not found or not expected:
@@ -175,8 +191,8 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
     if all(isinstance(entry, Scalar) for entry in found):
-        read = [parse_scalar(entry, names, where=f"{where}[{i}]") for i, entry in enumerate(expected)]
-        return bool(found == read)
+        read = [parse_scalar(entry, names, variable="t", where=where, functions=True) for entry in expected]
+        return len(read) == len(found) and all(map(functions_agree, read, found))
     if all(isinstance(entry, Matrix) for entry in found):
         alike = len(found) == len(expected)
         return alike and all(

@@ -59,6 +59,8 @@ class Result:
 
     task: ClassVar[str]
     page_method = "auto"
+    #: Whether the answers are functions of time, or of a horizon.
+    in_time: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Check every claim; raises `CertificateRejected`."""

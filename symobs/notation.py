@@ -39,6 +39,28 @@ LETTERS: dict[str, LetterForm] = {
     "X": LetterForm("X", "X", "plant on the hidden subspace"),
     "N_2": LetterForm("N_2", "N₂", "basis of the hidden subspace of the unmeasured part"),
     "X_2": LetterForm("X_2", "X₂", "plant on the hidden subspace of the unmeasured part"),
+    "exp_At": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),
+    "Phi_T": LetterForm("e^{AT}", "exp(A T)", "matrix exponential over the horizon"),
+    "Y": LetterForm("Ce^{At}", "C exp(A t)", "output of the matrix exponential"),
+    "W": LetterForm("W", "W", "Gramian"),
+    "M": LetterForm("M", "M", "finite sum"),
+    "y_t": LetterForm("y(t)", "y(t)", "measured output"),
+    "u_t": LetterForm("u(t)", "u(t)", "known input"),
+    "y_0": LetterForm(r"\tilde y(t)", "ỹ(t)", "output without the input's part"),
+    "x_f": LetterForm(r"x_{\mathrm f}(t)", "x_f(t)", "state from rest"),
+    "x_0": LetterForm("x_0", "x₀", "initial state"),
+    "r_0": LetterForm("r", "r", "right side of the moment equations"),
+    "Q": LetterForm("Q", "Q", "intensity of the input noise"),
+    "W_t": LetterForm("W(t)", "W(t)", "Gramian up to t"),
+    "Phi_m": LetterForm("e^{-At}", "exp(-A t)", "inverse of the matrix exponential"),
+    "V_t": LetterForm("V(t)", "V(t)", "what input noise at t does to the estimate"),
+    "S_R": LetterForm("S_R", "S_R", "output noise between the inverse Gramians"),
+    "S_Q": LetterForm("S_Q", "S_Q", "input noise between the inverse Gramians"),
+    "Cov_R": LetterForm(r"\Sigma_R", "Σ_R", "covariance from the output noise"),
+    "Cov_Q": LetterForm(r"\Sigma_Q", "Σ_Q", "covariance from the input noise"),
+    **{f"var_{k}": LetterForm(rf"\sigma_{k}^2", f"σ{'₀₁₂₃'[k]}²", "variance of a component") for k in (1, 2, 3)},
+    "Cov": LetterForm(r"\Sigma", "Σ", "covariance of the estimated initial state"),
+    "P_l": LetterForm("P", "P", "solution of Lyapunov's equation"),
     "x": LetterForm("x", "x", "state"),
     "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
     "e": LetterForm("e", "e", "estimation error"),
@@ -74,22 +96,18 @@ LETTERS: dict[str, LetterForm] = {
     "P": LetterForm("P({v})", "P({v})", "plant"),
     "Phi": LetterForm(r"\Phi(t,t_0)", "Φ(t, t₀)", "transition matrix"),
     "Phi_": LetterForm(r"\Phi", "Φ", "transition matrix"),
-    "W": LetterForm("W", "W", "observability Gramian"),
-    "x_0": LetterForm("x_0", "x₀", "initial state"),
     "xi": LetterForm(r"\xi", "ξ", "output without the part that the input forces"),
     "x_u": LetterForm("x_u", "x_u", "state that the input alone leads to"),
-    "u_t": LetterForm("u(t)", "u(t)", "input, given as a function of time"),
     "x_t": LetterForm("x(t)", "x(t)", "state as a function of time"),
     "u_t_": LetterForm("u", "u", "input"),
     "y_t_": LetterForm("y", "y", "output"),
-    "y_t": LetterForm("y(t)", "y(t)", "output, given as a function of time"),
     "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
 }
 
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
 TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
 
-_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1"}
+_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1", "exp_At", "Y", "x_f", "y_0", "W_t", "V_t"}
 
 
 def is_of_time(name: str) -> bool:
@@ -101,6 +119,8 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
+    "by_T": (r"\frac{d}{dT}", "d/dT"),
+    **{name: (rf"\{name}", name) for name in ("sin", "cos", "sinh", "cosh")},
     "phi_at": (r"\varphi", "φ"),
     "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
     "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
@@ -109,6 +129,7 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
 OPERATORS: dict[str, tuple[str, str]] = {
     "=": ("=", "="),
     "!=": (r"\neq", "≠"),
+    "!==": (r"\not\equiv", "≢"),
     "<": ("<", "<"),
     ">": (">", ">"),
     "<=": (r"\le", "≤"),
@@ -203,6 +224,13 @@ class Theorem:
 
 
 THEOREMS: dict[str, Theorem] = {
+    "reconstruction": Theorem("initial state from measurements", "S0, (4.6)-(4.11)"),
+    "noise": Theorem("uncertainty of the initial state", "S4, Exercise 3"),
+    "gramian": Theorem("Gramian criterion", "S0, Proposition 4.1 and (4.8)"),
+    "finite_sum": Theorem("equality of the kernels", "S0, Theorem 4.3"),
+    "exponential": Theorem(
+        "matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"
+    ),
     "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
     "duality": Theorem("duality", "S0, Theorem 4.1"),
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),

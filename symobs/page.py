@@ -19,6 +19,7 @@ from symobs.derivation import (
     Step,
 )
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import identities, known, roots_in
 from symobs.formula import (
     Derivative,
     Environment,
@@ -37,7 +38,7 @@ from symobs.formula import (
 from symobs.formula.term import Term
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.system import StateSpace
 
@@ -83,6 +84,22 @@ def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     return Sentence(key, filled)
 
 
+#: What a square root of a sum is written as, where it stands in an argument.
+_ROOTS = (r"\nu", r"\mu", r"\kappa", r"\eta")
+
+
+def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
+    """Return the names of the roots whose radicand is a sum, those of cosines and sines among the others."""
+    found: dict[str, None] = {}
+    for value in values:
+        for name in sorted(value.names):
+            function = known(name)
+            inner = roots_in(function.argument) if function and function.kind != "sqrt" else ()
+            roots = [function] if function and function.kind == "sqrt" else inner
+            found |= {root.name: None for root in roots if root.argument.numerator.size > 2}
+    return list(found)
+
+
 class Page:
     """A derivation in the making: the steps so far and the environment they establish."""
 
@@ -98,10 +115,22 @@ class Page:
         )
         self.environment = self.start
         self.steps: list[Step] = []
+        self.forms: dict[str, str] = {}
+
+    def in_time(self, *values: Scalar | Matrix) -> None:
+        """Let the page speak of these functions of time: how they depend on each other is known from the start."""
+        meanings, vanishing = identities(values)
+        self.start = replace(self.start, coefficients=meanings, relations=vanishing)
+        self.environment = replace(self.environment, coefficients=meanings, relations=vanishing)
+        taken = {*self.plant.symbols.signs, *self.plant.field.names}
+        letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
+        for root in _roots_of_sums(values):
+            self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def derivation(self) -> Derivation:
         """Return what was written."""
-        return Derivation(tuple(self.steps), self.start, self.plant.symbols.latex, self.plant.is_discrete)
+        symbols = {**self.plant.symbols.latex, **self.forms}
+        return Derivation(tuple(self.steps), self.start, symbols, self.plant.is_discrete)
 
     # -- terms --------------------------------------------------------------------------------------------------------
 

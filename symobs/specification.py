@@ -25,6 +25,9 @@ MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
 IntervalText: TypeAlias = Annotated[Any, "IntervalText"]
 SignalText: TypeAlias = Annotated[Any, "SignalText"]
 Name: TypeAlias = Annotated[str, "Name"]
+Horizon: TypeAlias = Annotated[Any, "Horizon"]
+TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
+Intensity: TypeAlias = Annotated[Any, "Intensity"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -49,6 +52,15 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "number"}, {"type": "array"}],
     },
     "Name": {"description": "a name", "type": "string"},
+    "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
+    "TimeFunctions": {
+        "description": 'functions of t, one for each component: "exp(-t) + 2 t sin(3 t)"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
+    "Intensity": {
+        "description": 'the intensity of white noise, symmetric: "q" or "[q1 0; 0 q2]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
 }
 
 

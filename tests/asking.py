@@ -18,9 +18,11 @@ OWN_COORDINATES = {"reduced_order_observer"}
 
 
 def specification(task: str, poles: Any) -> dict[str, Any]:
-    """Return a specification: every keyword that takes poles gets these, or as many as it needs."""
+    """Return a specification: every keyword that takes poles gets these, or as many as it needs; others something plain."""
     found = poles[: -FEWER[task]] if task in FEWER and poles is not None else poles
-    return {name: found for name, kind in tasks()[task].keywords.items() if kind == "Poles"}
+    values = {"Poles": found, "TimeFunctions": "0", "Intensity": "1"}
+    kinds = tasks()[task].keywords.items()
+    return {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
 
 
 def factors(task: str, listed: Sequence[Any]) -> Sequence[Any]:

@@ -242,6 +242,21 @@ PROBLEMS = {
 }
 
 
+#: Examples in functions of time, which `test_time_functions` holds against numeric integration.
+IN_TIME = {
+    "servo_gramian",
+    "third_order_gramian",
+    "hidden_state_gramian",
+    "pendulum_gramian",
+    "pendulum_overdamped_gramian",
+    "tanks",
+    "tanks_initial_state",
+    "servo_initial_state",
+    "double_integrator_noise",
+    "lag_noise",
+}
+
+
 def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
     """Yield points that the declared signs allow and that lose no observability, the same in every run."""
     chance = random.Random(name)  # noqa: S311 - points that repeat

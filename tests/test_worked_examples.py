@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 #: Rows of the catalogue of sources that the examples must cover.
 ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP", "S4-LTV"}
+ROWS |= {"S0-REC", "S0-GRAM", "S0-Ex4.1-GRAM", "S0-Ex4.3-GRAM", "S1-TANK", "S4-PEND-GRAM", "S4-MSUM", "S4-NOISE"}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 
@@ -116,7 +117,8 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
     elif value in ("yes", "no", "conditional"):
         yield from (other for other in ("yes", "no", "conditional") if other != value)
     elif isinstance(value, list) or value.startswith("["):
-        rows = [[str(entry) for entry in row] for row in parse_matrix(value, names).rows]
+        read = parse_matrix(value, names, variable="t", functions=True)
+        rows = [[str(entry) for entry in row] for row in read.rows]
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
                 yield [*rows[:i], [*row[:j], f"{entry} + 1", *row[j + 1 :]], *rows[i + 1 :]]
@@ -126,8 +128,8 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
 
 def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:
     """Yield a list of roots, relations or vectors with one entry changed, left out or added."""
-    other = {"!=": "==", ">": "<", "<": ">"}
-    relations = key in {"conditions", "stable_if"}
+    other = {"!=": "==", ">": "<", "<": ">", "==": "!="}
+    relations = key in {"conditions", "stable_if", "best_horizon"}
     if not relations:
         yield [*value, [1, 0, 0] if key == "kernel" else -1234]
     elif names:
@@ -135,7 +137,7 @@ def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterat
     for i, entry in enumerate(value):
         changes: list[Any] = [-1234]
         if relations:
-            left, operator, right = re.split(r"\s(!=|<|>)\s", entry)
+            left, operator, right = re.split(r"\s(!=|<|>|==)\s", entry)
             changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]
         for change in changes:
             yield [*value[:i], change, *value[i + 1 :]]

@@ -135,7 +135,7 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
     """Give W with its determinant, and the initial states in its kernel."""
     asked, answer = result.asked_for, result.answer
     if answer["gramian"] is None:
-        page.remark("gramian_open")
+        page.remark("gramian_not_rational")
     else:
         Phi = at(page["Phi"], START, asked.start)
         integrand = Phi.T @ page["C"].T @ page["C"] @ Phi

@@ -27,6 +27,7 @@ from symobs.derivation.steps import (
 )
 from symobs.errors import DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar, roots_are
+from symobs.exact.functions import substitute
 from symobs.formula import (
     Derivative,
     Environment,
@@ -282,10 +283,14 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
     A single `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere
     too.  Of several equations and inequations it is verified that each value put in follows from them.
     """
+    if not substitution and isinstance(when, Relation) and when.operators in {("<",), (">",), ("!=",)}:
+        for member in when.members:
+            _established(member, environment)
+        return environment  # it narrows, and nothing is put in: all stays true
     replaced = {}
     for name, value in environment.values.items():
         try:
-            replaced[name] = value.substitute(substitution)
+            replaced[name] = substitute(value, substitution)
         except ZeroDivisionError:  # the letter means nothing on this stratum
             continue
     named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}

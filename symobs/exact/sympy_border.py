@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import sympy  # noqa: TID253 - this module is imported only where SymPy objects come or go
 
 from symobs.errors import InexactInput, InputError
+from symobs.exact import functions
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
@@ -25,7 +26,7 @@ def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> 
     def polynomial(part: Scalar) -> sympy.Expr:
         terms = []
         for coefficient, powers in part.terms():
-            factors = [known.setdefault(name, sympy.Symbol(name)) ** power for name, power in powers]
+            factors = [_generator(name, known) ** power for name, power in powers]
             terms.append(sympy.Mul(sympy.Integer(coefficient), *factors))
         return sympy.Add(*terms)
 
@@ -33,6 +34,14 @@ def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> 
     if below.is_one:
         return polynomial(value.numerator)
     return polynomial(value.numerator) / polynomial(below)
+
+
+def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
+    """Return the Symbol of a name, or the function it is the name of."""
+    found = functions.known(name)
+    if found is None:
+        return objects.setdefault(name, sympy.Symbol(name))
+    return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
 
 
 def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:

@@ -31,22 +31,27 @@ _LONGEST_REPAIR = 30
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
 
 
-def parse_scalar(value: object, names: Names = None, *, variable: str | None = None, where: str = "") -> Scalar:
+def parse_scalar(
+    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+) -> Scalar:
     """Return the real value of a text, an int or a Fraction.
 
-    `names` are the declared names, None for any; `variable` (s or z) is known besides them.
+    `names` are the declared names, None for any; `variable` (s, z or t) is known besides them; with `functions`, exp,
+    sin, cos, sinh, cosh and sqrt of real arguments are read as generators.
     Raises ExpressionError for what is no expression, UnknownName, BudgetExceeded, InexactInput for a float, and
     InputError for any other type; all name the place `where`.
     """
-    return _real(_entry(value, Scope.of(names, variable, where), where), where)
+    return _real(_entry(value, Scope.of(names, variable, where, functions=functions), where), where)
 
 
-def parse_matrix(value: object, names: Names = None, *, where: str = "") -> Matrix:
+def parse_matrix(
+    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+) -> Matrix:
     """Return the matrix of a MATLAB-style text (`[1 0; 0 1]`) or of nested lists of int, Fraction and text.
 
     Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
     """
-    scope = Scope.of(names, None, where)
+    scope = Scope.of(names, variable, where, functions=functions)
     rows = _rows_of_text(value, scope, where) if isinstance(value, str) else _rows_of_lists(value, scope, where)
     real = [
         [entry if isinstance(entry, Scalar) else _real(entry, _cell(where, i, j)) for j, entry in enumerate(row)]

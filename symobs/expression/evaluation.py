@@ -14,8 +14,8 @@ from lark.lexer import Lexer
 from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ShapeMismatch
-from symobs.exact import Complex, Scalar
-from symobs.expression.budget import MOST_EXPONENT, Meter, Number, Parts, operation_size, power_size, work
+from symobs.exact import Complex, Scalar, functions
+from symobs.expression.budget import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
 from symobs.expression.plain import plain_rows
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
@@ -54,7 +54,7 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
         rows, bracketed = plain
         return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
     try:
-        return _Evaluator(source, scope.meter).transform(_parser().parse(Tokeniser(source, scope).run()))
+        return _Evaluator(source, scope).transform(_parser().parse(Tokeniser(source, scope).run()))
     except UnexpectedToken as found:
         at_end = found.token.type == "$END"
         place = "at the end" if at_end else f'before "{shown(found.token)}"'
@@ -118,10 +118,11 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
     Invariant: no operation begins before `_spend` has bounded its result.
     """
 
-    def __init__(self, source: Source, meter: Meter) -> None:
+    def __init__(self, source: Source, scope: Scope) -> None:
         super().__init__()
         self.source = source
-        self.meter = meter
+        self.meter = scope.meter
+        self.functions = scope.functions
 
     def VALUE(self, token: Token) -> Number:
         number: Number = token.value
@@ -154,8 +155,13 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
         return base**exponent
 
     def call(self, parts: tuple[Token, Entry]) -> Number:
-        """Return sqrt of the square of a rational number, the one call with a value in the field."""
+        """Return sqrt of the square of a rational number, the one call with a value in the field.
+
+        Where functions of time are asked for, a function of a real argument is a generator of its own.
+        """
         function, number = parts[0].value, self._number(parts[1])
+        if self.functions:
+            return self._function(function, number, parts[0])
         instead = "sqrt of the square of a rational number is possible; for other constants declare a symbol"
         if function != "sqrt":
             raise self.source.error(f"{function} has no exact value here", start(parts[0]), instead)
@@ -166,6 +172,15 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
         if (above**2, below**2) != (square.numerator, square.denominator):
             raise self.source.error(f"sqrt({shown(str(square))}) is not rational", start(parts[0]), instead)
         return Scalar.rational(above, below)
+
+    def _function(self, name: str, argument: Number, token: Token) -> Scalar:
+        if isinstance(argument, Complex):
+            raise self.source.error(f"{name} of a complex number", start(token), "write it with sin and cos")
+        if name != "sqrt":
+            return functions.function(name, argument)
+        if argument.is_constant and argument.fraction() < 0:
+            raise self.source.error("sqrt of a negative number", start(token), "write sin and cos of a real argument")
+        return argument if argument.is_zero else functions.square_root(argument)
 
     def _number(self, entry: Entry) -> Number:
         if isinstance(entry, Grid):

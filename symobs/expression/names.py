@@ -63,14 +63,15 @@ class Scope:
     variable: str | None
     meter: Meter = field(default_factory=Meter)
     context: Field | None = None
+    functions: bool = False
 
     @staticmethod
-    def of(names: Names, variable: str | None, where: str) -> Scope:
+    def of(names: Names, variable: str | None, where: str, *, functions: bool = False) -> Scope:
         """Return the scope; raises ExpressionError where the variable of the polynomial is declared as a symbol."""
         if names is not None and variable in names:
             message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
             raise ExpressionError(message, where=where, repair="give the symbol another name")
-        return Scope(names, variable)
+        return Scope(names, variable, functions=functions)
 
     def declares(self, name: str) -> bool:
         """Whether the name is declared by name, not only admitted because every name is."""

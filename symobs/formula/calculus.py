@@ -7,17 +7,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Matrix, Scalar, derivative
+from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import derivative, substitute, symbols_in
+from symobs.formula.nodes import Integral
 
 if TYPE_CHECKING:
     from symobs.formula.evaluate import Arithmetic
+    from symobs.formula.nodes import Formula
 
 TIME = "t"
 
 
+def since_start(integrand: Formula, primitive: Formula, upper: Scalar) -> Integral:
+    """Return the integral over t from 0 to `upper`."""
+    return Integral(integrand, primitive, TIME, Scalar.of(0), upper)
+
+
 def rate(value: Any, *, constant: bool) -> Any:
     """Return d/dt of a value, entry by entry; only where time is the variable may it be a constant's."""
-    if not constant and TIME not in exact(value).names:
+    if not constant and TIME not in symbols_in(exact(value)):
         message = "a constant of a plant that does not vary has no derivative"
         raise TypeError(message)
     return derivative(exact(value), TIME)
@@ -25,7 +33,7 @@ def rate(value: Any, *, constant: bool) -> Any:
 
 def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
     """Return the value with the generator `name` replaced."""
-    return exact(value).substitute({name: exact(arithmetic.leaf(instant))})
+    return substitute(exact(value), {name: exact(arithmetic.leaf(instant))})
 
 
 def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
+from symobs.exact.functions import derivative, substitute
 from symobs.exact.modular import block, scaled
 from symobs.formula import calculus
 from symobs.formula.nodes import (
@@ -151,14 +152,18 @@ class Exact:
     def invert(self, value: Any) -> Any:
         return value.inverse() if isinstance(value, Matrix) else 1 / value
 
-    def transpose(self, value: Matrix) -> Matrix:
-        return value.T
+    def transpose(self, value: Scalar | Matrix) -> Scalar | Matrix:
+        return value.T if isinstance(value, Matrix) else value
 
     def apply(self, function: str, value: Matrix) -> Any:
         if function == "det":
             return value.determinant()
         if function == "adj":
             return value.adjugate()
+        if function == "at_0":
+            return substitute(value, {"t": Scalar.of(0)})
+        if function == "by_T":
+            return derivative(value, "T")
         return Scalar.of(rank(value))
 
     def block(self, rows: list[list[Any]]) -> Matrix:

@@ -95,7 +95,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Derivative:
-    """d/dt of a signal or of a value that contains t; the shift x(k+1) in discrete time."""
+    """d/dt of a signal or of a function of time; the shift x(k+1) of a signal in discrete time."""
 
     operand: Formula
 

@@ -36,7 +36,7 @@ class Restricted(Exact):
         return found
 
     def apply(self, function: str, value: Matrix) -> Any:
-        """Return det or adj of a matrix."""
+        """Return det or adj of a matrix, or the value at t = 0."""
         if function == "rank":
             message = "a rank on a stratum is shown by minors and kernels"
             raise TypeError(message)

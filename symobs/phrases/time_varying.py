@@ -24,7 +24,7 @@ PHRASES: dict[str, str] = {
     "here, and no Gramian. The rank test does without them.",
     "gramian": "What the input forces taken away, the output is $C Phi x_0$. Multiplied by $Phiᵀ Cᵀ$ and integrated over the interval it gives "
     "$W x_0$ with",
-    "gramian_open": "What the input forces taken away, the output is $C Phi x_0$. The integral of $Phiᵀ Cᵀ C Phi$, the Gramian, is not rational, "
+    "gramian_not_rational": "What the input forces taken away, the output is $C Phi x_0$. The integral of $Phiᵀ Cᵀ C Phi$, the Gramian, is not rational, "
     "and no closed form of it is given here.",
     "gramian_regular": "Its determinant is not 0, so the kernel of $W$ is trivial, and every output belongs to one initial state.",
     "gramian_generic": "The initial state is determined exactly where this is not 0, and the rank test tells when.",

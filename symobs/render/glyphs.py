@@ -102,6 +102,24 @@ class Glyphs(ABC, Generic[B]):
     def rate(self, box: B) -> B:
         """d/dt of something other than a letter."""
 
+    # -- of functions of time ---------------------------------------------------------------------------------------
+
+    @abstractmethod
+    def exponential(self, argument: Scalar) -> B:
+        """E to the power of an argument."""
+
+    @abstractmethod
+    def root(self, argument: B) -> B:
+        """A square root."""
+
+    @abstractmethod
+    def named(self, form: str) -> B:
+        """A letter given by its LaTeX."""
+
+    @abstractmethod
+    def at_start(self, box: B) -> B:
+        """The value of a function at t = 0."""
+
     @abstractmethod
     def integral(self, limits: tuple[B, B], integrand: B, name: B) -> B:
         """The integral of what binds at least as a product, over the generator `name`."""

@@ -60,6 +60,7 @@ class LatexPrinter(Printer[LatexBox]):
         self.width = width
         self.paged = paged
         self.running = False
+        self.in_exponent = False
 
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
@@ -154,6 +155,9 @@ class LatexPrinter(Printer[LatexBox]):
     def fraction(self, above: LatexBox, below: LatexBox) -> LatexBox:
         r"""`\frac`; in running text a slash where one part is long."""
         width = max(above.width, below.width)
+        if self.in_exponent:
+            parts = [self.at_least(Level.PRODUCT, above), self.slash(), self.at_least(Level.POWER, below)]
+            return self.joined(parts, Level.PRODUCT)
         if self.running and (width > _NARROW or min(above.level, below.level) < Level.PRODUCT):
             parts = [self.at_least(Level.PRODUCT, above), self.slash(), self.at_least(Level.POWER, below)]
             return self.joined(parts, Level.PRODUCT)
@@ -204,11 +208,33 @@ class LatexPrinter(Printer[LatexBox]):
         """d/dt before a stack."""
         return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{dt}}{box.source}", max(1, box.height))
 
+    # -- functions of time ----------------------------------------------------------------------------------------
+
+    def exponential(self, argument: Scalar) -> LatexBox:
+        r"""`e^{-t/2}`: fractions in the exponent are written with a slash."""
+        script = copy(self)
+        script.in_exponent, script.known = True, {}
+        exponent = script.scalar(argument)
+        return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
+
+    def root(self, argument: LatexBox) -> LatexBox:
+        r"""`\sqrt`."""
+        return LatexBox(argument.width + 0.9, Level.ATOM, rf"\sqrt{{{argument.source}}}", argument.height)
+
+    def named(self, form: str) -> LatexBox:
+        """The letter."""
+        return LatexBox(widths.source_width(form), Level.ATOM, form)
+
+    def at_start(self, box: LatexBox) -> LatexBox:
+        r"""`\left. … \right|_{t=0}`."""
+        return LatexBox(box.width + 1.8, Level.POWER, rf"\left.{box.source}\right|_{{t=0}}", max(1, box.height))
+
     def integral(self, limits: tuple[LatexBox, LatexBox], integrand: LatexBox, name: LatexBox) -> LatexBox:
-        r"""`\int_{a}^{b} … \,dt`."""
-        lower, upper = limits
-        source = rf"\int_{{{lower.source}}}^{{{upper.source}}} {integrand.source}\,d {name.source}"
-        width = 1.2 + widths.SCRIPT * max(lower.width, upper.width) + integrand.width + name.width + 0.7
+        r"""`\int_0^{2T} … \,dt`."""
+        lower, upper = (limit.source if len(limit.source) == 1 else f"{{{limit.source}}}" for limit in limits)
+        between = "" if len(name.source) == 1 else " "
+        source = rf"\int_{lower}^{upper} {integrand.source}\,d{between}{name.source}"
+        width = 1.2 + widths.SCRIPT * max(limit.width for limit in limits) + integrand.width + name.width + 0.7
         return LatexBox(width, Level.PRODUCT, source, max(1, integrand.height))
 
     # -- glyphs of broken lines -----------------------------------------------------------------------------------

@@ -7,9 +7,11 @@ A printed part is a `Box`: what is written, how wide it is, and how tightly it b
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import known
 from symobs.formula import (
     Apply,
     At,
@@ -36,6 +38,8 @@ from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from symobs.exact.functions import Function
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat"})
@@ -109,9 +113,26 @@ class Printer(Glyphs[B]):
         """An exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+            function = known(next(iter(value.names))) if is_leaf(value) and value.names else None
+            if function is not None:
+                box = self.function_of_time(function)
+            else:
+                box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
             self.known[value] = box
         return box
+
+    def function_of_time(self, function: Function) -> B:
+        """e^{−t}, sin ωt, √3; a root that has a letter of its own is written by it."""
+        if function.name in self.symbols:
+            return self.named(self.symbols[function.name])
+        if function.kind == "exp":
+            return self.exponential(function.argument)
+        argument = self.scalar(function.argument)
+        if function.kind == "sqrt":
+            return self.root(argument)
+        is_plain = argument.level >= Level.PRODUCT and not isinstance(spelled(function.argument, ""), Quotient)
+        box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
+        return replace(box, level=Level.POWER)
 
     def sum_parts(self, formula: Formula) -> list[B]:
         """The terms of a sum with their signs between them."""
@@ -167,6 +188,8 @@ class Printer(Glyphs[B]):
 
     def application(self, function: str, argument: Formula) -> B:
         """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        if function == "at_0":
+            return self.at_start(self.at_least(Level.POWER, self.typeset(argument)))
         is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):

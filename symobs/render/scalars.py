@@ -11,6 +11,7 @@ from math import gcd
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import known, square_root_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:
@@ -46,6 +47,11 @@ def spelled(value: Scalar, variable: str) -> Formula:
     """Return the formula that writes `value` out."""
     if is_leaf(value):
         return Literal(value)
+    if any("(" in name for name in value.names):
+        from symobs.render.moving import moves, spelled_moving  # noqa: PLC0415 - it spells with what is here
+
+        if any(moves(name) for name in value.names):
+            return spelled_moving(value)
     if value.denominator.degree(variable) > 0:
         return _rational_function(value, variable)
     if value.degree(variable) > 0:
@@ -97,15 +103,15 @@ def _polynomial(value: Scalar, variable: str) -> Formula:
 
 def _with_content(value: Scalar, coefficients: Sequence[Scalar], separate: Formula, variable: str) -> Formula:
     """An expression in parameters that divides all coefficients goes in front, where that is clearly shorter."""
-    content = _common_divisor([coefficient for coefficient in coefficients if not coefficient.is_zero])
+    content = common_divisor([coefficient for coefficient in coefficients if not coefficient.is_zero])
     if content.is_constant or content == value:
         return separate
     rest = _collected((value / content).coefficients(variable), variable)
-    front = _product((_constant(content), rest))
+    front = product((_constant(content), rest))
     return front if size(front) < _CLEARLY * size(separate) else separate
 
 
-def _common_divisor(values: Sequence[Scalar]) -> Scalar:
+def common_divisor(values: Sequence[Scalar]) -> Scalar:
     """The greatest common divisor of polynomials; 1 as soon as it is a number."""
     divisor = values[0]
     for value in values[1:]:
@@ -121,7 +127,7 @@ def _collected(coefficients: Sequence[Scalar], variable: str) -> Formula:
     for index, coefficient in enumerate(coefficients):
         if not coefficient.is_zero:
             terms += _times_power(coefficient, _power(Literal(_symbol(variable)), degree - index))
-    return _sum(terms)
+    return sum_of(terms)
 
 
 def _times_power(coefficient: Scalar, power: Formula | None) -> list[Formula]:
@@ -134,10 +140,10 @@ def _times_power(coefficient: Scalar, power: Formula | None) -> list[Formula]:
     if (-coefficient).is_one:
         return [Negative(power)]
     if isinstance(body, Sum) and all(isinstance(term, Negative) for term in body.terms):
-        return [Negative(_product((_constant_positive(body), power)))]
+        return [Negative(product((_constant_positive(body), power)))]
     if isinstance(body, Negative):
-        return [Negative(_product((body.operand, power)))]
-    return [_product((body, power))]
+        return [Negative(product((body.operand, power)))]
+    return [product((body, power))]
 
 
 def _constant_positive(body: Sum) -> Sum:
@@ -174,7 +180,7 @@ def _shortest(value: Scalar) -> Formula:
 
 
 def _expanded(terms: Sequence[Monomial]) -> Formula:
-    return _sum([_monomial(*term) for term in human_order(terms)])
+    return sum_of([_monomial(*term) for term in human_order(terms)])
 
 
 def human_order(terms: Iterable[Monomial]) -> list[Monomial]:
@@ -191,13 +197,30 @@ def _rank(term: Monomial) -> tuple[int, list[tuple[str, int]]]:
 
 def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
     factors = [
-        _power(Literal(_symbol(name)), exponent) for name, exponent in sorted(powers, key=lambda p: p[0].lower())
+        _power(Literal(_symbol(name)), exponent) for name, exponent in sorted(_roots_together(powers), key=_place)
     ]
     parts = [factor for factor in factors if factor is not None]
     if abs(coefficient) != 1 or not parts:
         parts.insert(0, Literal(Scalar.of(abs(coefficient))))
-    product = _product(parts)
-    return Negative(product) if coefficient < 0 else product
+    whole = product(parts)
+    return Negative(whole) if coefficient < 0 else whole
+
+
+def _place(power: tuple[str, int]) -> tuple[int, str]:
+    """Symbols by the alphabet, roots of numbers before them, the time and other roots behind."""
+    name, root = power[0], known(power[0])
+    if root is not None:
+        return (0 if root.argument.is_constant else 2), name
+    return (3 if name in {"t", "T"} else 1), name.lower()
+
+
+def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, int]]:
+    """Write √3 √5 as √15."""
+    roots = {name: f.argument for name, e in powers if e == 1 and (f := known(name)) and f.argument.is_constant}
+    if len(roots) < 2:
+        return powers
+    together = square_root_of(roots.values())
+    return [*((name, e) for name, e in powers if name not in roots), (together, 1)]
 
 
 def _factored(value: Scalar) -> Formula:
@@ -218,8 +241,8 @@ def _factored(value: Scalar) -> Formula:
     brackets = [_power(_expanded(factor.terms()), power) for factor, power in sums]
     head = _monomial(abs(number), symbols)
     parts = [] if isinstance(head, Literal) and head.value == Scalar.of(1) and brackets else [head]
-    product = _product([*parts, *(bracket for bracket in brackets if bracket is not None)])
-    return Negative(product) if number < 0 else product
+    whole = product([*parts, *(bracket for bracket in brackets if bracket is not None)])
+    return Negative(whole) if number < 0 else whole
 
 
 # -- small builders ---------------------------------------------------------------------------------------------------
@@ -236,7 +259,8 @@ def _power(base: Formula, exponent: int) -> Formula | None:
     return base if exponent == 1 else Power(base, exponent)
 
 
-def _product(factors: Iterable[Formula]) -> Formula:
+def product(factors: Iterable[Formula]) -> Formula:
+    """Return a product, products among the factors opened."""
     flat: list[Formula] = []
     for factor in factors:
         flat += factor.factors if isinstance(factor, Product) else (factor,)
@@ -247,7 +271,8 @@ def _terms_of(formula: Formula) -> tuple[Formula, ...]:
     return formula.terms if isinstance(formula, Sum) else (formula,)
 
 
-def _sum(terms: Sequence[Formula]) -> Formula:
+def sum_of(terms: Sequence[Formula]) -> Formula:
+    """Return a sum; of one term the term, of none 0."""
     if not terms:
         return Literal(Scalar.of(0))
     return terms[0] if len(terms) == 1 else Sum(tuple(terms))
@@ -266,7 +291,7 @@ def size(formula: Formula) -> float:
     """Return about how many glyphs a spelling takes."""
     match formula:
         case Literal(Scalar() as value):
-            return len(decimal(value.fraction().numerator)) if value.is_constant else 1.0
+            return len(decimal(value.fraction().numerator)) if value.is_constant else _size_of_symbol(value)
         case Sum(terms):
             return sum(size(term) for term in terms) + (len(terms) - 1) / 2
         case Negative(Sum() as operand):
@@ -281,6 +306,12 @@ def size(formula: Formula) -> float:
             return size(above) + size(below) + 1
         case _:
             return 1.0
+
+
+def _size_of_symbol(value: Scalar) -> float:
+    """A symbol, or a function with its argument."""
+    function = known(next(iter(value.names)))
+    return 1.0 if function is None else 1.0 + size(spelled(function.argument, ""))
 
 
 @lru_cache(maxsize=1024)

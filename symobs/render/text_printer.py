@@ -162,6 +162,8 @@ class TextPrinter(Printer[TextBox]):
     def applied(self, function: str, argument: TextBox) -> TextBox:
         """A function's name and its argument."""
         name = FUNCTIONS.get(function, (function, function.replace("_", " ")))[1]
+        if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
+            argument = self.grouped(argument)
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
         return self.joined([text_box(name + space), argument], Level.PRODUCT)
 
@@ -183,9 +185,27 @@ class TextPrinter(Printer[TextBox]):
         """d/dt before a stack."""
         return self.joined([text_box("d/dt "), box], Level.PRODUCT)
 
+    # -- functions of time ----------------------------------------------------------------------------------------
+
+    def exponential(self, argument: Scalar) -> TextBox:
+        """exp(-t)."""
+        return self.joined([text_box("exp"), self.grouped(self.scalar(argument))], Level.POWER)
+
+    def root(self, argument: TextBox) -> TextBox:
+        """√3, √(ω² - b²)."""
+        return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
+
+    def named(self, form: str) -> TextBox:
+        """The letter: a Greek one by its glyph."""
+        return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
+
+    def at_start(self, box: TextBox) -> TextBox:
+        """X|t=0."""
+        return self.joined([box, text_box("|t=0")], Level.POWER)
+
     def integral(self, limits: tuple[TextBox, TextBox], integrand: TextBox, name: TextBox) -> TextBox:
-        """∫ from a to b."""
-        parts = [text_box("∫("), limits[0], text_box(" … "), limits[1], text_box(") "), integrand, text_box(" d"), name]
+        """∫(0..T) … dt."""
+        parts = [text_box("∫("), limits[0], text_box(".."), limits[1], text_box(") "), integrand, text_box(" d"), name]
         return self.joined(parts, Level.PRODUCT)
 
     # -- glyphs of broken lines -----------------------------------------------------------------------------------

@@ -1,0 +1,88 @@
+"""Horizons: reading them, and the Gramians over all time and over a number of steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import InputError
+from symobs.exact import Matrix, Scalar
+from symobs.stability import stability
+from symobs.system import read_scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.system import StateSpace
+
+INFINITE = "inf"
+_MOST_STEPS = 60
+#: Lyapunov's equation is solved for up to this many states, without and with parameters.
+_MOST_STATES, _MOST_WITH_PARAMETERS = 12, 4
+
+
+def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
+    """Return `inf`, or the horizon as a scalar: T where none is given.  Raises `InputError`."""
+    where = f"specification.{name}"
+    if isinstance(value, str) and value.strip() in {"inf", "oo"}:
+        return INFINITE
+    if value is None:
+        return Scalar.of(plant.order) if plant.is_discrete else Scalar.symbol("T")
+    found = read_scalar(value, plant.symbols.seen(value), where)
+    if found.is_constant and found.fraction() <= 0:
+        raise InputError(f"the horizon {found} is not positive", where=where, repair='write "T", or a number above 0')
+    if "t" in found.names:
+        raise InputError("the horizon depends on t", where=where, repair='t is the time; write "T"')
+    if plant.is_discrete and not (found.is_constant and found.fraction().denominator == 1):
+        raise InputError(f"{found} is not a number of steps", where=where, repair="write a whole number, or inf")
+    if plant.is_discrete and found.fraction() > _MOST_STEPS:
+        raise InputError(f"{found} steps are too many", where=where, repair=f"write at most {_MOST_STEPS}, or inf")
+    return found
+
+
+def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:
+    """Return Σ (Aᵀ)ᵏ Cᵀ C Aᵏ over the steps, and its determinant."""
+    row, total = C, C.T @ C
+    for _ in range(int(steps.fraction()) - 1):
+        row = (row @ A).normal()
+        total = total + row.T @ row
+    total = total.normal()
+    return {"matrix": total, "determinant": total.determinant()}
+
+
+def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the Gramian over all time where what the output sees decays, else the verdict."""
+    variable, hidden = plant.variable, test["restricted"]
+    seen = A.characteristic_polynomial(variable)
+    if hidden.shape[0]:
+        seen = seen / hidden.characteristic_polynomial(variable)
+    found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
+    nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
+    if found.verdict == "no":
+        return {**nothing, "verdict": "no"}
+    order = A.shape[0]
+    if order > (_MOST_WITH_PARAMETERS if (A.names | C.names) else _MOST_STATES):
+        return {**nothing, "question": f"Lyapunov's equation for {order} states"}
+    W = lyapunov(A, C, discrete=plant.is_discrete)
+    if W is None:
+        return {**nothing, "question": "Lyapunov's equation has no unique solution"}
+    exists = {"exists_where": found.positive} if found.verdict == "conditional" else {}
+    return {"matrix": W, "determinant": W.determinant(), "seen": seen, **exists}
+
+
+def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:
+    """Return the symmetric P with AᵀP + PA = −CᵀC (AᵀPA − P = −CᵀC), None where it is not unique."""
+    order = A.shape[0]
+    places = [(i, j) for i in range(order) for j in range(i, order)]
+    Q = (C.T @ C).normal()
+    columns = []
+    for i, j in places:
+        unit = Matrix.of([[int((r, c) in {(i, j), (j, i)}) for c in range(order)] for r in range(order)])
+        image = A.T @ unit @ A - unit if discrete else A.T @ unit + unit @ A
+        columns.append([image[r, c] for r, c in places])
+    table = Matrix.of(columns).T
+    try:
+        found = table.solve(Matrix.column([-Q[r, c] for r, c in places])).normal()
+    except ZeroDivisionError:
+        return None
+    values = {place: found[k, 0] for k, place in enumerate(places)}
+    return Matrix.of([[values[min(i, j), max(i, j)] for j in range(order)] for i in range(order)])

@@ -1,0 +1,96 @@
+"""Functions of time: the matrix exponential, Gramians, initial states and their covariance."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "matrix_exponential": "Matrix exponential.",
+    "exponential_modes": "The characteristic polynomial decides which functions of time occur:",
+    "exponential_sum": "Each of its roots brings its functions, with constant matrices that the derivatives at $t=0$ determine:",
+    "exponential_here": "Here",
+    "root_named": "where {root}.",
+    "exponential_rate": "The check is the equation that defines it,",
+    "exponential_start": "Its derivative is $A$ times itself, and at the start it is the identity, {start}.",
+    "branch_under": "There the mode oscillates.",
+    "branch_over": "There the mode does not oscillate.",
+    "branch_equal": "There the root is double.",
+    "no_closed_form": "The factor {factor} of degree {degree} cannot be reduced over the field of the data, so its roots, and "
+    "the functions of time that belong to them, have no closed form here. Which exponentials occur is not decided.",
+    "too_many_states": "With {order} states the exponential is longer than what is computed here. It is not decided.",
+    "gramian_observability": "Observability Gramian.",
+    "gramian_controllability": "Controllability Gramian.",
+    "output_of_exponential": "The output that the states leave behind is",
+    "input_through_exponential": "What the input brings about at a distance $t$ in time is",
+    "gramian_integral": "Its products, integrated over the horizon, are the Gramian:",
+    "gramian_determinant": "Its determinant is",
+    "lyapunov": "Lyapunov's equation {equation} has the solution",
+    "gramian_by_lyapunov": "Since the derivative of $Phiᵀ P_l Phi$ is $- Phiᵀ Cᵀ C Phi$, the Gramian is the same expression for every "
+    "sign of the discriminant:",
+    "gramian_in_case": "Entry by entry,",
+    "gramian_infinite": "The integral over all time exists, since what the output sees decays. It solves Lyapunov's equation "
+    "{equation}, whose only solution is",
+    "seen_part": "Of this the output sees the part that is left without the hidden modes,",
+    "gramian_diverges": "What the output sees does not decay, so the integral over all time does not exist.",
+    "gramian_open": "Whether the integral over all time exists is not decided here: {question}.",
+    "gramian_exists_if": "The integral over all time exists exactly where {where}. It solves Lyapunov's equation {equation}, whose only "
+    "solution is",
+    "gramian_steps": "Over a horizon of {steps} steps the Gramian is the sum",
+    "finite_sum": "Finite sum.",
+    "finite_sum_is": "The same kernel belongs to the finite sum over the powers of $A$,",
+    "kernel_none": "Its determinant is {determinant}, so it has no kernel, and neither has $W$: the initial state can be found "
+    "from the output.",
+    "kernel_none_controllability": "Its determinant is {determinant}, so it has no kernel, and neither has $W$: every state can be "
+    "reached.",
+    "kernel_shared": "Gramian, finite sum and $O$ have the same kernel. For",
+    "kernel_unseen": "the output vanishes at all times, so this state and 0 cannot be told apart:",
+    "kernel_of_gramian": "and with it the product with the Gramian and with the finite sum,",
+    "initial_state": "Initial state.",
+    "measured": "The data are {data}.",
+    "output_free": "Without input, $y = Y x_0$.",
+    "output_forced": "The input alone, from rest, moves the state along",
+    "output_solution": "which solves {equation} from 0. Then $y = Y x_0$ and what the input adds, and the input's part is moved "
+    "to the left:",
+    "moments": "Multiplied by $Phiᵀ Cᵀ$ and integrated over the interval, this becomes $W x_0 = r_0$ with the Gramian",
+    "moments_right": "and the right side",
+    "initial_found": "The Gramian is invertible, so the initial state is the one solution,",
+    "initial_checked": "{moments}, and the output that starts there is the one that was measured: {output}.",
+    "initial_not_unique": "The output does not fix the initial state, since the pair ($C$, $A$) is not observable. One state that "
+    "explains it is",
+    "initial_kernel": "Its output is the one measured, and that of the vector beside it vanishes, so every multiple of that one may be added:",
+    "initial_candidate": "The value and the derivatives of {free} at 0 leave one candidate only,",
+    "initial_refused": "but its output is another one: what is left, {rest}, is not 0. No initial state explains these data.",
+    "initial_start": "The value and the derivatives at 0 would have to be $O x_0$. They are",
+    "initial_inconsistent": "They contradict each other: with {row} one has {zero}, but {rest}. No "
+    "initial state explains these data.",
+    "covariance": "Uncertainty of the initial state.",
+    "noise": "White noise of intensity $Q$ is added to the known input and white noise of intensity $R$ to the output,",
+    "noise_output_only": "White noise of intensity $R$ is added to the output,",
+    "estimate_is": "The estimate is linear in the measurements, so it is unbiased, and its covariance is the sum of two parts. "
+    "The output noise enters through",
+    "estimate_input": "The input noise reaches the estimate through",
+    "estimate_input_integral": "which gives",
+    "parts_of_covariance": "Between two inverse Gramians these are the two parts of the covariance, the one from the output noise",
+    "input_part": "and the one from the input noise",
+    "covariance_is": "Together,",
+    "horizon_tradeoff": "A longer horizon averages the output noise and gathers the input noise.",
+    "inverse_too_long": "The inverse of this Gramian is longer than what is computed here. The covariance is not decided.",
+    "gramian_is": "The Gramian over the horizon is",
+    "best_horizon": "The variance of component {number} is {variance}, with {rate}. It is least where the last factor vanishes.",
+    "not_minimum_variance": "With input noise this estimate does not have the smallest variance possible; that one comes from a Riccati "
+    "equation.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "gramian_infinite": ("stable",),
+    "gramian_diverges": ("unstable",),
+}
+
+RESTS_ON: dict[str, str] = {
+    "exponential_sum": "exponential",
+    "gramian_integral": "gramian",
+    "finite_sum_is": "finite_sum",
+    "kernel_shared": "finite_sum",
+    "moments": "reconstruction",
+    "estimate_is": "noise",
+}
+
+NAMING = ("no_closed_form",)
