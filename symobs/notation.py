@@ -37,6 +37,7 @@ LETTERS: dict[str, LetterForm] = {
     "v": LetterForm("v", "v", "vector"),
     "N": LetterForm("N", "N", "basis of the hidden subspace"),
     "X": LetterForm("X", "X", "plant on the hidden subspace"),
+    "mu": LetterForm(r"\mu({v})", "μ({v})", "polynomial that annuls the hidden part"),
     "x": LetterForm("x", "x", "state"),
     "x_hat": LetterForm(r"\hat x", "x̂", "estimate"),
     "e": LetterForm("e", "e", "estimation error"),
@@ -59,6 +60,7 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
+    "mu_at": (r"\mu", "μ"),
     "phi_at": (r"\varphi", "φ"),
     "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
     "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
@@ -162,6 +164,9 @@ class Theorem:
 
 THEOREMS: dict[str, Theorem] = {
     "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
+    "pbh": Theorem("test of Popov, Belevitch and Hautus", "S0, chapter 4"),
+    "detectability": Theorem("detectability", "S0, section 4.4"),
+    "lyapunov": Theorem("detectability in the sense of Lyapunov", "S3, footnote 1"),
     "duality": Theorem("duality", "S0, Theorem 4.1"),
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),
     "canonical_form": Theorem("placement through canonical form", "S0, Example 4.1"),

@@ -26,7 +26,7 @@ from symobs.derivation.steps import (
     Step,
 )
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, roots_are
+from symobs.exact import Ideal, Matrix, Scalar, roots_are
 from symobs.formula import (
     Derivative,
     Environment,
@@ -48,7 +48,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
-from symobs.stability import monic, no_stable_compensator, stability
+from symobs.stability import is_beyond, is_marginal, marginal_where, monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -193,10 +193,11 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _about_letters(fact.property.subject, environment)
         value = as_scalar(evaluate(fact.property.subject, environment, Exact(environment)))
         polynomial = _polynomial(value, environment)
-        found = stability(polynomial, environment.variable, environment.signs, discrete=discrete)
+        needed = _needed(fact.property.name, polynomial, environment, discrete)
         said = {_positive_part(relation, environment) for relation in fact.where}
-        if fact.property.name != "stable" or found.verdict != "conditional" or said != set(found.positive):
-            _reject(f"{polynomial} is stable exactly where {', '.join(f'{value} > 0' for value in said)}")
+        strict = {operator in {"<", ">"} for relation in fact.where for operator in relation.operators}
+        if not needed or said != set(needed) or strict != {fact.property.name == "stable"}:
+            _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
     _about_letters(fact.subject, environment)
     value = as_scalar(evaluate(fact.subject, environment, Exact(environment)))
@@ -204,12 +205,20 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _reject(f"{fact.name}({value})")
 
 
+def _needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
+    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
+    variable, signs = environment.variable, environment.signs
+    if name == "marginal":
+        return marginal_where(polynomial, variable, signs, discrete=discrete)
+    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
 def _positive_part(relation: Relation, environment: Environment) -> Scalar:
-    """Return what a strict inequality says is positive."""
-    if relation.operators not in {(">",), ("<",)}:
+    """Return what an inequality says is positive, or not negative."""
+    if relation.operators not in {(">",), ("<",), (">=",), ("<=",)}:
         _reject(plain_relation(relation, environment.variable))
     left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
-    difference: Scalar = left - right if relation.operators == (">",) else right - left
+    difference: Scalar = left - right if relation.operators[0][0] == ">" else right - left
     return difference
 
 
@@ -278,8 +287,16 @@ def _established(formula: Formula, environment: Environment) -> None:
 def _on_stratum(when: Relation, substitution: dict[str, Scalar], environment: Environment) -> Environment:
     """Return the environment on a stratum, after verifying that the substitution describes it.
 
-    `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere too.
+    Without a substitution the equation itself is what is known inside: that a polynomial of the parameters vanishes, or
+    that λ is an eigenvalue.  Otherwise `when` has one factor that can vanish, linear in the one name put in: another
+    equation would hold elsewhere too.
     """
+    if not substitution and when.operators == ("=",):
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+        inside = replace(environment, relations=(*environment.relations, left - right), assumed=())
+        return (
+            inside if not Ideal.of(inside.relations).is_whole else _reject(plain_relation(when, environment.variable))
+        )
     replaced = {}
     for name, value in environment.values.items():
         try:
@@ -326,6 +343,12 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
     "no_stable_compensator": lambda value, environment, discrete: (
         not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
+    "marginal": lambda value, environment, discrete: is_marginal(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "beyond": lambda value, environment, discrete: is_beyond(
+        value, environment.variable, environment.signs, discrete=discrete
     ),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

@@ -3,26 +3,30 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
+from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.complex import Complex
 from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.ideal import Ideal, TooLarge
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
-from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
+from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 from symobs.exact.transfer import controller, transfer
 
 __all__ = [
+    "EIGENVALUE",
     "RATIONALS",
     "VARIABLES",
     "Complex",
+    "Extension",
     "Factored",
     "Field",
     "Ideal",
     "Matrix",
     "Root",
     "Scalar",
+    "Shifted",
     "TooLarge",
     "apply_polynomial",
     "companion",

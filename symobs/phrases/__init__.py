@@ -11,9 +11,9 @@ from __future__ import annotations
 import string
 from typing import Any
 
-from symobs.phrases import compensation, gains, polynomials, rank, titles
+from symobs.phrases import compensation, gains, modes, polynomials, rank, titles
 
-_MODULES = (titles, polynomials, rank, gains, compensation)
+_MODULES = (titles, polynomials, rank, modes, gains, compensation)
 
 
 def _collected(name: str) -> dict[str, Any]:
