@@ -21,6 +21,7 @@ Poles: TypeAlias = Any
 PolynomialText: TypeAlias = Any
 GainText: TypeAlias = Any
 Name: TypeAlias = str
+Sign: TypeAlias = Any
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -32,6 +33,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "description": 'a gain, "[19; 81]"',
         "oneOf": [{"type": "string"}, {"type": "array"}],
     },
+    "Sign": {"description": "1 or -1", "enum": [1, -1]},
     "Name": {"description": "a name", "type": "string"},
 }
 
