@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs.analysis.coordinates import set_anew
 from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, pencil_of, show_spectrum, stack_of
 from symobs.analysis.modes import stable_modes
 from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, undecided
@@ -164,4 +165,5 @@ def _case(page: Page, letter: str, case: Case) -> Step:
         inner.conclude_silently(*hidden(inner, found.kind == "observability"))
     _generic(inner, found)
     _cases(inner, letter, found)
-    return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), tuple(inner.steps))
+    when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
+    return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

@@ -123,8 +123,10 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
-        case Case(when, substitution, inside):
-            _walk(inside, _on_stratum(when, dict(substitution), environment), discrete)
+        case Case(when, substitution, inside, anew=anew):
+            stratum = _on_stratum(when, dict(substitution), environment)
+            kept = {name: value for name, value in stratum.values.items() if name not in anew}
+            _walk(inside, replace(stratum, values=kept), discrete)
         case Section(title, inside):
             _sentence(title, environment, discrete)
             environment = _walk(inside, environment, discrete)

@@ -98,12 +98,17 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it."""
+    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
+
+    Without a substitution `when` is what is known inside.  The letters in `anew` have no meaning there until they are
+    introduced again.
+    """
 
     when: Relation
     substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None
+    anew: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,9 @@ from __future__ import annotations
 import string
 from typing import Any
 
-from symobs.phrases import compensation, duality, gains, modes, polynomials, rank, titles
+from symobs.phrases import compensation, coordinates, duality, gains, modes, polynomials, rank, titles
 
-_MODULES = (titles, polynomials, rank, modes, duality, gains, compensation)
+_MODULES = (titles, polynomials, rank, modes, duality, coordinates, gains, compensation)
 
 
 def _collected(name: str) -> dict[str, Any]:
