@@ -185,6 +185,7 @@ THEOREMS: dict[str, Theorem] = {
     "duality_reversed": Theorem("duality through −Aᵀ", "S4"),
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),
     "canonical_form": Theorem("placement through canonical form", "S0, Example 4.1"),
+    "decomposition": Theorem("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
     "ackermann": Theorem("Ackermann's formula", "J. Ackermann, Regelungstechnik 20 (1972), 297-300"),
     "observer": Theorem("full-order observer", "S0, (4.18)-(4.20)"),
     "error": Theorem("error equation", "S0, (4.19)"),

@@ -11,7 +11,7 @@ from symobs.exact import Matrix, Scalar, echelon, independent_rows, kernel, tran
 from symobs.page import Page, relation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from symobs.derivation import Step
     from symobs.method import Result
@@ -80,7 +80,9 @@ def transfer_matrix(A: Matrix, B: Matrix, C: Matrix, D: Matrix, variable: str) -
     def entry(i: int, j: int) -> Scalar:
         if not order:
             return D[i, j]
-        numerator, denominator = transfer(A, B.select(range(order), [j]), C.select([i], range(order)), D[i, j], variable)
+        numerator, denominator = transfer(
+            A, B.select(range(order), [j]), C.select([i], range(order)), D[i, j], variable
+        )
         return numerator / denominator
 
     return Matrix.of([[entry(i, j) for j in range(inputs)] for i in range(outputs)], inputs)
@@ -93,8 +95,8 @@ def set_anew(outer: Page, inner: Page) -> Iterator[str]:
             yield name
 
 
-def case_steps(page: Page, result: Result, write: Callable[[Page], None]) -> Iterator[Step]:
-    """Yield a case for each stratum of a result; `write` of the result there fills its page."""
+def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
+    """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
     for case in result.case_tree:
         if case.result is None:
             yield undecided(page, case)
@@ -103,8 +105,7 @@ def case_steps(page: Page, result: Result, write: Callable[[Page], None]) -> Ite
         inner = Page(found.plant)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
         inner.environment = page.environment.having(values=matrices)
-        getattr(found, write.__name__)(inner)
+        getattr(found, write)(inner)
         inner.steps += case_steps(inner, found, write)
         when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
         yield CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
-

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.coordinates import BLOCKS, basis, case_steps, minor_of, transfer_matrix
 from symobs.analysis.observability import power_rows
-from symobs.analysis.pages import given
+from symobs.analysis.pages import factored_form, given
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
@@ -87,7 +87,9 @@ class Decomposition(Result):
         """Yield that the parts that should be reached are controllable, and those that should be seen observable."""
         for minor, says in ((self._reaching, "reached"), (self._seeing, "seen")):
             if minor is not None:
-                yield Claim(relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, f"what should be {says} is {says}")
+                yield Claim(
+                    relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, f"what should be {says} is {says}"
+                )
 
     @cached_property
     def _reaching(self) -> Matrix | None:
@@ -133,7 +135,9 @@ class Decomposition(Result):
         """The plant's domain, and where the parts have the generic dimensions in these coordinates."""
         listed = {c.expression for c in self.domain}
         entries = [value.common_denominator() for value in self.answer.values() if isinstance(value, Matrix)]
-        claimed = [f for f in vanishing_factors(entries, self.plant.symbols.signs) if self.plant.variable not in f.names]
+        claimed = [
+            f for f in vanishing_factors(entries, self.plant.symbols.signs) if self.plant.variable not in f.names
+        ]
         factors = dict.fromkeys((*vanishing_factors(self.existence, self.plant.symbols.signs), *claimed))
         return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
 
@@ -165,7 +169,7 @@ class Decomposition(Result):
             if conditions:
                 page.assume("structure_provided", *conditions)
             self._minimal(page)
-            page.steps += case_steps(page, self, self._in_a_case)
+            page.steps += case_steps(page, self, "write_form")
 
     def _subspaces(self, page: Page) -> None:
         A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)
@@ -186,7 +190,7 @@ class Decomposition(Result):
     def _minimal(self, page: Page) -> None:
         first = self.part(0)
         P: Matrix = self.answer["transfer_function"]
-        value = page.value(P[0, 0] if P.shape == (1, 1) else P)
+        value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
         direct = page["D"] if self.plant.matrices.has_feedthrough else None
         resolvent = (page.s @ page.identity(self.plant.order) - page["A"]).inverse
         whole = page["C"] @ resolvent @ page["B"]
@@ -202,9 +206,10 @@ class Decomposition(Result):
         own = own + direct if direct is not None else own
         page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
 
-    def _in_a_case(self, inner: Page) -> None:
-        self._coordinates(inner)
-        self._minimal(inner)
+    def write_form(self, page: Page) -> None:
+        """Write the coordinates and the minimal part, in a case."""
+        self._coordinates(page)
+        self._minimal(page)
 
 
 def solve(plant: StateSpace, method_name: str) -> Decomposition:
@@ -215,7 +220,11 @@ def solve(plant: StateSpace, method_name: str) -> Decomposition:
     A, B, C = (T @ m.A @ S).normal(), (T @ m.B).normal(), (m.C @ S).normal()
     first = range(sizes[0])
     P = transfer_matrix(
-        A.select(first, first), B.select(first, range(plant.inputs)), C.select(range(plant.outputs), first), m.D, plant.variable
+        A.select(first, first),
+        B.select(first, range(plant.inputs)),
+        C.select(range(plant.outputs), first),
+        m.D,
+        plant.variable,
     )
     answer = {
         "T": T,

@@ -62,7 +62,11 @@ class Dual(Result):
         for kind, test in self.tests.items():
             inner = Environment(variable=e.variable, values={"M": test.answer["matrix"], "N": self._dual_matrix(kind)})
             signs = self._signs(self.plant.outputs if kind == "observability" else self.plant.inputs)
-            yield Claim(relation(letter("N", inner), letter("M", inner).T @ Term(Literal(signs), inner)), inner, f"dual of {kind}")
+            yield Claim(
+                relation(letter("N", inner), letter("M", inner).T @ Term(Literal(signs), inner)),
+                inner,
+                f"dual of {kind}",
+            )
             ranks = answer[f"{kind}_rank"], answer[f"dual_{_OTHER[kind]}_rank"], test.answer["rank"]
             yield Claim(relation(*ranks), inner, f"both ranks of {kind}")
 
@@ -117,7 +121,9 @@ class Dual(Result):
                 key = tuple(map(str, case.when))
                 if key not in found:
                     there = None if case.result is None else case.result.plant
-                    found[key] = type(case)(case.when, case.substitution, there and solve(there, self.sign, self.method))
+                    found[key] = type(case)(
+                        case.when, case.substitution, there and solve(there, self.sign, self.method)
+                    )
         return tuple(found.values())
 
     @cached_property
