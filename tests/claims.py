@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Factored, Scalar
 from symobs.expression import parse_polynomial
 from symobs.specification import read_poles
+from tests.claims_of_modes import MODES
 from tests.plain import (
     Point,
     Polynomial,
@@ -264,4 +265,5 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "controllability": rank_holds,
     "characteristic_polynomial": polynomial_holds,
     "transfer_function": transfer_holds,
+    **MODES,
 }

@@ -21,8 +21,8 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, companion, factored, hankel_of
-from symobs.formula import Environment, Literal
-from symobs.formula.term import Term, block, identity, letter
+from symobs.formula import Environment
+from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 
@@ -246,5 +246,5 @@ def canonical_form(plant: StateSpace, *, kind: Name = "controllable", method: Na
         plant.require(part, task="canonical_form")
         if count != 1:
             message = f"the plant has {count} {name}, and the {kind} canonical form is that of one"
-            raise InputError(message, where=f"plant.{part}", repair=f'keep one of them, or write kind = "modal"')
+            raise InputError(message, where=f"plant.{part}", repair='keep one of them, or write kind = "modal"')
     return choose("canonical_form", method, "basis").solve(plant, kind)

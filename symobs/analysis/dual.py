@@ -17,17 +17,16 @@ from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.analysis.observability import RankResult
     from symobs.certificate import Certificate
-    from symobs.method import Case
     from symobs.specification import Name, Sign
+    from symobs.system import StateSpace
 
 #: Which rank test of the dual belongs to which of the plant.
 _OTHER = {"observability": "controllability", "controllability": "observability"}
@@ -115,15 +114,13 @@ class Dual(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The dual on every stratum of either rank test."""
-        found = {}
+        found: dict[tuple[str, ...], Case] = {}
         for test in self.tests.values():
             for case in test.case_tree:
                 key = tuple(map(str, case.when))
                 if key not in found:
-                    there = None if case.result is None else case.result.plant
-                    found[key] = type(case)(
-                        case.when, case.substitution, there and solve(there, self.sign, self.method)
-                    )
+                    there = solve(case.result.plant, self.sign, self.method) if case.result is not None else None
+                    found[key] = Case(case.when, case.substitution, there)
         return tuple(found.values())
 
     @cached_property
