@@ -110,9 +110,9 @@ def coordinates_hold(result: Any, at: Setting) -> None:
         return
     T, S, A, B, C = (matrix_at(result.answer[key], at.point) for key in ("T", "inverse", "A", "B", "C"))
     assert multiply(T, S) == [[Fraction(i == j) for j in range(len(T))] for i in range(len(T))]
-    assert A == multiply(multiply(T, at.A), S)
-    assert B == multiply(T, at.B)
-    assert C == multiply(at.C, S)
+    assert multiply(multiply(T, at.A), S) == A
+    assert multiply(T, at.B) == B
+    assert multiply(at.C, S) == C
 
 
 def decomposition_holds(result: Any, at: Setting) -> None:

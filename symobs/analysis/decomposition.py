@@ -45,15 +45,15 @@ class Decomposition(Result):
     task: ClassVar[str] = "decomposition"
 
     @property
-    def sizes(self) -> tuple[int, ...]:
+    def dimensions(self) -> tuple[int, ...]:
         """The dimensions of the four parts."""
         found: tuple[int, ...] = self.answer["sizes"]
         return found
 
     def part(self, *blocks: int) -> list[int]:
         """Return the indices of the states of some parts."""
-        starts = [sum(self.sizes[:k]) for k in range(4)]
-        return [i for k in blocks for i in range(starts[k], starts[k] + self.sizes[k])]
+        starts = [sum(self.dimensions[:k]) for k in range(4)]
+        return [i for k in blocks for i in range(starts[k], starts[k] + self.dimensions[k])]
 
     def claims(self) -> Iterator[Claim]:
         """Yield the change of coordinates, the zero pattern, the minors, the transfer function."""
@@ -67,8 +67,8 @@ class Decomposition(Result):
         yield Claim(relation(letter("B_bar", e), T @ letter("B", e)), e)
         yield Claim(relation(letter("C_bar", e), letter("C", e) @ S), e)
         yield Claim(relation(letter("D_bar", e), letter("D", e)), e)
-        yield Claim(relation(Scalar.of(sum(self.sizes)), n), e, "the parts make up the whole")
-        yield Claim(relation(answer["minimal_order"], self.sizes[0]), e, "the order is that of the first part")
+        yield Claim(relation(Scalar.of(sum(self.dimensions)), n), e, "the parts make up the whole")
+        yield Claim(relation(answer["minimal_order"], self.dimensions[0]), e, "the order is that of the first part")
         for to, out in ZEROS:
             yield from self._zero("A_bar", self.part(to), self.part(out), e)
         yield from self._zero("B_bar", self.part(2, 3), range(self.plant.inputs), e)
@@ -154,7 +154,7 @@ class Decomposition(Result):
         single = P.shape == (1, 1)
         return {
             **{key: self.answer[key] for key in "TABCD"},
-            "sizes": dict(zip(BLOCKS, self.sizes, strict=True)),
+            "sizes": dict(zip(BLOCKS, self.dimensions, strict=True)),
             "minimal_order": self.answer["minimal_order"],
             "transfer_function": P[0, 0] if single else P,
         }
@@ -179,7 +179,9 @@ class Decomposition(Result):
         page.define("O", see)
 
     def _coordinates(self, page: Page) -> None:
-        page.define("S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.sizes)))
+        page.define(
+            "S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.dimensions))
+        )
         page.define("T", page["S"].inverse, say="", answer=True)
         T, S = page["T"], page["S"]
         page.define("A_bar", T @ page["A"] @ S, say="decomposed", answer=True)

@@ -28,12 +28,13 @@ from symobs.exact import (
     independent_rows,
     rank,
     roots_of,
+    stable_roots,
 )
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
-from symobs.stability import stability
+from symobs.stability import on_boundary, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -136,8 +137,8 @@ def stable_modes(roots: tuple[Root, ...], signs: Mapping[str, str], *, discrete:
     if factor.names <= {variable}:
         if roots[0].is_closed:
             return tuple(_is_stable(root, discrete=discrete) for root in roots)
-        from symobs.exact.sympy_border import stable_roots  # noqa: PLC0415 - SymPy counts the roots of no closed form
-
+        if on_boundary(factor, variable, signs, discrete=discrete):
+            return (False,) * len(roots)
         return stable_roots(factor, variable, discrete=discrete)
     if len(roots) == 1 and stability(factor, variable, signs, discrete=discrete).verdict == "no":
         return (False,)

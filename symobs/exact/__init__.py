@@ -12,6 +12,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
+from symobs.exact.sides import stable_roots
 from symobs.exact.transfer import controller, transfer
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "root_of_pole",
     "roots_are",
     "roots_of",
+    "stable_roots",
     "transfer",
     "unit_rows",
 ]

@@ -137,7 +137,11 @@ def _is_inside(root: Any, *, discrete: bool) -> bool:
     """Tell on which side of the boundary a root lies; one closer to it than any bound for its distance lies on it."""
     degree, size = root.poly.degree(), len(str(sum(abs(int(c)) for c in root.poly.all_coeffs())))
     # r and its mirror image are roots of a polynomial of degree 2d: Mahler's bound for the distance of two roots of it.
-    places = (degree + 1) * len(str(2 * degree)) + (4 * degree + 1) * size + 5
-    value = root.evalf(places + size + 15)
-    distance = abs(value) - 1 if discrete else sympy.re(value)
-    return bool(distance < -sympy.Rational(1, 10**places))
+    smallest = (degree + 1) * len(str(2 * degree)) + (4 * degree + 1) * size + 5
+    distance: Any = 0
+    for places in (8, smallest):
+        value = root.evalf(places + size + 10)
+        distance = abs(value) - 1 if discrete else sympy.re(value)
+        if abs(distance) > sympy.Rational(1, 10**places):
+            return bool(distance < 0)
+    return False
