@@ -157,7 +157,10 @@ def met(result: Result, name: str, expected: Any, where: str) -> bool:
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
         return functions_agree(read(expected, names, variable="t", where=where, functions=True), found)
     if isinstance(found, Matrix):
-        return parse_matrix(expected, names, where=where) == found
+        known = names if names is None or variable not in found.names else {**names, variable: "real"}
+        return parse_matrix(expected, known, where=where) == found
+    if isinstance(found, Mapping):
+        return isinstance(expected, Mapping) and dict(expected) == dict(found)
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
@@ -188,6 +191,8 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return {_relation(entry, names, where) for entry in expected} == {
             _relation(str(entry), names, where) for entry in found
         }
+    if all(isinstance(entry, Mapping) for entry in found):
+        return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
     if all(isinstance(entry, Scalar) for entry in found):
@@ -286,6 +291,39 @@ def _in_powers(value: Scalar, q: str, text: str, where: str) -> tuple[Scalar, Sc
 
 def _no_surd(text: str, where: str) -> InputError:
     return InputError(f'"{shown(text)}" is not of the form a + b sqrt(c)', where=where, repair="leave it out")
+
+
+# -- modes ----------------------------------------------------------------------------------------------------------
+
+
+def _modes_agree(found: list[Any], expected: list[Any], result: Result, where: str) -> bool:
+    """Tell whether each expected mode is one of those found, each once; of a mode the keys given are compared."""
+    waiting = list(found)
+    for i, wanted in enumerate(expected):
+        place = f"{where}[{i}]"
+        match = next((mode for mode in waiting if _is_mode(mode, wanted, result, place)), None)
+        if match is None:
+            return False
+        waiting.remove(match)
+    return not waiting
+
+
+def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Result, where: str) -> bool:
+    if not isinstance(wanted, Mapping) or not set(wanted) <= set(mode):
+        return False
+    names, variable = _names(result), result.plant.variable
+    for key, entry in wanted.items():
+        value = mode[key]
+        if isinstance(value, Root):
+            if Counter(map(_key, _roots([entry], names, variable, f"{where}.{key}"))) != Counter([_key(value)]):
+                return False
+        elif isinstance(value, list):
+            table = [[str(cell) for cell in row] for row in value]
+            if parse_matrix(entry, names, where=f"{where}.{key}") != parse_matrix(table, names, where=f"{where}.{key}"):
+                return False
+        elif type(value) is not type(entry) or value != entry:
+            return False
+    return True
 
 
 # -- vectors --------------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import Condition
-from symobs.exact import Complex, Factored, Matrix, Root, Scalar
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,7 +17,7 @@ def to_json(value: Any) -> Any:
     """Return JSON of a value: exact strings, nested lists, JSON integers and booleans."""
     if isinstance(value, Matrix):
         return [[str(entry) for entry in row] for row in value.rows]
-    if isinstance(value, (Scalar, Complex, Factored, Root)):
+    if isinstance(value, (Scalar, Complex, Factored, Root, Shifted)):
         return str(value)
     if isinstance(value, Condition):
         return f"{value.expression} {_RELATIONS[value.operator]} 0"
@@ -47,6 +47,8 @@ def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
         return sympy_border.complex_to_sympy(value, objects)
     if isinstance(value, Root):
         return sympy_border.root_to_sympy(value, objects)
+    if isinstance(value, Shifted):
+        return sympy_border.scalar_to_sympy(value.value, objects) - sympy_border.root_to_sympy(value.root, objects)
     if isinstance(value, Condition):
         return sympy_border.relation_to_sympy(value.expression, value.operator, objects)
     if isinstance(value, (list, tuple)):

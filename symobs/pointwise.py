@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
-from symobs.exact import Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
 from symobs.formula import Restricted
 
 if TYPE_CHECKING:
@@ -25,6 +25,9 @@ def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], s
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0.
     """
+    values, relations = list(values), tuple(relations)
+    if any(EIGENVALUE in value.names for value in (*values, *relations)):  # it may be complex: signs say nothing of it
+        return Ideal.of((*relations, *values)).is_whole
     known = [math.prod(vanishing_factors([value], signs), start=Scalar.of(1)) for value in values if value]
     ideal = Ideal.of((*relations, *known))
     while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
@@ -48,7 +51,7 @@ class Pointwise(Restricted):
 
         Raises TypeError where that cannot be shown.
         """
-        if function != "rank":
+        if function != "rank" or any(EIGENVALUE in value.names for value in self.relations):
             return super().apply(function, value)
         columns, vectors = echelon(value, self.ideal)
         kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))

@@ -28,6 +28,7 @@ Name: TypeAlias = Annotated[str, "Name"]
 Horizon: TypeAlias = Annotated[Any, "Horizon"]
 TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
 Intensity: TypeAlias = Annotated[Any, "Intensity"]
+Sign: TypeAlias = Annotated[Any, "Sign"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -51,6 +52,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "description": 'a signal as a function of the time t, "t^2" or "[t; 1]"',
         "oneOf": [{"type": "string"}, {"type": "number"}, {"type": "array"}],
     },
+    "Sign": {"description": "1 or -1", "enum": [1, -1]},
     "Name": {"description": "a name", "type": "string"},
     "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
     "TimeFunctions": {

@@ -107,6 +107,70 @@ def _essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
     return kept
 
 
+def on_boundary(factor: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
+    """Tell whether all roots of an irreducible factor surely lie on the imaginary axis (the unit circle), each once.
+
+    q(s) = p(s²) has only simple imaginary roots exactly when q + q′ is stable (Hermite and Biehler): the roots of p are
+    then real, negative and distinct.
+    """
+    coefficients = monic(factor, variable).coefficients(variable)
+    if len(coefficients) == 2:
+        size = coefficients[1] ** 2 if discrete else coefficients[1] ** 2 + 1
+        return size.is_one
+    if discrete:
+        coefficients = tuple(_bilinear(coefficients))
+    if coefficients[0].is_zero or any(not c.is_zero for c in coefficients[1::2]):
+        return False
+    order = len(coefficients) - 1
+    widened = list(coefficients)
+    for k, c in enumerate(coefficients[:-1]):
+        widened[k + 1] = widened[k + 1] + c * (order - k)
+    return stability(from_coefficients(widened, variable), variable, signs, discrete=False).verdict == "yes"
+
+
+def is_marginal(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
+    """Tell whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple."""
+    return all(
+        stability(factor, variable, signs, discrete=discrete).verdict == "yes"
+        or (power == 1 and on_boundary(factor, variable, signs, discrete=discrete))
+        for factor, power in polynomial.numerator.factors()[1]
+    )
+
+
+def marginal_where(
+    polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool
+) -> tuple[Scalar, ...]:
+    """Return what must be ≥ 0 for the one root of a linear polynomial to lie in Re s ≤ 0 (|z| ≤ 1), where it can fail."""
+    coefficients = monic(polynomial, variable).coefficients(variable)
+    if len(coefficients) != 2:
+        return ()
+    c = coefficients[1]
+    bounds = (1 - c, 1 + c) if discrete else (c,)
+    return tuple(b for b in bounds if sign_of(b, signs) not in {"positive", "nonnegative", "zero"})
+
+
+def is_beyond(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
+    """Tell whether some root surely lies in Re s > 0 (|z| > 1).
+
+    A factor with numbers for coefficients has one there where it is neither stable nor wholly on the boundary, since its
+    roots on the boundary would bring a mirror image of every other.  With parameters two coefficients of surely opposite
+    sign show it.
+    """
+    for factor, _ in polynomial.numerator.factors()[1]:
+        if factor.degree(variable) < 1:
+            continue
+        coefficients: Sequence[Scalar] = monic(factor, variable).coefficients(variable)
+        if factor.names == {variable}:
+            stable = stability(factor, variable, signs, discrete=discrete).verdict == "yes"
+            if not stable and not on_boundary(factor, variable, signs, discrete=discrete):
+                return True
+        if {"positive", "negative"} <= {
+            sign_of(c, signs) for c in (_bilinear(coefficients) if discrete else coefficients)
+        }:
+            return True
+    return False
+
+
 def monic(polynomial: Scalar, variable: str) -> Scalar:
     """Return the polynomial divided by its leading coefficient."""
     coefficients = polynomial.coefficients(variable)

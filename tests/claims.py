@@ -12,6 +12,7 @@ from symobs.exact import Factored, Scalar
 from symobs.expression import parse_polynomial
 from symobs.face import to_sympy
 from symobs.specification import read_poles
+from tests.claims_of_modes import MODES
 from tests.plain import (
     Point,
     Polynomial,
@@ -298,4 +299,5 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "transfer_function": transfer_holds,
     "reduced_order_observer": reduced_order_holds,
     "time_varying_observability": stack_holds,
+    **MODES,
 }

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.exact import Matrix, Root, Scalar
+from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.formula import (
     Apply,
     Block,
@@ -90,6 +90,80 @@ def adjugate(table: Rows) -> Rows:
     return [[cofactor(i, j) for j in range(len(table))] for i in range(len(table))]
 
 
+class Algebraic(Fraction):
+    """A polynomial in λ modulo q: an element of Q[λ]/(q), which is a field where q is irreducible."""
+
+    parts: list[Fraction]
+    modulus: list[Fraction]
+
+    @classmethod
+    def make(cls, parts: Sequence[Fraction], modulus: list[Fraction]) -> Fraction:
+        """Reduce parts, constant first, by the monic modulus, constant first."""
+        left, degree = [Fraction(p) for p in parts], len(modulus) - 1
+        while len(left) > degree:
+            lead = left.pop()
+            for k in range(degree):
+                left[len(left) - degree + k] -= lead * modulus[k]
+        found = super().__new__(cls, 0)
+        found.parts, found.modulus = left + [Fraction(0)] * (degree - len(left)), modulus
+        return found
+
+    def _of(self, other: Fraction) -> list[Fraction]:
+        return other.parts if isinstance(other, Algebraic) else [Fraction(other)]
+
+    def __add__(self, other: Any) -> Any:
+        mine, others = self.parts, [*self._of(other), *([Fraction(0)] * len(self.parts))]
+        return self.make([a + b for a, b in zip(mine, others, strict=False)], self.modulus)
+
+    def __mul__(self, other: Any) -> Any:
+        others = self._of(other)
+        total = [Fraction(0)] * (len(self.parts) + len(others))
+        for i, a in enumerate(self.parts):
+            for j, b in enumerate(others):
+                total[i + j] += a * b
+        return self.make(total, self.modulus)
+
+    def __pow__(self, exponent: Any) -> Any:
+        total: Any = self.make([Fraction(1)], self.modulus)
+        for _ in range(exponent):
+            total = total * self
+        return total
+
+    def __truediv__(self, other: Any) -> Any:
+        if not isinstance(other, Algebraic):
+            return self * (1 / Fraction(other))
+        degree, root = len(self.parts), self.make([Fraction(0), Fraction(1)], self.modulus)
+        images: list[Any] = [other]
+        for _ in range(degree - 1):
+            images.append(images[-1] * root)
+        rows = [[image.parts[i] for image in images] for i in range(degree)]
+        solved = inverse(rows)
+        return self * self.make([row[0] for row in solved], self.modulus)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self.make([Fraction(other)], self.modulus) / self
+
+    def __neg__(self) -> Any:
+        return self * Fraction(-1)
+
+    def __sub__(self, other: Any) -> Any:
+        return self + Fraction(-1) * other
+
+    def __rsub__(self, other: Any) -> Any:
+        return -self + other
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __bool__(self) -> bool:
+        return any(self.parts)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, (int, Fraction)) and not (self - other)
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.parts))
+
+
 class Compared(NamedTuple):
     """Two members that an inequality or inequation compares, and their difference."""
 
@@ -129,7 +203,8 @@ class World:
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
         if name in self.meanings:
-            found = self.value(self.meanings[name])
+            found = self.meanings[name]
+            found = found if isinstance(found, Fraction) else self.value(found)
             return found if isinstance(found, Fraction) else found[0][0]
         draw = random.Random(f"{self.seed} {name}")  # noqa: S311 - repeatable by design
         size = Fraction(draw.randint(1, LARGEST), draw.randint(1, 9))
@@ -263,6 +338,8 @@ class World:
                         yield f"label {name}", self.value(label)
                 case Case(when, substitution, inside):
                     stratum = self.copy()
+                    if isinstance(when, Relation) and when.operators == ("=",) and not substitution:
+                        stratum.meanings[EIGENVALUE] = self.eigenvalue(when)
                     stratum.meanings |= dict(substitution)
                     for relation in when.relations if isinstance(when, Together) else (when,):
                         yield "condition", single(self.difference(relation))
@@ -274,6 +351,18 @@ class World:
                 yield "words", sentence.key
                 for _, slot in sentence.slots:
                     yield from self.facts((slot,))
+
+    def eigenvalue(self, when: Relation) -> Fraction:
+        """Return a root of the equation in λ."""
+        world = replace(self, variable=EIGENVALUE)
+        left, right = (world.coefficients(member.value) for member in when.members)  # type: ignore[union-attr, arg-type]
+        size = max(len(left), len(right))
+        left, right = ([*part, *([Fraction(0)] * (size - len(part)))] for part in (left, right))
+        found = [a - b for a, b in zip(left, right, strict=True)]
+        while not found[-1]:
+            found.pop()
+        monic = [c / found[-1] for c in found]
+        return -monic[0] if len(monic) == 2 else Algebraic.make([Fraction(0), Fraction(1)], monic)
 
     def difference(self, relation: Relation) -> Any:
         return plus(self.value(relation.members[0]), times(Fraction(-1), self.value(relation.members[1])))

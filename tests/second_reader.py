@@ -179,6 +179,9 @@ class Reader:
 
     def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
         """Read on with the parameters replaced; letters that have no value there are forgotten."""
+        if not substitution and isinstance(when, Relation) and when.operators == ("=",):
+            self.at_eigenvalues(when, steps)
+            return
         outside, letters = self.names, self.letters
         replaced = {sympy.Symbol(name): value for name, value in substitution.items()}
         self.names = {**outside, **substitution}
@@ -195,6 +198,18 @@ class Reader:
                 self.fact(relation)
         for step in steps:
             self.step(step)
+        self.names, self.letters = outside, letters
+
+    def at_eigenvalues(self, when: Relation, steps: tuple[Step, ...]) -> None:
+        """Read on at every root of the equation in λ."""
+        unknown = sympy.Symbol("lambda")
+        sides = [scalar(self.value(member)) for member in when.members]
+        outside, letters, once = self.names, dict(self.letters), self.tally.compared
+        for root in sympy.roots(sides[0] - sides[1], unknown):
+            self.names, self.tally.compared = {**outside, "lambda": root}, once
+            self.fact(when)
+            for step in steps:
+                self.step(step)
         self.names, self.letters = outside, letters
 
     def introduce(self, relation: Relation) -> None:

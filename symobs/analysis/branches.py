@@ -123,9 +123,9 @@ class Branched(Result):
         self.tell(inner)
         chosen = [_plain(delta) for delta in self.answer["chosen"]]
         zeros = dict.fromkeys(case.when[0].expression for case in self.case_tree if case.when[0].operator == "==")
-        say = {"sentence": sentence("branch_under", {})} if chosen else {}
+        say = sentence("branch_under", {}) if chosen else None
         when = relation(chosen[0], "<", 0) if chosen else relation(product_of(zeros), "!=", 0)
-        page.steps.append(CaseStep(when, (), tuple(inner.steps), **say))
+        page.steps.append(CaseStep(when, (), tuple(inner.steps), say))
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 

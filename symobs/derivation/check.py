@@ -50,7 +50,7 @@ from symobs.formula import (
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
 from symobs.pointwise import never_together_zero
-from symobs.stability import monic, no_stable_compensator, stability
+from symobs.stability import is_beyond, is_marginal, marginal_where, monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -125,8 +125,10 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
-        case Case(when, substitution, inside):
-            _walk(inside, _on_stratum(when, dict(substitution), environment), discrete)
+        case Case(when, substitution, inside, anew=anew):
+            stratum = _on_stratum(when, dict(substitution), environment)
+            kept = {name: value for name, value in stratum.values.items() if name not in anew}
+            _walk(inside, replace(stratum, values=kept), discrete)
         case Section(title, inside):
             _sentence(title, environment, discrete)
             environment = _walk(inside, environment, discrete)
@@ -195,10 +197,11 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _about_letters(fact.property.subject, environment)
         value = as_scalar(evaluate(fact.property.subject, environment, Exact(environment)))
         polynomial = _polynomial(value, environment)
-        found = stability(polynomial, environment.variable, environment.signs, discrete=discrete)
+        needed = _needed(fact.property.name, polynomial, environment, discrete)
         said = {_positive_part(relation, environment) for relation in fact.where}
-        if fact.property.name != "stable" or found.verdict != "conditional" or said != set(found.positive):
-            _reject(f"{polynomial} is stable exactly where {', '.join(f'{value} > 0' for value in said)}")
+        strict = {operator in {"<", ">"} for relation in fact.where for operator in relation.operators}
+        if not needed or said != set(needed) or strict != {fact.property.name == "stable"}:
+            _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
     _about_letters(fact.subject, environment)
     value = as_scalar(evaluate(fact.subject, environment, Exact(environment)))
@@ -206,12 +209,20 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _reject(f"{fact.name}({value})")
 
 
+def _needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
+    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
+    variable, signs = environment.variable, environment.signs
+    if name == "marginal":
+        return marginal_where(polynomial, variable, signs, discrete=discrete)
+    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
 def _positive_part(relation: Relation, environment: Environment) -> Scalar:
-    """Return what a strict inequality says is positive."""
-    if relation.operators not in {(">",), ("<",)}:
+    """Return what an inequality says is positive, or not negative."""
+    if relation.operators not in {(">",), ("<",), (">=",), ("<=",)}:
         _reject(plain_relation(relation, environment.variable))
     left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
-    difference: Scalar = left - right if relation.operators == (">",) else right - left
+    difference: Scalar = left - right if relation.operators[0][0] == ">" else right - left
     return difference
 
 
@@ -280,13 +291,21 @@ def _established(formula: Formula, environment: Environment) -> None:
 def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], environment: Environment) -> Environment:
     """Return the environment on a stratum, after verifying that the substitution describes it.
 
-    A single `when` has one factor that can vanish, linear in the one name put in: another equation would hold elsewhere
-    too.  Of several equations and inequations it is verified that each value put in follows from them.
+    Without a substitution the single equation itself is what is known inside: that a polynomial of the parameters
+    vanishes, or that λ is an eigenvalue.  Otherwise a single `when` has one factor that can vanish, linear in the one
+    name put in: another equation would hold elsewhere too.  Of several equations and inequations it is verified that
+    each value put in follows from them.
     """
     if not substitution and isinstance(when, Relation) and when.operators in {("<",), (">",), ("!=",)}:
         for member in when.members:
             _established(member, environment)
         return environment  # it narrows, and nothing is put in: all stays true
+    if not substitution and isinstance(when, Relation) and when.operators == ("=",):
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+        inside = replace(environment, relations=(*environment.relations, left - right), assumed=())
+        return (
+            inside if not Ideal.of(inside.relations).is_whole else _reject(plain_relation(when, environment.variable))
+        )
     replaced = {}
     for name, value in environment.values.items():
         try:
@@ -359,6 +378,12 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
     "no_stable_compensator": lambda value, environment, discrete: (
         not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
+    "marginal": lambda value, environment, discrete: is_marginal(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "beyond": lambda value, environment, discrete: is_beyond(
+        value, environment.variable, environment.signs, discrete=discrete
     ),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

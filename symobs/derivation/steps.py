@@ -100,13 +100,15 @@ class Diagram:
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
-    Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.
+    Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.  The
+    letters in `anew` have no meaning there until they are introduced again.
     """
 
     when: Relation | Together
     substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None
+    anew: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

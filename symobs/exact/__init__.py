@@ -3,6 +3,7 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
+from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.calculus import antiderivative, derivative, exponential_of_integral
 from symobs.exact.complex import Complex
 from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
@@ -10,20 +11,24 @@ from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.ideal import Ideal, TooLarge
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
-from symobs.exact.roots import Factored, Root, factored, root_of_pole, roots_are, roots_of
+from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
+from symobs.exact.sides import stable_roots
 from symobs.exact.transfer import controller, transfer
 
 __all__ = [
+    "EIGENVALUE",
     "RATIONALS",
     "VARIABLES",
     "Complex",
+    "Extension",
     "Factored",
     "Field",
     "Ideal",
     "Matrix",
     "Root",
     "Scalar",
+    "Shifted",
     "TooLarge",
     "antiderivative",
     "apply_polynomial",
@@ -42,6 +47,7 @@ __all__ = [
     "root_of_pole",
     "roots_are",
     "roots_of",
+    "stable_roots",
     "transfer",
     "unit_rows",
 ]

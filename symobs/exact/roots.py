@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
@@ -137,6 +137,25 @@ class Root:
         if self.centre.is_zero:
             return text if self.sign > 0 else f"-{text}"
         return f"{self.centre} {sign} {text}"
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """value − root: an entry of A − λI on the diagonal, λ an algebraic number."""
+
+    value: Scalar
+    root: Root
+
+    @property
+    def closed(self) -> Root | None:
+        """The same as one root in closed form, where it has one."""
+        r = self.root
+        return replace(r, centre=self.value - r.centre, sign=-r.sign) if r.is_closed else None
+
+    def __str__(self) -> str:
+        if self.closed is not None:
+            return str(self.closed)
+        return f"-{self.root}" if self.value.is_zero else f"{self.value} - {self.root}"
 
 
 def rational_sqrt(value: Fraction) -> Fraction | None:

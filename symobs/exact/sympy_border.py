@@ -129,3 +129,28 @@ def sign_from_assumptions(symbol: Any) -> str:
         if getattr(symbol, f"is_{sign}"):
             return sign
     return "nonzero" if symbol.is_nonzero else "real"
+
+
+def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool, ...]:
+    """Return for the roots of an irreducible polynomial without parameters whether each lies in Re s < 0 (|z| < 1).
+
+    They are counted as SymPy's `CRootOf` does.
+    """
+    symbol = sympy.Symbol(variable)
+    polynomial = sympy.Poly(scalar_to_sympy(factor), symbol)
+    roots = [sympy.CRootOf(polynomial, k) for k in range(polynomial.degree())]
+    return tuple(_is_inside(root, discrete=discrete) for root in roots)
+
+
+def _is_inside(root: Any, *, discrete: bool) -> bool:
+    """Tell on which side of the boundary a root lies; one closer to it than any bound for its distance lies on it."""
+    degree, size = root.poly.degree(), len(str(sum(abs(int(c)) for c in root.poly.all_coeffs())))
+    # r and its mirror image are roots of a polynomial of degree 2d: Mahler's bound for the distance of two roots of it.
+    smallest = (degree + 1) * len(str(2 * degree)) + (4 * degree + 1) * size + 5
+    distance: Any = 0
+    for places in (8, smallest):
+        value = root.evalf(places + size + 10)
+        distance = abs(value) - 1 if discrete else sympy.re(value)
+        if abs(distance) > sympy.Rational(1, 10**places):
+            return bool(distance < 0)
+    return False

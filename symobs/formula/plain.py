@@ -26,7 +26,7 @@ from symobs.formula.nodes import (
 if TYPE_CHECKING:
     from symobs.exact import Matrix, Scalar
 
-_FUNCTIONS_OF_THE_VARIABLE = {"chi", "chi_K", "chi_L", "phi", "phi_c", "phi_o", "F", "P", "G_cl"}
+_FUNCTIONS_OF_THE_VARIABLE = {"chi", "chi_K", "chi_L", "phi", "phi_c", "phi_o", "F", "P", "G_cl", "mu"}
 _LONG = 400
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Ideal, Matrix, Scalar
+from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar
 from symobs.formula.evaluate import Exact
 
 if TYPE_CHECKING:
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class Restricted(Exact):
     """The exact kernel, with two values equal where their difference lies in the ideal of the relations.
 
-    Nothing may be divided by what vanishes there: cancelling would hide it.  A rank has no meaning on an ideal that
-    need not be prime, so it is none of the functions here; minors and kernels say the same.
+    Nothing may be divided by what vanishes there: cancelling would hide it.  A rank has a meaning where one irreducible
+    polynomial vanishes, which leaves a field; on other ideals minors and kernels say the same.
     """
 
     def __init__(self, environment: Environment) -> None:
@@ -36,11 +36,16 @@ class Restricted(Exact):
         return found
 
     def apply(self, function: str, value: Matrix) -> Any:
-        """Return det or adj of a matrix, or the value at t = 0."""
-        if function == "rank":
+        """Return det or adj of a matrix, the value at t = 0, and its rank in the field of one irreducible relation."""
+        if function != "rank":
+            return super().apply(function, value)
+        generators = self.ideal.generators
+        factors = generators[0].factors()[1] if len(generators) == 1 else ()
+        if len(factors) != 1 or factors[0][1] != 1:
             message = "a rank on a stratum is shown by minors and kernels"
             raise TypeError(message)
-        return super().apply(function, value)
+        field = Extension(generators[0], max(factors[0][0].names, key=lambda name: (name == EIGENVALUE, name)))
+        return Scalar.of(len(field.echelon(value)[0]))
 
     def equal(self, left: Any, right: Any) -> bool:
         """Tell whether two values agree wherever the relations hold."""

@@ -11,9 +11,33 @@ from __future__ import annotations
 import string
 from typing import Any
 
-from symobs.phrases import compensation, gains, polynomials, rank, reduced_order, time, time_varying, titles
+from symobs.phrases import (
+    compensation,
+    coordinates,
+    duality,
+    gains,
+    modes,
+    polynomials,
+    rank,
+    reduced_order,
+    time,
+    time_varying,
+    titles,
+)
 
-_MODULES = (titles, polynomials, rank, time, gains, compensation, reduced_order, time_varying)
+_MODULES = (
+    titles,
+    polynomials,
+    rank,
+    modes,
+    duality,
+    coordinates,
+    time,
+    gains,
+    compensation,
+    reduced_order,
+    time_varying,
+)
 
 
 def _collected(name: str) -> dict[str, Any]:

@@ -1,0 +1,111 @@
+"""Changes of coordinates x̄ = T x: bases that separate what is reached and seen, and parts of pages about them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.observability import power_rows
+from symobs.analysis.pages import undecided
+from symobs.derivation import Case as CaseStep
+from symobs.exact import Matrix, Scalar, echelon, independent_rows, kernel, transfer
+from symobs.page import Page, relation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.derivation import Step
+    from symobs.method import Result
+
+#: The four parts in the order of the blocks: controllable and observable, controllable and not observable, and so on.
+BLOCKS = ("co", "c_no", "nc_o", "nc_no")
+
+
+def basis(A: Matrix, B: Matrix, C: Matrix) -> tuple[Matrix, tuple[int, ...]]:
+    """Return S, whose columns are bases of the four parts in the order of `BLOCKS`, and their dimensions."""
+    order = A.shape[0]
+    reach = power_rows(A.T, B.T).T
+    R = reach.select(range(order), echelon(reach)[0])
+    O = power_rows(A, C)
+    hidden = kernel(O)
+    both = (R @ kernel(O @ R)).normal() if R.shape[1] else Matrix.zeros(order, 0)
+    both = _primitive(both)
+    seen = _extension(both, _unit_first(R))
+    rest_hidden = _extension(_beside(both, seen), hidden)
+    others = _extension(_beside(both, seen, rest_hidden), Matrix.identity(order))
+    parts = (seen, both, others, rest_hidden)
+    return _beside(*parts).normal(), tuple(part.shape[1] for part in parts)
+
+
+def _beside(*parts: Matrix) -> Matrix:
+    return Matrix.block([list(parts)])
+
+
+def _unit_first(R: Matrix) -> Matrix:
+    """Return other generators of the image of R, unit vectors of it first."""
+    order = R.shape[0]
+    units = []
+    for i in range(order):
+        unit = Matrix.unit(order, i)
+        if R.shape[1] and len(echelon(_beside(R, unit))[0]) == R.shape[1]:
+            units.append(unit)
+    return _beside(*units, R) if units else R
+
+
+def _primitive(vectors: Matrix) -> Matrix:
+    """Return each column without its common denominator."""
+    columns = [vectors.select(range(vectors.shape[0]), [j]) for j in range(vectors.shape[1])]
+    if not columns:
+        return vectors
+    return _beside(*((column * column.common_denominator()).normal() for column in columns))
+
+
+def _extension(given: Matrix, candidates: Matrix) -> Matrix:
+    """Return the candidates that extend given independent columns to a basis of what all of them span."""
+    count, rows = given.shape[1], range(given.shape[0])
+    pivots, _ = echelon(_beside(given, candidates))
+    return candidates.select(rows, [j - count for j in pivots if j >= count])
+
+
+def minor_of(matrix: Matrix, rank: int) -> Matrix | None:
+    """Return a square submatrix of full rank, which must have as many columns as the rank; None where that is 0."""
+    if not rank:
+        return None
+    return matrix.select(independent_rows(matrix), range(rank))
+
+
+def transfer_matrix(A: Matrix, B: Matrix, C: Matrix, D: Matrix, variable: str) -> Matrix:
+    """Return C (sI − A)⁻¹ B + D, each entry in lowest terms."""
+    order, (outputs, inputs) = A.shape[0], D.shape
+
+    def entry(i: int, j: int) -> Scalar:
+        if not order:
+            return D[i, j]
+        numerator, denominator = transfer(
+            A, B.select(range(order), [j]), C.select([i], range(order)), D[i, j], variable
+        )
+        return numerator / denominator
+
+    return Matrix.of([[entry(i, j) for j in range(inputs)] for i in range(outputs)], inputs)
+
+
+def set_anew(outer: Page, inner: Page) -> Iterator[str]:
+    """Yield the letters, other than the data's, to which a case gives a meaning of its own."""
+    for name, value in inner.environment.values.items():
+        if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
+            yield name
+
+
+def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
+    """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
+    for case in result.case_tree:
+        if case.result is None:
+            yield undecided(page, case)
+            continue
+        found = case.result
+        inner = Page(found.plant)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
+        inner.environment = page.environment.having(values=matrices)
+        getattr(found, write)(inner)
+        inner.steps += case_steps(inner, found, write)
+        when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
+        yield CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

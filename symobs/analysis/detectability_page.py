@@ -1,0 +1,169 @@
+"""The page of detectability and stabilizability.
+
+Without parameters it follows the definition: the rank of [A − λI; C] at the eigenvalues that are not stable.  With
+parameters it goes through ker 𝒪 and the polynomial of the fixed modes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.analysis.coordinates import set_anew
+from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, pencil_of, show_spectrum, stack_of
+from symobs.analysis.modes import stable_modes
+from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, undecided
+from symobs.derivation import Case as CaseStep
+from symobs.exact import EIGENVALUE
+from symobs.formula import Exactly
+from symobs.page import Page, predicate, relation
+from symobs.stability import as_inequality, stability
+
+if TYPE_CHECKING:
+    from symobs.analysis.detectability import HiddenStability
+    from symobs.derivation import Step
+    from symobs.formula.term import Term
+    from symobs.method import Case
+
+
+def write_page(page: Page, result: HiddenStability) -> None:
+    """Write the page."""
+    given(page)
+    with page.section(result.task):
+        parametric = any(part.matrix.names - {EIGENVALUE} for part in result.spectrum)
+        direct = all(part.witness is not None for part in result.spectrum)
+        if parametric or result.meaning == "lyapunov" or not direct:
+            _through_the_kernel(page, result)
+        else:
+            _at_eigenvalues(page, result)
+
+
+def _time(page: Page) -> str:
+    return "discrete" if page.plant.is_discrete else "continuous"
+
+
+def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
+    """Look at the eigenvalues that are not stable, one by one."""
+    plant = page.plant
+    show_spectrum(page, result)
+    page.conclude(f"asks_{result.task}_{_time(page)}", pencil=pencil_of(page, result), order=plant.order)
+    unstable = [
+        part
+        for part in result.spectrum
+        if not all(stable_modes(part.roots, plant.symbols.signs, discrete=plant.is_discrete))
+    ]
+    if unstable:
+        at_eigenvalues(page, result, unstable)
+    else:
+        page.conclude("only_stable", predicate("stable", page["chi"]))
+    rank = stack_of(page, result.kind).apply("rank")
+    if result.test.answer["rank"] == plant.order:
+        page.conclude(f"no_fixed_modes_{result.kind}", relation(rank, plant.order))
+        page.conclude(f"yes_{result.task}")
+        return
+    fixed_modes(page, result)
+    _hidden_modes(page, result, result.test.answer["kernel"].shape[1])
+
+
+def _hidden_modes(page: Page, result: HiddenStability, count: int) -> None:
+    """Write the polynomial of the fixed modes and judge it."""
+    about = hidden_polynomial(page, count)
+    page.equal(relation(about, result.answer["fixed_polynomial"]), say="fixed_polynomial")
+    _judge(page, result, about)
+
+
+def _judge(page: Page, result: HiddenStability, about: Term) -> None:
+    """Say whether the fixed modes, the roots of what `about` means, are stable in the meaning asked for."""
+    plant, time = page.plant, _time(page)
+    found = stability(
+        result.answer["fixed_polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete
+    )
+    if result.meaning == "lyapunov":
+        page.remark("means_lyapunov")
+    if found.verdict == "yes":
+        page.conclude(f"stable_{time}", predicate("stable", about))
+    elif result.meaning == "lyapunov" and found.verdict == "no":
+        _beyond_or_marginal(page, result, about)
+    elif found.verdict == "conditional":
+        _where(page, result, about)
+        return
+    else:
+        page.conclude(f"unstable_{time}", predicate("unstable", about))
+    if result.hidden.verdict in {"yes", "no"}:
+        page.conclude(f"{result.hidden.verdict}_{result.task}")
+
+
+def _where(page: Page, result: HiddenStability, about: Term) -> None:
+    """Say exactly where the fixed modes are stable; under the weaker reading what is left open."""
+    signs, conditions = page.plant.symbols.signs, result.hidden.where
+    weak = all(condition.operator == ">=" for condition in conditions)
+    solved = [as_inequality(condition.expression, signs) for condition in conditions]
+    where = tuple(relation(left, operator + "=" * weak, right) for left, operator, right in solved)
+    if weak:
+        page.conclude("marginal_if", where=Exactly(predicate("marginal", about), where))
+        page.conclude(f"exactly_there_{result.task}")
+        return
+    page.conclude(f"stable_if_{_time(page)}", where=Exactly(predicate("stable", about), where))
+    page.conclude(f"exactly_there_{result.task}" if result.meaning == "asymptotic" else "boundary_undecided")
+
+
+def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> None:
+    time, annuls = _time(page), result.hidden.annuls
+    if annuls is None:
+        if result.hidden.verdict == "no":
+            page.conclude(f"beyond_{time}", predicate("beyond", about))
+        else:
+            page.remark("lyapunov_undecided")
+        return
+    mu = page.set("mu", annuls)
+    zero = page.value(result.test.answer["restricted"] * 0)
+    image = page["X"].apply("mu_at")
+    if result.hidden.verdict == "yes":
+        page.conclude(f"marginal_{time}", predicate("marginal", mu))
+        page.conclude("semisimple", relation(image, zero), polynomial=relation(mu, annuls))
+    else:
+        page.conclude("grows", relation(image, "!=", zero), polynomial=relation(mu, annuls))
+
+
+# -- through the kernel ------------------------------------------------------------------------------------------------
+
+
+def _through_the_kernel(page: Page, result: HiddenStability) -> None:
+    """Find the hidden modes as those of A on ker 𝒪, which needs no eigenvalue."""
+    page.conclude(f"means_{result.task}")
+    observing = result.kind == "observability"
+    letter, say = ("O", "observability_matrix") if observing else ("Ctr", "controllability_matrix")
+    page.define(letter, stack_of(page, result.kind), say=say)
+    square_test(page, letter, result.test, result.kind)
+    _generic(page, result)
+    _cases(page, letter, result)
+
+
+def _generic(page: Page, result: HiddenStability) -> None:
+    hidden_ones = result.plant.order - result.test.answer["rank"]
+    if not hidden_ones:
+        page.conclude(f"seen_{result.task}")
+        return
+    _hidden_modes(page, result, hidden_ones)
+
+
+def _cases(page: Page, letter: str, result: HiddenStability) -> None:
+    """Write on every stratum of the rank test what is hidden there, and whether it is stable."""
+    for case in result.rank_cases:
+        page.steps.append(undecided(page, case) if case.result is None else _case(page, letter, case))
+
+
+def _case(page: Page, letter: str, case: Case) -> Step:
+    found: Any = case.result
+    inner = Page(found.plant)
+    values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
+    inner.environment = page.environment.having(values=values)
+    test = found.test.answer
+    inner.conclude("case_rank", rank=relation(inner[letter].apply("rank"), test["rank"]))
+    if test["kernel"].shape[1]:
+        inner.set("N", test["kernel"])
+        inner.set("X", test["restricted"])
+        inner.conclude_silently(*hidden(inner, found.kind == "observability"))
+    _generic(inner, found)
+    _cases(inner, letter, found)
+    when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
+    return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

@@ -1,0 +1,95 @@
+"""Parts of pages about single modes: the spectrum, the pencil at each eigenvalue, the modes that cannot be moved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import formula_of_factored, hidden, hidden_polynomial
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Equal, Step
+from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
+from symobs.formula import Roots
+from symobs.formula.term import block
+from symobs.page import relation, sentence
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symobs.analysis.modes import Eigenvalues, ModeResult
+    from symobs.formula.term import Term
+    from symobs.page import Page
+
+
+def show_spectrum(page: Page, result: ModeResult) -> None:
+    """Write χ with its factors, and its roots."""
+    plant, chi = page.plant, result.answer["polynomial"]
+    pencil = page.s @ page.identity(plant.order) - page["A"]
+    form = factored(chi, plant.variable)
+    product = page.term(formula_of_factored(form))
+    members = [pencil.apply("det"), page.value(chi)]
+    if len(form.factors) > 1 or form.factors[0][1] > 1:
+        members.append(product)
+    page.define("chi", *members, say="eigenvalue_polynomial", closing=False)
+    page.conclude("eigenvalues", roots=Roots(page["chi"].formula, roots_of(chi, plant.variable)))
+    if any(not part.roots[0].is_closed for part in result.spectrum):
+        page.remark("eigenvalues_open")
+
+
+def pencil_of(page: Page, result: ModeResult, value: Scalar | None = None) -> Term:
+    """Return [A − λI; C], or [A − λI, B], as a formula."""
+    eigenvalue = page.value(Scalar.symbol(EIGENVALUE) if value is None else value)
+    shifted = page["A"] - eigenvalue @ page.identity(page.plant.order)
+    if result.kind == "observability":
+        return block([[shifted], [page["C"]]])
+    return block([[shifted, page["B"]]])
+
+
+def at_eigenvalues(page: Page, result: ModeResult, parts: Iterable[Eigenvalues]) -> None:
+    """Write one matrix and one rank for each eigenvalue, and where the rank is too low the vectors that show it."""
+    by_factor = dict(zip((part.factor for part in result.spectrum), result.answer["ranks"], strict=True))
+    for part in parts:
+        if part.witness is not None:
+            page.steps.append(_at(page, result, part, by_factor[part.factor]))
+
+
+def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int) -> Step:
+    dual = result.kind == "controllability"
+    unknown = page.value(Scalar.symbol(EIGENVALUE))
+    pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
+    steps: list[Step] = [Equal((relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank),))]
+    kernel: Matrix = part.witness[2]  # type: ignore[index]
+    for j in range(kernel.shape[1]):
+        v = page.value(kernel.select(range(page.plant.order), [j]))
+        zero = Matrix.zeros(part.matrix.shape[0], 1)
+        image = relation(v.T @ pencil, zero.T) if dual else relation(pencil @ v, zero)
+        steps.append(Equal((image,), sentence(f"pbh_low_{result.kind}", {}) if not j else None))
+    when = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
+    return CaseStep(when, (), tuple(steps))
+
+
+def fixed_modes(page: Page, result: ModeResult) -> None:
+    """Establish N and X with A N = N X, C N = 0, and write the polynomial of the fixed modes."""
+    test = result.test
+    page.set("N", test.answer["kernel"])
+    page.set("X", test.answer["restricted"])
+    page.conclude_silently(*hidden(page, result.kind == "observability"))
+    page.equal(
+        relation(page["N"], test.answer["kernel"]),
+        relation(_on_kernel(page, result), page["N"] @ page["X"].shown),
+        say=f"fixed_modes_{result.kind}",
+    )
+    roots = roots_of(result.answer["fixed_polynomial"], page.plant.variable)
+    whole = hidden_polynomial(page, test.answer["kernel"].shape[1])
+    page.conclude(f"modes_{result.kind}", modes=Roots(whole.formula, roots))
+
+
+def _on_kernel(page: Page, result: ModeResult) -> Term:
+    return (page["A"] if result.kind == "observability" else page["A"].T) @ page["N"]
+
+
+def stack_of(page: Page, kind: str) -> Term:
+    """Return [C; CA; …] or [B, AB, …] as a formula."""
+    powers = range(1, page.plant.order)
+    if kind == "observability":
+        return block([[page["C"]], *([page["C"] @ page["A"] ** k] for k in powers)])
+    return block([[page["B"], *(page["A"] ** k @ page["B"] for k in powers)]])

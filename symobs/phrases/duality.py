@@ -1,0 +1,23 @@
+"""The dual plant."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "dual": "The dual plant.",
+    "dual_positive": "Transposed, with inputs and outputs exchanged, the plant becomes",
+    "dual_negative": "Transposed, with time reversed and with inputs and outputs exchanged, the plant becomes",
+    "dual_controllability": "The controllability matrix of the dual is",
+    "dual_observability": "The observability matrix of the dual is",
+    "plant_observability": "The observability matrix of the plant is",
+    "plant_controllability": "The controllability matrix of the plant is",
+    "dual_same": "Block by block it is the transpose:",
+    "dual_signs": "Its blocks are those of the transpose up to sign, which does not change the rank:",
+    "dual_ranks_observing": "So {ranks}, and the pair ($C$, $A$) is observable exactly if the pair ($A_dual$, $B_dual$) is controllable.",
+    "dual_ranks_controlling": "So {ranks}, and the pair ($A$, $B$) is controllable exactly if the pair ($C_dual$, $A_dual$) is observable.",
+}
+
+RESTS_ON: dict[str, str] = {
+    "dual_ranks_observing": "duality",
+    "dual_ranks_controlling": "duality",
+    "dual_negative": "duality_reversed",
+}
