@@ -135,7 +135,8 @@ def test_a_question_in_sympy_is_the_question_in_text(name: str) -> None:
     assert solve(name, by_sympy, [-sympy.Rational(1, 2), -a]).to("json") == expected.to("json")
     polynomial = sympy.prod(factors(task, [s + sympy.Rational(1, 2), s + a]))
     polynomials = {n: polynomial for n, k in tasks()[task].keywords.items() if k == "PolynomialText"}
-    found = tasks()[task].function(by_sympy, **polynomials, method=name.partition("/")[2])
+    others = {n: v for n, v in specification(task, None).items() if v is not None}
+    found = tasks()[task].function(by_sympy, **others, **polynomials, method=name.partition("/")[2])
     for letter in letters(expected):
         assert found.answer[letter] == expected.answer[letter]
         assert getattr(found, letter).free_symbols <= {a}
@@ -202,11 +203,13 @@ def test_a_tampered_answer_is_rejected(name: str) -> None:
     rejected = 0
     for key, value in result.answer.items():
         assert result.with_answer(key, value).to("json") == result.to("json")
+        if key in {"horizon", "Q", "R"}:  # the question: the answer to another one may be the same
+            continue
         for mutant in mutants(value):
             with pytest.raises((CertificateRejected, ValueError, IndexError)):
                 result.with_answer(key, mutant)
             rejected += 1
-    assert rejected
+    assert rejected or result.verdict == "undecided"
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -246,7 +249,10 @@ def test_a_result_pickles_whole(name: str) -> None:
         assert back.to("json") == used.to("json")
         assert back.to("text") == used.to("text")
         assert [case.when for case in back.case_tree] == [case.when for case in result.case_tree]
-        key, value = next((k, v) for k, v in back.answer.items() if isinstance(v, Matrix | Scalar))
+        told = {k: v for k, v in back.answer.items() if k in back.fields and isinstance(v, Matrix | Scalar)}
+        if not told:  # undecided, or a vector under another name
+            continue
+        key, value = next(iter(told.items()))
         with pytest.raises(CertificateRejected):
             back.with_answer(key, next(mutants(value)))
 

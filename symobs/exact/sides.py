@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flint import fmpz_poly
 
@@ -19,7 +19,8 @@ def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool
     one side, or an enclosure reaches over the boundary, SymPy itself is asked.
     """
     ascending = [c.fraction() for c in reversed(factor.numerator.coefficients(variable))]
-    roots: list[acb] = [root for root, _ in fmpz_poly([int(c) for c in ascending]).complex_roots()]
+    enclosures: Any = fmpz_poly([int(c) for c in ascending]).complex_roots()
+    roots = [root for root, _ in enclosures]
     real = sorted((root for root in roots if root.imag == 0), key=lambda root: float(root.real.mid()))
     others = {_side(root, discrete=discrete) for root in roots if root.imag != 0}
     sides = [_side(root, discrete=discrete) for root in real]
