@@ -88,6 +88,8 @@ def detectability_holds(result: Any, at: Setting) -> None:
     modes_hold(result, at)
     A, C = at.pair(dual=result.kind == "controllability")
     stable = at.is_stable(hidden_polynomial(A, C))
+    if result.meaning == "lyapunov" and not stable:
+        return  # decided by hand in `test_modes`
     if result.hidden.verdict in {"yes", "no"}:
         assert stable == (result.hidden.verdict == "yes")
     else:

@@ -160,8 +160,7 @@ class Algebraic(Fraction):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, (int, Fraction)) and not (self - other)
 
-    def __hash__(self) -> int:  # type: ignore[override]
-        return hash(tuple(self.parts))
+    __hash__ = None  # type: ignore[assignment]
 
 
 class Compared(NamedTuple):
@@ -373,7 +372,8 @@ class World:
             return
         assert set(relation.operators) == {"="}, "an introduction is an equation"
         self.introduce(relation)
-        yield "means", self.value(relation.members[0])
+        free = relation.members[0] == Letter("N")  # any basis will do, for which the facts that follow are true
+        yield "basis" if free else "means", self.value(relation.members[0])
         yield from self.facts((relation,))
 
     def facts(self, facts: Sequence[Fact | Formula | str]) -> Iterator[tuple[str, Any]]:

@@ -89,6 +89,26 @@ def compare(difference: Any, operator: str) -> bool:
     raise AssertionError(operator)
 
 
+def pencil(A: Any, C: Any, value: Any) -> Any:
+    """Return [A − λI; C]."""
+    return sympy.Matrix.vstack(A - value * sympy.eye(A.rows), C)
+
+
+def modes(A: Any, C: Any) -> list[tuple[Any, int]]:
+    """Return each eigenvalue of A with the rank of its pencil, with multiplicity."""
+    found = A.eigenvals(multiple=True)
+    return [(value, pencil(A, C, value).rank()) for value in found]
+
+
+def fixed(A: Any, C: Any, s: Any) -> Any:
+    """Return the characteristic polynomial of A on ker 𝒪, from its action on a basis."""
+    kernel = observability_matrix(A, C).nullspace()
+    if not kernel:
+        return sympy.Integer(1)
+    N = sympy.Matrix.hstack(*kernel)
+    return characteristic((N.T * N).inv() * N.T * A * N, s)
+
+
 # -- problems ----------------------------------------------------------------------------------------------------------
 
 s, z = symbols("s z")
@@ -113,6 +133,7 @@ class Hand:
     signs: Mapping[str, str] = field(default_factory=dict)
     variable: Any = s
     large: bool = False
+    sign: int = 1
 
     @property
     def discrete(self) -> bool:
@@ -135,6 +156,7 @@ class Hand:
             L=moved(self.L),
             signs=self.signs,
             variable=self.variable,
+            sign=self.sign,
         )
 
     # -- answers, found by textbook formulas ---------------------------------------------------------------------------
@@ -213,6 +235,20 @@ PROBLEMS = {
     "pendulum_upright_given_gain": Hand(**upright, L=Matrix([h1, h2]), signs=pendulum | {"h1": "real", "h2": "real"}),
     "pendulum_state_feedback": Hand(
         A=hanging["A"], B=hanging["B"], K=Matrix([[-k1, -k2]]), signs=pendulum | {"k1": "real", "k2": "real"}
+    ),
+    "dual_servo": Hand(**servo),
+    "dual_reversed": Hand(**hanging, signs=pendulum, sign=-1),
+    "eigenvalue_test_servo": Hand(A=servo["A"], C=servo["C"]),
+    "eigenvalue_test_third_order": Hand(A=Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), C=Matrix([[1, 0, 0]])),
+    "detectable": Hand(A=sympy.diag(-1, 1), C=Matrix([[0, 1]])),
+    "not_detectable": Hand(A=sympy.diag(1, -1), C=Matrix([[0, 1]])),
+    "boundary_mode": Hand(A=Matrix([[0, 1], [0, -b]]), C=Matrix([[0, 1]]), signs={"b": "positive"}),
+    "boundary_mode_lyapunov": Hand(A=Matrix([[0, 1], [0, -b]]), C=Matrix([[0, 1]]), signs={"b": "positive"}),
+    "canonical_form_servo": Hand(**servo),
+    "four_parts": Hand(
+        A=Matrix([[-2, 0, 1, 1], [3, -2, -2, 1], [2, 0, -3, 1], [-1, 0, 1, -3]]),
+        B=Matrix([1, 0, 1, 0]),
+        C=Matrix([[0, 0, 1, 1]]),
     ),
     "fixed_mode_wanted": Hand(**hidden, observer=(s + 1) * (s + 5)),
     "fixed_modes_all_wanted": Hand(**hidden, observer=(s + 1) * (s + 2)),

@@ -299,6 +299,11 @@ class Reader:
                 assert any(monic.subs(self.symbol, root) < 0 for root in real), subject
             return
         polynomial = (below if below.degree() > 0 else above).as_expr()
+        if name in {"marginal", "beyond"}:
+            for point in self.samples():
+                real = [sympy.re(root) for root in sympy.Poly(polynomial.subs(point), self.symbol).nroots(n=30)]
+                assert (max(real) <= 0) == (name == "marginal"), subject
+            return
         for point in self.samples():
             if name == "never_zero":
                 assert value.subs(point) != 0
@@ -379,7 +384,8 @@ class Reader:
             case "rank":
                 point = next(iter(self.samples()))
                 return sympy.Integer(value.subs(point).rank())
-        return polynomial_at(self.known[name], self.symbol, value)
+        polynomial = self.known[name] if name in self.known else self.letters[name.removesuffix("_at")]
+        return polynomial_at(polynomial, self.symbol, value)
 
     def rate(self, signal: dict[str, Value]) -> Value:
         return reduce(plus, (times(part, self.value(self.rates[name])) for name, part in signal.items()))

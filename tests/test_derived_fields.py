@@ -129,6 +129,12 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         O = observability_rows(*pair)
         square = determinant(O) if len(O) == len(A) else None
         return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
+    if part.task in {"pbh", "detectability", "stabilizability"}:
+        dual = part.task == "stabilizability" or part.fields.get("of") == "controllability"
+        hidden = hidden_at(transposed(A), transposed(B), s) if dual else hidden_at(A, C, s)
+        return {"polynomial": characteristic_at(A, s), "fixed_polynomial": hidden}
+    if part.task in {"dual", "decomposition", "canonical_form"}:
+        return {"polynomial": characteristic_at(A, s)} if "polynomial" in part.fields else {}
     if part.task == "characteristic_polynomial":
         return {"roots": characteristic_at(A, s)}
     if part.task == "transfer_function":

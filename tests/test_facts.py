@@ -172,6 +172,8 @@ def test_a_sentence_that_asserts_a_property_has_it_among_its_facts(key: str, mon
     facts: Mapping[str, Fact] = {
         "stable": Predicate("stable", Letter("chi")),
         "unstable": Predicate("unstable", Negative(Sum((Letter("chi"), literal(-9))))),
+        "marginal": Predicate("marginal", Letter("chi")),
+        "beyond": Predicate("beyond", Negative(Sum((Letter("chi"), literal(-9))))),
         "strictly_proper": Predicate("strictly_proper", Power(Letter("chi"), -1)),
         "polynomial": Predicate("polynomial", Letter("chi")),
         "not_polynomial": Predicate("not_polynomial", Power(Letter("chi"), -1)),

@@ -5,6 +5,7 @@ The problems come from `problems_by_hand`, written a second time; derivations ar
 
 from __future__ import annotations
 
+import itertools
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,9 +22,11 @@ from tests.problems_by_hand import (
     canonical_transformation,
     characteristic,
     compare,
+    fixed,
     inverse,
     is_stable,
     is_zero,
+    modes,
     observability_matrix,
     points,
 )
@@ -127,7 +130,7 @@ def test_every_line_of_every_derivation(name: str, record_property: Callable[[st
             assert tally.compared + len(reader.assumed) + len(tally.unknown) == values_of(facts)
             assert set(tally.unknown) <= WITNESSES, "every other letter has an independent value"
             said_and_assumed(PROBLEMS[name], reader)
-            compared += tally.compared + len(reader.assumed)
+            compared += tally.compared + len(reader.assumed) + len(tally.unknown)
     record_property("lines", lines)
     record_property("values compared", compared)
     print(f"{name}: {lines} lines, {compared} values compared")  # noqa: T201 - shown by pytest -s
@@ -148,6 +151,19 @@ def said_and_assumed(hand: Hand, reader: Reader) -> None:
         }
 
 
+def repairs(A: Any, C: Any) -> tuple[tuple[int, ...], ...]:
+    """Return the smallest sets of states, counted from 1, whose measurement beside C makes A observable."""
+    for count in range(A.rows + 1):
+        found = []
+        for states in itertools.combinations(range(A.rows), count):
+            measured = sympy.eye(A.rows).extract(list(states), list(range(A.rows)))
+            if observability_matrix(A, C.col_join(measured)).rank() == A.rows:
+                found.append(tuple(state + 1 for state in states))
+        if found:
+            return tuple(found) if count else ()
+    return ()
+
+
 # -- answers -----------------------------------------------------------------------------------------------------------
 
 
@@ -160,11 +176,28 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
             return {
                 "matrix": test,
                 "rank": test.rank(),
-                "kernel": (),
-                "unobservable_modes": (),
-                "determinant": test.det(),
-                "missing_measurements": (),
+                "kernel": tuple(tuple(v) for v in test.nullspace()),
+                "unobservable_modes": tuple(sympy.roots(fixed(A, C, variable), variable, multiple=True)),
+                "determinant": test.det() if test.is_square else None,
+                "missing_measurements": repairs(A, C),
             }
+        case "pbh" | "detectability" | "stabilizability":
+            pair = (A.T, B.T) if task == "stabilizability" else (A, C)
+            return {
+                "modes": modes(*pair),
+                "fixed_polynomial": fixed(*pair, variable),
+                "polynomial": characteristic(A, variable),
+            }
+        case "dual":
+            return dual_answers(hand)
+        case "canonical_form":
+            T = canonical_transformation(A.T, observability_matrix(A, C).T, variable).T
+            moved = {"T": T, "A": T * A * T.inv(), "B": T * B, "C": C * T.inv(), "D": hand.feedthrough}
+            return moved | {"polynomial": characteristic(A, variable)}
+        case "decomposition":
+            reach = observability_matrix(A.T, B.T).T
+            order = (observability_matrix(A, C) * reach).rank()
+            return {"transfer_function": sympy.cancel(hand.plant_transfer), "minimal_order": order}
         case "controllability":
             test = observability_matrix(A.T, B.T).T
             return {
@@ -173,7 +206,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
                 "kernel": (),
                 "uncontrollable_modes": (),
                 "determinant": test.det(),
-                "missing_inputs": (),
+                "missing_inputs": repairs(A.T, B.T),
             }
         case "characteristic_polynomial":
             polynomial = characteristic(A, variable)
@@ -203,12 +236,30 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
     return own | {"polynomial": polynomial, "poles": polynomial, "fixed_modes": (), "family": None}
 
 
+def dual_answers(hand: Hand) -> dict[str, Any]:
+    A, B, C = hand.A, hand.B, hand.C
+    found = {"A": hand.sign * A.T, "B": C.T, "C": B.T, "D": hand.feedthrough.T, "sign": hand.sign}
+    found["observability_rank"] = observability_matrix(A, C).rank()
+    found["controllability_rank"] = observability_matrix(A.T, B.T).rank()
+    found["dual_controllability_rank"] = observability_matrix(hand.sign * A, C).rank()
+    found["dual_observability_rank"] = observability_matrix(hand.sign * A.T, B.T).rank()
+    return found
+
+
 #: Fields that list the roots of the polynomial (or rational function's part) that stands in `answers`.
 ROOTS = {"roots", "poles", "zeros"}
 #: Verdicts about stability, which `test_verdicts_of_stability` decides by numeric roots.
 #: Letters of a case that are free to choose: a basis N of the kernel and X with A N = N X, which the page states.
-WITNESSES = {"N", "X"}
+WITNESSES = {"N", "X", "mu", "S", "T", *(f"{part}_{of}" for part in "ABCO" for of in ("bar", "co", "dual")), "Ctr_dual"}
 VERDICTS = {"stable", "stable_if", "F_stable"}
+#: What was asked for, the basis of a decomposition and what it makes of the plant: `test_modes` holds these to identities.
+FREE = {
+    "pbh": {"of"},
+    "detectability": {"meaning", "rank"},
+    "stabilizability": {"meaning", "rank"},
+    "canonical_form": {"kind"},
+    "decomposition": {*"TABCD", "sizes"},
+}
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -217,7 +268,8 @@ def test_every_answer(name: str) -> None:
     for result in results(name):
         for point in points(name, 2) if hand.large else [{}]:
             expected = answers(hand.at(point), result.task)
-            assert set(result.fields) == set(expected) | (VERDICTS & set(result.fields))
+            free = FREE.get(result.task, set())
+            assert set(result.fields) == set(expected) | (VERDICTS & set(result.fields)) | free
             for field_name, wanted in expected.items():
                 found = to_sympy(result.fields[field_name], {})
                 assert same(field_name, found, wanted, hand.variable, point), (result.task, field_name, found, wanted)
@@ -227,6 +279,9 @@ def same(field_name: str, found: Any, wanted: Any, variable: Any, point: Mapping
     if field_name in ROOTS:
         product = sympy.prod(variable - root.xreplace(point) for root in found)
         return is_zero(product - sympy.Poly(wanted, variable).monic().as_expr())
+    if field_name == "modes":
+        told = [(mode["eigenvalue"], mode["rank"]) for mode in found]
+        return sorted(told, key=str) == sorted(((sympy.expand(v), r) for v, r in wanted), key=str)
     if field_name == "factors":
         return is_zero(sympy.prod(factor**power for factor, power in found) - wanted)
     if isinstance(found, sympy.MatrixBase):

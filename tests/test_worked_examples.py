@@ -33,6 +33,7 @@ FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 #: Rows of the catalogue of sources that the examples must cover.
 ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP", "S4-LTV"}
 ROWS |= {"S0-REC", "S0-GRAM", "S0-Ex4.1-GRAM", "S0-Ex4.3-GRAM", "S1-TANK", "S4-PEND-GRAM", "S4-MSUM", "S4-NOISE"}
+ROWS |= {"S0-DUAL", "S4-DUALNEG", "S0-PBH", "S0-DET", "S3-ASSUMP", "S0-OMAT"}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 
@@ -110,8 +111,14 @@ def test_boxes_of_a_drawing_hold_fractions() -> None:
 
 def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
     """Yield a value of `[expect]` with each of its entries changed in turn."""
-    if isinstance(value, int):
+    if isinstance(value, bool):
+        yield not value
+    elif isinstance(value, int):
         yield value + 1
+    elif isinstance(value, dict):
+        for name, entry in value.items():
+            for change in spoiled(entry, name, names):
+                yield value | {name: change}
     elif isinstance(value, list) and (not value or not isinstance(value[0], list)):
         yield from spoiled_list(value, key, names)
     elif value in ("yes", "no", "conditional"):
@@ -121,6 +128,8 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
         rows = [[str(entry) for entry in row] for row in read.rows]
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
+                if key == "kernel" and entry != "0":
+                    continue  # it may remain a multiple of the vector
                 yield [*rows[:i], [*row[:j], f"{entry} + 1", *row[j + 1 :]], *rows[i + 1 :]]
     else:
         yield f"{value} + 1"
@@ -136,6 +145,8 @@ def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterat
         yield [*value, f"{next(iter(names))} != 1234"]
     for i, entry in enumerate(value):
         changes: list[Any] = [-1234]
+        if isinstance(entry, dict):
+            changes += spoiled(entry, key, names)
         if relations:
             left, operator, right = re.split(r"\s(!=|<|>|==)\s", entry)
             changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]

@@ -70,6 +70,8 @@ def _family(kind: str) -> str:
 def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str]) -> bool:
     if kind in {"=", "zero"}:
         return all(content == 0 for content in new)
+    if kind == "basis":
+        return True
     if kind == "!==":
         return any(content != 0 for content in new)
     if new == old:

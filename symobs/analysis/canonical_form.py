@@ -159,7 +159,6 @@ class CanonicalForm(Result):
         if self.test is not None and not self._write_test(page):
             return
         m = self.plant.matrices
-        page.set("chi", self.answer["polynomial"])
         if self.kind == "observable":
             page.define("T", page.value(self._hankel) @ page["O"], say="last_column_observable", answer=True)
             page.define("S", page["T"].inverse)

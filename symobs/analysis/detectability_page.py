@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.coordinates import set_anew
-from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, pencil_of, show_spectrum, stack_of
+from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_spectrum, stack_of
 from symobs.analysis.modes import stable_modes
 from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, undecided
 from symobs.derivation import Case as CaseStep
@@ -45,7 +45,7 @@ def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
     """Look at the eigenvalues that are not stable, one by one."""
     plant = page.plant
     show_spectrum(page, result)
-    page.conclude(f"asks_{result.task}_{_time(page)}", pencil=pencil_of(page, result), order=plant.order)
+    page.conclude(f"asks_{result.task}_{_time(page)}")
     unstable = [
         part
         for part in result.spectrum
@@ -67,6 +67,7 @@ def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
 def _hidden_modes(page: Page, result: HiddenStability, count: int) -> None:
     """Write the polynomial of the fixed modes and judge it."""
     about = hidden_polynomial(page, count)
+    page.conclude_silently(relation(page["N"], result.test.answer["kernel"]))
     page.equal(relation(about, result.answer["fixed_polynomial"]), say="fixed_polynomial")
     _judge(page, result, about)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import formula_of_factored, hidden, hidden_polynomial
+from symobs.analysis.pages import formula_of_factored, hidden
 from symobs.derivation import Case as CaseStep
-from symobs.derivation import Equal, Step
+from symobs.derivation import Conclude, Equal, Step
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import block
@@ -57,6 +57,8 @@ def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int) -> Step:
     unknown = page.value(Scalar.symbol(EIGENVALUE))
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
     steps: list[Step] = [Equal((relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank),))]
+    singular = (page["A"] - unknown @ page.identity(page.plant.order)).apply("det")
+    steps.append(Conclude(None, (relation(pencil, matrix), relation(singular, 0))))
     kernel: Matrix = part.witness[2]  # type: ignore[index]
     for j in range(kernel.shape[1]):
         v = page.value(kernel.select(range(page.plant.order), [j]))
@@ -73,18 +75,13 @@ def fixed_modes(page: Page, result: ModeResult) -> None:
     page.set("N", test.answer["kernel"])
     page.set("X", test.answer["restricted"])
     page.conclude_silently(*hidden(page, result.kind == "observability"))
+    A = page["A"] if result.kind == "observability" else page["A"].T
     page.equal(
         relation(page["N"], test.answer["kernel"]),
-        relation(_on_kernel(page, result), page["N"] @ page["X"].shown),
+        relation(A @ page["N"], page["N"] @ page["X"]),
+        relation(page["X"], test.answer["restricted"]),
         say=f"fixed_modes_{result.kind}",
     )
-    roots = roots_of(result.answer["fixed_polynomial"], page.plant.variable)
-    whole = hidden_polynomial(page, test.answer["kernel"].shape[1])
-    page.conclude(f"modes_{result.kind}", modes=Roots(whole.formula, roots))
-
-
-def _on_kernel(page: Page, result: ModeResult) -> Term:
-    return (page["A"] if result.kind == "observability" else page["A"].T) @ page["N"]
 
 
 def stack_of(page: Page, kind: str) -> Term:

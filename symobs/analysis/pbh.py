@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, pencil_of, show_spectrum, stack_of
+from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_spectrum, stack_of
 from symobs.analysis.modes import TESTS, ModeResult, has_open_cases
-from symobs.analysis.pages import given, rank_cases, square_test
+from symobs.analysis.pages import given, hidden_polynomial, rank_cases, square_test
 from symobs.errors import InputError
+from symobs.exact import roots_of
+from symobs.formula import Roots
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 
@@ -69,7 +71,7 @@ class PopovBelevitchHautus(ModeResult):
         given(page)
         with page.section("pbh"):
             show_spectrum(page, self)
-            page.conclude(f"pbh_asks_{self.kind}", pencil=pencil_of(page, self), order=self.plant.order)
+            page.conclude(f"pbh_asks_{self.kind}")
             at_eigenvalues(page, self, self.spectrum)
             stack = stack_of(page, self.kind)
             if has_open_cases(self.test):
@@ -86,6 +88,9 @@ class PopovBelevitchHautus(ModeResult):
                 return
             page.conclude(f"pbh_no_{self.kind}", relation(stack.apply("rank"), "<", order))
             fixed_modes(page, self)
+            whole = hidden_polynomial(page, order - rank)
+            roots = roots_of(self.answer["fixed_polynomial"], self.plant.variable)
+            page.conclude(f"modes_{self.kind}", modes=Roots(whole.formula, roots))
 
 
 def solve(plant: StateSpace, of: str, method_name: str) -> PopovBelevitchHautus:

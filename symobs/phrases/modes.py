@@ -9,8 +9,8 @@ PHRASES: dict[str, str] = {
     "eigenvalue_polynomial": "The eigenvalues of $A$ are the roots of its characteristic polynomial",
     "eigenvalues": "They are {roots}.",
     "eigenvalues_open": "Where a factor has no roots in closed form, λ stands for any of them.",
-    "pbh_asks_observability": "The pair ($C$, $A$) is observable exactly if {pencil} has the rank {order} at each of them.",
-    "pbh_asks_controllability": "The pair ($A$, $B$) is controllable exactly if {pencil} has the rank {order} at each of them.",
+    "pbh_asks_observability": "The pair ($C$, $A$) is observable exactly if the matrix of $A - lambda I$ over $C$ has full rank at each of them.",
+    "pbh_asks_controllability": "The pair ($A$, $B$) is controllable exactly if the matrix of $A - lambda I$ beside $B$ has full rank at each of them.",
     "pbh_low_observability": "The rank is too low: an eigenvector is not seen at the output,",
     "pbh_low_controllability": "The rank is too low: a left eigenvector is not moved by the input,",
     "pbh_yes_observability": "The rank is full at every eigenvalue, so the pair ($C$, $A$) is observable.",
@@ -22,13 +22,13 @@ PHRASES: dict[str, str] = {
     "fixed_modes_controllability": "The uncontrollable modes, which no feedback gain can move, are those of $Aᵀ$ on the left kernel:",
     "no_fixed_modes_observability": "There are no unobservable modes.",
     "no_fixed_modes_controllability": "There are no uncontrollable modes.",
-    "asks_detectability_continuous": "The pair ($C$, $A$) is detectable exactly if {pencil} has the rank {order} at every eigenvalue with "
+    "asks_detectability_continuous": "The pair ($C$, $A$) is detectable exactly if the matrix of $A - lambda I$ over $C$ has full rank at every eigenvalue with "
     "a real part that is not negative.",
-    "asks_detectability_discrete": "The pair ($C$, $A$) is detectable exactly if {pencil} has the rank {order} at every eigenvalue that is "
+    "asks_detectability_discrete": "The pair ($C$, $A$) is detectable exactly if the matrix of $A - lambda I$ over $C$ has full rank at every eigenvalue that is "
     "not inside the unit circle.",
-    "asks_stabilizability_continuous": "The pair ($A$, $B$) is stabilizable exactly if {pencil} has the rank {order} at every eigenvalue with "
+    "asks_stabilizability_continuous": "The pair ($A$, $B$) is stabilizable exactly if the matrix of $A - lambda I$ beside $B$ has full rank at every eigenvalue with "
     "a real part that is not negative.",
-    "asks_stabilizability_discrete": "The pair ($A$, $B$) is stabilizable exactly if {pencil} has the rank {order} at every eigenvalue that is "
+    "asks_stabilizability_discrete": "The pair ($A$, $B$) is stabilizable exactly if the matrix of $A - lambda I$ beside $B$ has full rank at every eigenvalue that is "
     "not inside the unit circle.",
     "only_stable": "There is no such eigenvalue: every mode is stable.",
     "means_lyapunov": "Only stability in the sense of Lyapunov is asked for here: a hidden mode may also lie on the boundary, provided that it does "
@@ -62,16 +62,6 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "beyond_continuous": ("beyond",),
     "beyond_discrete": ("beyond",),
 }
-
-#: Phrases that put a question: they name the pencil and the order, and claim nothing of them.
-NAMING = (
-    "pbh_asks_observability",
-    "pbh_asks_controllability",
-    "asks_detectability_continuous",
-    "asks_detectability_discrete",
-    "asks_stabilizability_continuous",
-    "asks_stabilizability_discrete",
-)
 
 RESTS_ON: dict[str, str] = {
     "pbh_asks_observability": "pbh",
