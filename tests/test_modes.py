@@ -18,6 +18,7 @@ import symobs
 from symobs.errors import CertificateRejected, DerivationRejected, InputError
 from symobs.exact import EIGENVALUE, Extension, Matrix, Scalar
 from symobs.method import render
+from symobs.stability import is_beyond, is_marginal, on_boundary
 from tests.second_reader import sympy_scalar
 from tests.strategies import Sample, plants, unimodular
 
@@ -297,6 +298,39 @@ def test_discrete_detectability_looks_at_the_unit_circle() -> None:
     assert (
         symobs.detectability(symobs.StateSpace("[-1 0; 0 3]", None, "[0 1]", dt=1), meaning="lyapunov").verdict == "yes"
     )
+
+
+x = Scalar.symbol("s")
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "discrete", "boundary", "marginal", "beyond"),
+    [
+        (x, False, True, True, False),
+        (x**2, False, None, False, False),
+        (x**2 * (x + 1), False, None, False, False),
+        (x**2 + 4, False, True, True, False),
+        (x**4 + x**2 * 3 + 1, False, True, True, False),
+        (x**4 - x**2 - 1, False, False, False, True),
+        (x**4 + 1, False, False, False, True),
+        (x**3 - x - 1, False, False, False, True),
+        (x - 1, True, True, True, False),
+        (x**2 + x + 1, True, True, True, False),
+        (x**2 + x * 3 + 1, True, False, False, True),
+        (x * 2 - 1, True, False, True, False),
+    ],
+)
+def test_what_lies_on_the_boundary_and_beyond(
+    polynomial: Scalar,
+    discrete: bool,  # noqa: FBT001
+    boundary: bool | None,  # noqa: FBT001
+    marginal: bool,  # noqa: FBT001
+    beyond: bool,  # noqa: FBT001
+) -> None:
+    if boundary is not None:
+        assert on_boundary(polynomial, "s", {}, discrete=discrete) == boundary
+    assert is_marginal(polynomial, "s", {}, discrete=discrete) == marginal
+    assert is_beyond(polynomial, "s", {}, discrete=discrete) == beyond
 
 
 # -- the field of an eigenvalue --------------------------------------------------------------------------------------------
