@@ -141,6 +141,8 @@ def _names(result: Result) -> Any:
         return None
     used = {name for value in result.answer.values() for name in getattr(value, "names", ())}
     used = used | {plant.variable} if plant.is_time_varying else used - {plant.variable}
+    if result.in_time:  # t is the variable there, and generators such as exp(-t) are no names
+        used = {name for name in used if name.isidentifier()} - {"t"}
     return {**dict.fromkeys(sorted(used), "real"), **declared}
 
 
@@ -195,9 +197,12 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
-    if all(isinstance(entry, Scalar) for entry in found):
+    if result.in_time and all(isinstance(entry, Scalar) for entry in found):
         read = [parse_scalar(entry, names, variable="t", where=where, functions=True) for entry in expected]
         return len(read) == len(found) and all(map(functions_agree, read, found))
+    if all(isinstance(entry, Scalar) for entry in found):
+        read = [parse_scalar(entry, names, where=f"{where}[{i}]") for i, entry in enumerate(expected)]
+        return bool(found == read)
     if all(isinstance(entry, Matrix) for entry in found):
         alike = len(found) == len(expected)
         return alike and all(

@@ -216,7 +216,7 @@ cart_pole = {
 }
 
 #: Worked examples in which the time t stands in the matrices: `test_time_varying` reads their pages, with SymPy's calculus.
-IN_TIME = {"time_varying_integrator", "frozen_time_misleads"}
+VARYING = {"time_varying_integrator", "frozen_time_misleads"}
 
 PROBLEMS = {
     "servo_observer": Hand(**servo, observer=(s + 10) ** 2),

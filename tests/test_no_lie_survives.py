@@ -26,7 +26,7 @@ from symobs.problem import read
 from tests.mutations import Change, answer_changes, changes, lines_of, parts_of
 from tests.plain import multiply, observability_rows, rank_of, transposed
 from tests.plain_fractions import World, determinant, identity, inverse, plus, times
-from tests.problems_by_hand import IN_TIME
+from tests.problems_by_hand import IN_TIME, VARYING
 from tests.truth import is_true, still_true
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tests.plain import Rows
 
 FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
-EXAMPLES = [path for path in FILES if path.stem not in IN_TIME]
+EXAMPLES = [path for path in FILES if path.stem not in IN_TIME | VARYING]
 WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = 12, 120

@@ -124,7 +124,8 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
     elif value in ("yes", "no", "conditional"):
         yield from (other for other in ("yes", "no", "conditional") if other != value)
     elif isinstance(value, list) or value.startswith("["):
-        read = parse_matrix(value, names, variable="t", functions=True)
+        others = {name: sign for name, sign in names.items() if name != "t"}
+        read = parse_matrix(value, others, variable="t", functions=True)
         rows = [[str(entry) for entry in row] for row in read.rows]
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
