@@ -11,18 +11,19 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.strata import strata
+from symobs.certificate import Claim
 from symobs.conditions import Condition, sign_of, vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.exponential import OpenBranch
 from symobs.exact.functions import identities, known, substitute, symbols_in
 from symobs.formula import Environment, Literal
-from symobs.formula.term import Term
+from symobs.formula.term import Term, letter
 from symobs.method import Case, Result
 from symobs.page import Page, relation, sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.derivation import Step
     from symobs.system import StateSpace
@@ -204,6 +205,15 @@ def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scala
                 raise
             low = sign_of(open_branch.discriminant, plant.symbols.signs) == "nonnegative"
             chosen[open_branch.discriminant] = "positive" if low else "negative"
+
+
+def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:
+    """Yield that functions of time are 0 at t = 0, as integrals from there are."""
+    for name in names:
+        if name in e.values:
+            value = e.values[name]
+            start = Matrix.zeros(*value.shape) if isinstance(value, Matrix) else Scalar.of(0)
+            yield Claim(relation(letter(name, e).apply("at_0"), start), e, f"{name} is 0 at t = 0")
 
 
 def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix]) -> Environment:

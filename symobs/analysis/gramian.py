@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
+from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.gramian_page import write_gramian
 from symobs.analysis.horizons import INFINITE, infinite_gramian, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
@@ -156,6 +156,7 @@ class Gramian(Branched):
             yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
             yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
             integrand = Phi.T @ C.T @ C @ Phi
+            yield from from_zero(["primitive"], e)
             whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
             yield Claim(relation(W, whole), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t) from 0 to the horizon")
         elif horizon == INFINITE and self.plant.is_discrete:

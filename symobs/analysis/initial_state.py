@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
+from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.initial_state_page import tell_initial_state
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
@@ -169,6 +169,7 @@ class InitialState(Branched):
         if "x_0" in e.values:
             yield Claim(relation(free, seen @ letter("x_0", e)), e, "y = C*(exp(A*t)*x0 + x_f) + D*u")
             if self.answer["horizon"] != INFINITE:
+                yield from from_zero(["W_t", "r_t"], e)
                 yield self._moments(e)
             return
         at_zero = []

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, rate_of, time_environment
+from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.covariance_page import tell_covariance
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
@@ -132,6 +132,7 @@ class InitialStateCovariance(Branched):
         horizon = self.answer["horizon"]
         yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
         yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield from from_zero(["W_t", "R_t", "Q_t"], e)
         whole = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
         yield Claim(relation(W, Term(whole, e)), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t)")
         noise = since_start((Phi.T @ C.T @ R @ C @ Phi).formula, letter("R_t", e).formula, horizon)
