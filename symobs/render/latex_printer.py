@@ -93,9 +93,12 @@ class LatexPrinter(Printer[LatexBox]):
         known = name in LETTERS
         source = letter_latex(name, self.variable) if known else symbol_latex(name, self.symbols.get(name))
         if mark == "dot":
-            source = rf"\dot {source}" if re.fullmatch(r"\w", source) else rf"\dot{{{source}}}"
+            stem, below, index = source.partition("_")  # the dot stands on the letter, not on its index
+            source = (rf"\dot {stem}" if re.fullmatch(r"\w", stem) else rf"\dot{{{stem}}}") + below + index
         elif mark:
-            source = f"{source}_{mark}" if len(mark) == 1 else f"{source}_{{{mark}}}"
+            stem, _, index = source.partition("_")
+            below = f"{index},{mark}" if index else mark
+            source = f"{stem}_{below}" if len(below) == 1 else f"{stem}_{{{below}}}"
         return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def leaf(self, value: Scalar) -> LatexBox:
