@@ -107,7 +107,8 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
             try:
                 for part in (relation[1], relation[3]) if relation else (value,):
                     if part.lstrip().startswith("[") or _FUNCTION.search(part):
-                        parse_matrix(part, known, variable="t", where=where, functions=True)
+                        others = known and {name: sign for name, sign in known.items() if name != "t"}
+                        parse_matrix(part, others, variable="t", where=where, functions=True)
                     else:
                         parse_poles(part, known, where=where)
             except SymobsError as error:

@@ -96,7 +96,7 @@ WRONG = {
     "hostile letter": (problem(symbols='b = { latex = "\\\\input{x}" }'), "symbols.b.latex", "not a printed form"),
     # keys and their values
     "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
-    "key of the plant": (problem(Q="1"), "plant.Q", "unknown key … known keys are A, B, C, D"),
+    "key of the plant": (problem(E="1"), "plant.E", "unknown key … known keys are A, B, C, D"),
     "key at the wrong place": (problem(top='task = "observer"\nA = "[1]"'), "A", "unknown key … belongs to [plant]"),
     "key of another task": (
         problem(f"{POLES}\ncontrol_polynomial = 's'"),
@@ -179,7 +179,7 @@ def test_all_mistakes_of_a_file_come_together(tmp_path: Path) -> None:
         [plant]
         A = [["x", 1], ["y", 1979-05-27]]
         B = "[0; 1"
-        Q = 3
+        E = 3
         dt = -1
         [specification]
         poles = ["-1", "omga", true]
@@ -199,7 +199,7 @@ def test_all_mistakes_of_a_file_come_together(tmp_path: Path) -> None:
         ("symbols.lambda", "lam"),
         ("symbols.b", "sgn"),
         ("plant.dt", "-1"),
-        ("plant.Q", "unknown key"),
+        ("plant.E", "unknown key"),
         ("plant.A[0][0]", '"x" is not declared'),
         ("plant.B", "never closed"),
         ("plant.A[1][0]", '"y" is not declared'),
