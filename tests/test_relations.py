@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.certificate import verify
-from symobs.exact import Ideal, Matrix, Scalar, TooLarge
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge
 from symobs.formula import Apply, Environment, Letter, Literal, Power, Product, Relation
+from symobs.pointwise import never_together_zero
 from tests.plain import seeded
 
 a, b, c, d = (Scalar.symbol(name) for name in "abcd")
@@ -102,3 +103,11 @@ def test_a_rank_is_that_of_every_point() -> None:
     assert not ranked(zero, 1, a - b)
     assert not ranked(zero, 1, a - b * c)
     assert ranked(row, 1, 1 - c * (a**2 + b**2))
+
+
+def test_an_eigenvalue_may_be_complex() -> None:
+    eigenvalue = Scalar.symbol(EIGENVALUE)
+    assert not never_together_zero([a], (eigenvalue**2 + 1,), {})
+    assert not holds(said(a, "!=", Scalar.of(0)), eigenvalue**2 + 1)
+    assert holds(said(eigenvalue, "!=", Scalar.of(1)), eigenvalue**2 + 1)
+    assert never_together_zero([a], (a**2 + 1,), {}), "a parameter is real"
