@@ -26,7 +26,7 @@ def __getattr__(name: str) -> Any:
         if found is not None:
             return found
     elif not name.startswith("_"):
-        task = importlib.import_module("symobs.method").tasks().get(name)
+        task = importlib.import_module("symobs.method").task_named(name)
         if task is not None:
             return task.function
     message = f"module 'symobs' has no attribute {name!r}"

@@ -249,11 +249,13 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
     if environment.relations and environment.coefficients:
         return True
-    values = (*leaves, *environment.coefficients.values())
-    timed = any(TIME in symbols_named(name) for value in values for name in value.field.names)
-    kinds = (Derivative, At, Integral) if timed else (At, Integral)
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
-    return any(contains(formula, kinds) or _in_time(formula) for formula in formulas)
+    if any(contains(formula, (At, Integral)) or _in_time(formula) for formula in formulas):
+        return True
+    if not any(contains(formula, (Derivative,)) for formula in formulas):
+        return False
+    values = (*leaves, *environment.coefficients.values())
+    return any(TIME in symbols_named(name) for value in values for name in value.field.names)
 
 
 def _in_time(formula: Formula) -> bool:

@@ -45,9 +45,9 @@ class Tasks(click.Group):
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
-        from symobs.method import tasks  # noqa: PLC0415
+        from symobs.method import task_named  # noqa: PLC0415
 
-        task = tasks().get(cmd_name.replace("-", "_"))
+        task = task_named(cmd_name.replace("-", "_"))
         return None if task is None else _task_command(task)
 
     def resolve_command(

@@ -348,6 +348,15 @@ def tasks() -> Mapping[str, Task]:
     return _TASKS
 
 
+def task_named(name: str) -> Task | None:
+    """Return a task, None where there is none; a module of its name is looked at first: a run pays for what it needs."""
+    if name not in _TASKS and name.isidentifier():
+        for package in symobs.TASK_PACKAGES:
+            if name in {found.name for found in _modules(package)}:
+                importlib.import_module(f"{package}.{name}")
+    return _TASKS.get(name) or tasks().get(name)
+
+
 def methods(of: str | None = None) -> Mapping[str, Method]:
     """Return all methods, or those of one task, by `task/name`."""
     tasks()
@@ -356,13 +365,12 @@ def methods(of: str | None = None) -> Mapping[str, Method]:
 
 def choose(of: str, name: str, automatic: str) -> Method:
     """Return the method asked for; `auto` means `automatic`.  Raises `InputError` naming what exists."""
-    known = methods(of)
     wanted = f"{of}/{automatic if name == 'auto' else name}"
-    if wanted not in known:
+    if wanted not in _METHODS and wanted not in methods(of):
         message = f"{name[:40]!r} is not a method of {of}"
-        existing = ", ".join(["auto", *(found.name for found in known.values())])
+        existing = ", ".join(["auto", *(found.name for found in methods(of).values())])
         raise InputError(message, where="specification.method", repair=f"write one of {existing}")
-    return known[wanted]
+    return _METHODS[wanted]
 
 
 def formats() -> Mapping[str, Any]:

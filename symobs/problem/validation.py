@@ -12,7 +12,7 @@ from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
-from symobs.method import Document, Result, Task, tasks
+from symobs.method import Document, Result, Task, task_named, tasks
 from symobs.problem.keys import PLANT, TOP
 from symobs.problem.tables import Decimal
 from symobs.specification import read_poles
@@ -179,25 +179,28 @@ def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
 
 
 def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple[Task, ...]:
-    known, key = tasks(), "tasks" if "tasks" in data else "task"
-    listed = f"known tasks are {', '.join(sorted(known))}"
+    key = "tasks" if "tasks" in data else "task"
     if "task" in data and "tasks" in data:
         errors.note("both task and tasks are given", "tasks", "keep one of them")
     value = data.get(key, [])
     if value == [] and required:
-        errors.note("no task is named", key, f'write for example task = "observer"; {listed}')
+        errors.note("no task is named", key, f'write for example task = "observer"; {_listed()}')
     found: dict[str, Task] = {}
     for i, name in enumerate(value if isinstance(value, list) else [value]):
         where = f"{key}[{i}]" if isinstance(value, list) else key
         if not isinstance(name, str):
-            errors.note(f"the name of a task is expected, but {_came(name)} came", where, listed)
-        elif name not in known:
-            errors.note(f'"{shown(name, 40)}" is not a task', where, listed)
+            errors.note(f"the name of a task is expected, but {_came(name)} came", where, _listed())
+        elif (task := task_named(name)) is None:
+            errors.note(f'"{shown(name, 40)}" is not a task', where, _listed())
         elif name in found:
             errors.note(f"the task {name} is named twice", where, "keep one of them")
         else:
-            found[name] = known[name]
+            found[name] = task
     return tuple(found.values())
+
+
+def _listed() -> str:
+    return f"known tasks are {', '.join(sorted(tasks()))}"
 
 
 def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
