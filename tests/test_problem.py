@@ -374,3 +374,25 @@ def test_a_compensator_follows_the_members_expected() -> None:
     wrong = [right.replace("(s + 2)", "(s + 3)"), right.replace("-6 -6", "-6 -5"), right.replace("[1; 2]", "[1; 1]")]
     places = [expecting(lines, text)[0].split(":")[0] for lines in wrong]
     assert places == ["expect.F", "expect.compensator_matrix", "expect.L"]
+
+
+def test_a_word_that_two_tasks_read_differently_is_read_as_the_task_asked_for_does() -> None:
+    """`output` holds functions of t for initial_state, rational ones for time-varying plants; and [expect] is read too."""
+    text = """
+        titel = "x"
+        task = "initial_state"
+        [symbols]
+        T = "positive"
+        [plant]
+        A = "[0 1; 0 {entry}]"
+        C = "[1 0]"
+        [specification]
+        horizon = "T"
+        output = "1 - exp(-t)"
+        [expect]
+        x0 = "[1; 2"
+    """
+    for entry, places in (("-1", ["titel", "expect.x0"]), ("-q", ["titel", "plant.A", "expect.x0"])):
+        with pytest.raises(ProblemErrors) as caught:
+            read(text.replace("{entry}", entry), "problem.toml")
+        assert [error.where for error in caught.value.errors] == places

@@ -4,10 +4,11 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 """
 
 from symobs.exact.algebraic import EIGENVALUE, Extension
-from symobs.exact.calculus import antiderivative, derivative, exponential_of_integral
+from symobs.exact.calculus import antiderivative, exponential_of_integral
 from symobs.exact.complex import Complex
 from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
+from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of

@@ -1,4 +1,4 @@
-"""Derivatives and antiderivatives of rational functions of one generator, the time.
+"""Antiderivatives of rational functions of one generator, the time.
 
 Antiderivatives are sought among rational functions (Ostrogradsky's method): where a logarithm would be needed there is
 none.
@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from symobs.exact.elimination import kernel
+from symobs.exact.functions import derivative
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import from_coefficients
 from symobs.exact.scalar import Scalar
@@ -20,21 +21,6 @@ Value = TypeVar("Value", Scalar, Matrix)
 
 #: Beyond this degree of a denominator no rational antiderivative is sought: the equations grow with it.
 DEGREE_UP_TO = 12
-
-
-def derivative(value: Value, name: str) -> Value:
-    """Return d value / d name, entry by entry."""
-    if isinstance(value, Matrix):
-        return Matrix.of([[_derivative(entry, name) for entry in row] for row in value.rows], value.shape[1])
-    return _derivative(value, name)
-
-
-def _derivative(value: Scalar, name: str) -> Scalar:
-    field = value.field
-    if name not in field.position:
-        return Scalar.of(0)
-    index, above, below = field.position[name], value.numerator_part, value.denominator_part
-    return Scalar.reduced(field, above.derivative(index) * below - above * below.derivative(index), below * below)
 
 
 def antiderivative(value: Value, name: str) -> Value | None:

@@ -51,7 +51,8 @@ class Problem:
             with errors:
                 results.append(task.function(self.plant, **keywords))
         if errors.found:
-            _read_alone(self.specification, self.expect, self.plant.symbols, self.plant.variable, errors)
+            kinds = _kinds(self.tasks)
+            _read_alone(self.specification, kinds, self.expect, self.plant.symbols, self.plant.variable, errors)
             raise errors.together()
         return tuple(results)
 
@@ -113,8 +114,9 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect).solve()
+            errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
-        _read_alone(specification, expect, symbols, read_time(dt, symbols).variable, errors)
+        _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
     raise errors.together()
 
 
@@ -254,7 +256,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
 def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _Errors) -> dict[str, Any]:
     """Return what the tasks can use of the specification."""
     table = _table(data, "specification", errors)
-    kinds = {name: kind for task in wanted or tasks().values() for name, kind in task.keywords.items()}
+    kinds = _kinds(wanted)
     _report_unknown(table, kinds, "specification", errors)
     found: dict[str, Any] = {}
     for name in [name for name in table if name in kinds]:
@@ -275,16 +277,25 @@ def _read_cells(value: object, symbols: Symbols, where: str, errors: _Errors) ->
             read_scalar(cell, symbols, f"{where}[{i}][{j}]")
 
 
+def _kinds(wanted: Collection[Task]) -> dict[str, str]:
+    """Return the kinds of the keywords of these tasks, or of all where none is named: the same word may mean two."""
+    return {name: kind for task in wanted or tasks().values() for name, kind in task.keywords.items()}
+
+
 def _read_alone(
-    specification: Mapping[str, Any], expect: Mapping[str, Any], symbols: Symbols, variable: str, errors: _Errors
+    specification: Mapping[str, Any],
+    kinds: Mapping[str, str],
+    expect: Mapping[str, Any],
+    symbols: Symbols,
+    variable: str,
+    errors: _Errors,
 ) -> None:
     """Note what cannot be read even by itself: where there is an error already, the tasks do not come to read it."""
-    kinds = {name: kind for task in tasks().values() for name, kind in task.keywords.items()}
     others = _Errors()
     for name, value in specification.items():
         where = f"specification.{name}"
         with others:
-            match kinds[name]:
+            match kinds.get(name):
                 case "Poles":
                     for i, pole in enumerate(value[:_MAX_CELLS] if isinstance(value, list) else ()):
                         with others:
