@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 #: How many points are tried before it is left open whether a polynomial can be stable, and can be unstable.
-_POINTS = 24
+_POINTS = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +209,7 @@ def stable_somewhere(polynomial: Scalar, variable: str, signs: Mapping[str, str]
 
 
 def _number(generator: random.Random, sign: str) -> Fraction:
-    size = Fraction(generator.randint(1, 40), generator.choice((1, 2, 5, 20)))
+    size = Fraction(generator.randint(1, 40), generator.choice((1, 4, 20, 100)))
     negative = sign in {"negative", "nonpositive"} or (sign in {"real", "nonzero"} and generator.random() < 0.5)
     return -size if negative else size
 

@@ -11,27 +11,35 @@ if TYPE_CHECKING:
 
     from symobs.system import StateSpace
 
-#: Tasks that place fewer poles than the plant has states; by how many.
-FEWER = {"reduced_order_observer": 1}
+#: Tasks and methods some of whose polynomials have one root less than the plant has states; which.
+FEWER = {"reduced_order_observer": ("",), "compensator/minimal_order": ("observer_",)}
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
-OWN_COORDINATES = {"reduced_order_observer"}
+OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order"}
+#: Methods that answer another question than the other methods of their task.
+OTHER_QUESTIONS = {"compensator/minimal_order"}
 
 
-def specification(task: str, poles: Any) -> dict[str, Any]:
-    """Return a specification: every keyword that takes poles gets these, or as many as it needs; others something plain."""
-    found = poles[: -FEWER[task]] if task in FEWER and poles is not None else poles
-    values = {"Poles": found, "TimeFunctions": "0", "Intensity": "1"}
-    kinds = tasks()[task].keywords.items()
-    return {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
+def fewer(asked: str, keyword: str) -> int:
+    """Return by how many roots the polynomial of a keyword is shorter than the order, for `task` or `task/method`."""
+    prefix = keyword.removesuffix("poles").removesuffix("polynomial")
+    return int(any(prefix in FEWER.get(name, ()) for name in (asked, asked.partition("/")[0])))
 
 
-def factors(task: str, listed: Sequence[Any]) -> Sequence[Any]:
-    """Return as many factors of a desired polynomial as a task needs."""
-    return listed[: len(listed) - FEWER.get(task, 0)]
+def specification(asked: str, poles: Any) -> dict[str, Any]:
+    """Return a specification: every keyword that takes poles gets as many as it needs; others something plain."""
+    values = {"Poles": poles, "TimeFunctions": "0", "Intensity": "1"}
+    kinds = tasks()[asked.partition("/")[0]].keywords.items()
+    given = {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
+    return {name: factors(asked, name, value) if value is poles and poles else value for name, value in given.items()}
 
 
-def is_for(task: str, plant: StateSpace, poles: Sequence[str]) -> bool:
+def factors(asked: str, keyword: str, listed: Sequence[Any]) -> Sequence[Any]:
+    """Return as many poles, or factors of a desired polynomial, as a keyword needs."""
+    return listed[: len(listed) - fewer(asked, keyword)]
+
+
+def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
     """Whether a task can be asked about a plant at all: there is something left to estimate, and pairs stay whole."""
-    if task not in FEWER:
+    if not {asked, asked.partition("/")[0]} & FEWER.keys():
         return True
     return plant.order > 1 and not plant.matrices.C.is_zero and "i" not in poles[-1]

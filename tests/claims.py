@@ -178,7 +178,58 @@ def stability_holds(result: Any, at: Setting) -> None:
         assert stable == (result.fields["stable"] == "yes")
 
 
+def minimal_order_holds(result: Any, at: Setting) -> None:
+    """Hold F(s) to the loop: with x̂ = T⁻¹ [x₁; z + L x₁] the state x, z obeys one matrix, and P/(1 + PF) has its poles."""
+    design_holds(result.feedback, at, "control_")
+    reduced_order_holds(result.estimator, at, "observer_")
+    if result.answer["K"] is None or result.answer["L"] is None:
+        assert result.answer["F"] is None
+        return
+    K, L = (matrix_at(result.answer[name], at.point) for name in "KL")
+    F_z, G, H, M = (matrix_at(result.estimator.fields[name], at.point) for name in "FGHM")
+    KM, ((d,),), estimated = multiply(K, M), at.D, len(F_z)
+    direct, through = [row[:1] for row in KM], [row[1:] for row in KM]
+    solvable = 1 - direct[0][0] * d
+    if result.answer["F"] is None:
+        assert not solvable
+        return
+    zero = [[Fraction(0)] * len(at.A) for _ in range(estimated)]
+    in_error = beside([subtract(at.A, multiply(at.B, K)), multiply(at.B, through)], [zero, F_z])
+    driven = [[g[0] + h[0] * d] for g, h in zip(G, H, strict=True)]
+    fed = multiply(subtract(H, multiply(driven, direct)), at.C)
+    nothing = [[Fraction(0)] * estimated for _ in at.A]
+    in_estimate = beside(
+        [subtract(at.A, multiply(at.B, multiply(direct, at.C))), subtract(nothing, multiply(at.B, through))],
+        [fed, subtract(F_z, multiply(driven, through))],
+    )
+    assert matrix_at(result.fields["closed_loop_matrix"], at.point) == in_error
+    assert matrix_at(result.fields["closed_loop_matrix_estimate"], at.point) == in_estimate
+    whole = product([at.wanted["control_"], at.wanted["observer_"]])
+    assert characteristic(in_error) == characteristic(in_estimate) == whole
+    own = subtract(F_z, multiply(G, [[entry / solvable for entry in row] for row in through]))
+    assert matrix_at(result.fields["compensator_matrix"], at.point) == own
+    assert matrix_at(result.fields["direct_term"], at.point) == [[direct[0][0] / solvable]]
+    for s in at.probes:
+        assert rational_at(result.fields["closed_loop_polynomial"], result.plant.variable, s, at.point) == at_number(
+            whole, s
+        )
+        try:
+            above = response(F_z, H, through, s) + direct[0][0]
+            F = above / (solvable + response(F_z, G, through, s))
+            P = response(at.A, at.B, at.C, s) + d
+        except ZeroDivisionError:  # a pole
+            continue
+        assert rational_at(result.fields["F"], result.plant.variable, s, at.point) == F
+        if at_number(whole, s):
+            assert rational_at(result.fields["closed_loop"], result.plant.variable, s, at.point) == P / (1 + P * F)
+    assert len(L) == estimated
+    F_stable_holds(result, at)
+
+
 def compensator_holds(result: Any, at: Setting) -> None:
+    if result.method == "minimal_order":
+        minimal_order_holds(result, at)
+        return
     design_holds(result.feedback, at, "control_")
     design_holds(result.estimator, at, "observer_")
     if result.answer["F"] is None:
@@ -210,7 +261,12 @@ def compensator_holds(result: Any, at: Setting) -> None:
         assert rational_at(F_s, variable, s, at.point) == F
         if at_number(whole, s):
             assert rational_at(result.fields["closed_loop"], variable, s, at.point) == P / (1 + P * F)
-    denominator = coefficients_at(F_s.denominator, variable, at.point)
+    F_stable_holds(result, at)
+
+
+def F_stable_holds(result: Any, at: Setting) -> None:
+    """Hold the verdict on the compensator itself against Routh's scheme at the point."""
+    denominator = coefficients_at(result.fields["F"].denominator, result.plant.variable, at.point)
     if result.fields["F_stable"] in {"yes", "no"} and denominator[0]:
         assert at.is_stable(denominator) == (result.fields["F_stable"] == "yes")
 
@@ -257,7 +313,7 @@ def transfer_holds(result: Result, at: Setting) -> None:
             assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
 
 
-def reduced_order_holds(result: Any, at: Setting) -> None:
+def reduced_order_holds(result: Any, at: Setting, prefix: str = "") -> None:
     """P A − F P = H C, G = P B − H D, M [C; P] = I, det(sI − F) = φ(s), or fixed modes that are not wanted."""
     if result.answer["L"] is None:
         assert result.fields["fixed_modes"]
@@ -267,9 +323,10 @@ def reduced_order_holds(result: Any, at: Setting) -> None:
     assert T[:1] == at.C
     P = subtract(T[1:], multiply(L, at.C))
     assert subtract(multiply(P, at.A), multiply(F, P)) == multiply(H, at.C)
-    assert matrix_at(result.fields["G"], at.point) == subtract(multiply(P, at.B), multiply(H, at.D))
+    if result.plant.matrices.has_input:
+        assert matrix_at(result.fields["G"], at.point) == subtract(multiply(P, at.B), multiply(H, at.D))
     assert multiply(M, [*at.C, *P]) == [[Fraction(int(i == j)) for j in range(len(P) + 1)] for i in range(len(P) + 1)]
-    assert characteristic(F) == at.wanted[""]
+    assert characteristic(F) == at.wanted[prefix]
 
 
 def held_elsewhere(_result: Any, _at: Setting) -> None:

@@ -48,7 +48,7 @@ PARTS: list[tuple[str, Result]] = [
 ]
 MODES = {"observability": "unobservable_modes", "controllability": "uncontrollable_modes"}
 #: Points where a region is compared with the roots, and those where everything else is.
-MANY, FEW = 60, 3
+MANY, FEW = 400, 3
 
 
 def parts(*tasks: str) -> list[ParameterSet]:
@@ -154,9 +154,20 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": hidden}
     if part.task == "time_varying_observability":
         return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
+    if part.task == "reduced_order_observer":
+        if "F" not in answer:
+            return {}
+        T, L = answer["T"], answer["L"]
+        unmeasured = multiply(multiply(T, A), inverse(T))
+        hidden = hidden_at([row[1:] for row in unmeasured[1:]], [unmeasured[0][1:]], s)
+        F = subtract([row[1:] for row in unmeasured[1:]], multiply(L, [unmeasured[0][1:]]))
+        assert answer["F"] == F
+        return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": hidden}
     assert part.task == "compensator"
     if "F" not in answer:
         return {}
+    if part.method == "minimal_order":
+        return minimal_order(part, point, answer, (A, B, C, D), s)
     K, L = answer["K"], answer["L"]
     BK, LC, zero = multiply(B, K), multiply(L, C), [[Fraction(0)] * len(A) for _ in A]
     own = subtract(subtract(A, BK), subtract(LC, multiply(L, multiply(D, K))))
@@ -167,6 +178,38 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         "compensator_matrix": own,
         "closed_loop_matrix": loop,
         "closed_loop_matrix_estimate": blocks((A, subtract(zero, BK)), (LC, subtract(subtract(A, BK), LC))),
+        "closed_loop_polynomial": characteristic_at(loop, s),
+        "closed_loop": P / (1 + P * answer["F"]),
+    }
+
+
+def minimal_order(
+    part: Any, point: Point, answer: dict[str, Any], plant: tuple[Rows, Rows, Rows, Rows], s: Fraction
+) -> dict[str, Any]:
+    """Return the derived fields of a compensator with an observer of minimal order: the loop in (x, z) from u = −K x̂."""
+    A, B, C, D = plant
+    K, L = answer["K"], answer["L"]
+    T = at(part.estimator.answer["T"], point)
+    known = {name: at(part.estimator.answer[name], point) for name in "FGH"}
+    moved = multiply(K, inverse(T))
+    rest = [moved[0][1:]]
+    direct = moved[0][0] + multiply(rest, L)[0][0]
+    solvable = 1 - direct * D[0][0]
+    driven = [[g[0] + h[0] * D[0][0]] for g, h in zip(known["G"], known["H"], strict=True)]
+    zero = [[Fraction(0)] * len(A) for _ in L]
+    loop = blocks((subtract(A, multiply(B, K)), multiply(B, rest)), (zero, known["F"]))
+    fed = multiply(subtract(known["H"], times(direct, driven)), C)
+    in_z = blocks(
+        (subtract(A, times(direct, multiply(B, C))), times(Fraction(-1), multiply(B, rest))),
+        (fed, subtract(known["F"], multiply(driven, rest))),
+    )
+    ((P,),) = multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B))
+    P += D[0][0]
+    return {
+        "compensator_matrix": subtract(known["F"], times(1 / solvable, multiply(known["G"], rest))),
+        "direct_term": [[direct / solvable]],
+        "closed_loop_matrix": loop,
+        "closed_loop_matrix_estimate": in_z,
         "closed_loop_polynomial": characteristic_at(loop, s),
         "closed_loop": P / (1 + P * answer["F"]),
     }

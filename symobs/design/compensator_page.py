@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.design.compensator import CompensatorDesign
-    from symobs.formula import Relation
+    from symobs.design.output_feedback import OutputFeedback
+    from symobs.formula import Fact, Relation
+    from symobs.page import Slot
 
 #: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
 LARGE = 60
@@ -62,10 +64,11 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
     with page.section("closed_loop"):
         _error_coordinates(page, design, large=large)
         if large:
-            _named_return_path(page, design)
+            own = (page.s @ page.identity(design.plant.order) - page["A_c"]).apply("det")
+            named_return_path(page, design, own)
         else:
-            _return_path(page, design)
-    _cautions(page, design)
+            return_path(page, design)
+    cautions(page, design)
 
 
 def _state_space(page: Page, design: CompensatorDesign) -> None:
@@ -97,27 +100,25 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
         page.value(F),
     ]
     page.define("F", *stages, say="transfer_function_of_compensator", answer=True)
+    say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
+
+
+def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, **slots: Slot) -> None:
+    """Say that F is proper and, where the conditions are few, whether or where it is stable by itself."""
+    plant, F = page.plant, design.answer["F"]
     found = design.own_stability
-    properness = predicate("strictly_proper", page["F"])
-    key = {"yes": "compensator_stable", "no": "compensator_unstable"}.get(found)
-    if key is None:
-        _stable_where(page, F)
-    else:
-        page.conclude(key, properness, predicate("stable" if found == "yes" else "unstable", page["F"]))
-
-
-def _stable_where(page: Page, F: Scalar) -> None:
-    """Say for which parameters the compensator itself is stable, where the conditions are few."""
-    plant = page.plant
-    polynomial = monic(F.denominator, plant.variable)
-    found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    proper = predicate("strictly_proper", page["F"])
-    if sum(value.size for value in found.positive) > _READABLE_TERMS:
-        page.conclude("compensator_proper", proper)
+    if found in {"yes", "no"}:
+        word = "stable" if found == "yes" else "unstable"
+        page.conclude(f"{stem}_{word}", proper, predicate(word, page["F"]), **slots)
         return
-    inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
+    polynomial = monic(F.denominator, plant.variable)
+    positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
+    if sum(value.size for value in positive) > _READABLE_TERMS:
+        page.conclude(f"{stem}_proper", proper, **slots)
+        return
+    inequalities = [as_inequality(value, plant.symbols.signs) for value in positive]
     where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-    page.conclude("compensator_stable_if", proper, where=Exactly(predicate("stable", page["F"]), where))
+    page.conclude(f"{stem}_stable_if", proper, where=Exactly(predicate("stable", page["F"]), where), **slots)
 
 
 def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
@@ -146,7 +147,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     page.equal(relation(*members), say="estimate_coordinates")
 
 
-def _return_path(page: Page, design: CompensatorDesign) -> None:
+def return_path(page: Page, design: OutputFeedback) -> None:
     """P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
     page.diagram("loop", plant=plant_form, compensator=page.value(design.answer["F"]))
@@ -163,7 +164,7 @@ def _return_path(page: Page, design: CompensatorDesign) -> None:
         page.conclude("loop_polynomial")
 
 
-def _plant(page: Page, design: CompensatorDesign) -> Term:
+def _plant(page: Page, design: OutputFeedback) -> Term:
     """Show the plant's transfer function, unless the problem gave it."""
     plant = design.plant
     numerator, characteristic = design.plant_transfer
@@ -184,7 +185,7 @@ def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
     K, L, variable = page["K"], page["L"], design.plant.variable
     resolvent = (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse
     numerator, denominator = transfer(page["A_c"].value, L.value, K.value, Scalar.of(0), variable)
-    names = _Namer(page)
+    names = Namer(page)
     above = names.polynomial("n", numerator.coefficients(variable), variable)
     below = names.polynomial("d", denominator.coefficients(variable)[1:], variable, monic=True)
     page.define("F", K @ resolvent @ L, above / below, say="transfer_function_of_compensator", answer=True)
@@ -193,7 +194,7 @@ def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
     page.conclude("compensator_proper", predicate("strictly_proper", page["F"]))
 
 
-class _Namer:
+class Namer:
     """Letters for the coefficients of polynomials, and the list of what they stand for."""
 
     def __init__(self, page: Page) -> None:
@@ -219,19 +220,18 @@ class _Namer:
         self.page.equal(*(relation(symbol, meaning) for symbol, meaning in self.meanings), say="with_coefficients")
 
 
-def _named_return_path(page: Page, design: CompensatorDesign) -> None:
-    """P/(1 + PF) over the product of the two polynomials."""
+def named_return_path(page: Page, design: OutputFeedback, own: Term) -> None:
+    """P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
     _plant(page, design)
     page.diagram("loop", plant=page["P"], compensator=page["F"])
     numerator, _ = design.plant_transfer
-    own = (page.s @ page.identity(design.plant.order) - page["A_c"]).apply("det")
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     product = page.value(numerator) @ own / (page["phi_c"] @ page["phi_o"])
     page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
     page.conclude("loop_polynomial")
 
 
-def _poles(design: CompensatorDesign, polynomial: Scalar) -> tuple[Root, ...]:
+def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
     """Return the poles in the order they were asked for, or as the roots of the polynomial."""
     poles: list[Root] = []
     for part in (design.feedback, design.estimator):
@@ -242,7 +242,7 @@ def _poles(design: CompensatorDesign, polynomial: Scalar) -> tuple[Root, ...]:
     return tuple(poles)
 
 
-def _cautions(page: Page, design: CompensatorDesign) -> None:
+def cautions(page: Page, design: OutputFeedback) -> None:
     """Warn where an expert would: a repeated control pole is defective, so its exponential alone does not bound x."""
     plant = design.plant
     desired = design.feedback.desired

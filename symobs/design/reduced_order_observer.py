@@ -14,7 +14,7 @@ from symobs.certificate import Certificate, Claim
 from symobs.design.gain import letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Matrix, Scalar, unit_rows
+from symobs.exact import Matrix, Root, Scalar, unit_rows
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -101,13 +101,21 @@ class ReducedOrderObserver(Result):
     inner: ObserverDesign
 
     task: ClassVar[str] = "reduced_order_observer"
+    letter: ClassVar[str] = "L"
 
     @classmethod
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, T: Matrix, method_name: str) -> Self:
         """Return the observer in the coordinates T, or the negative result."""
+        inner = ObserverDesign.of(_unmeasured(plant, partition(plant, T)), desired, "ackermann")
+        return cls.assembled(plant, inner, desired, T, method_name)
+
+    @classmethod
+    def assembled(
+        cls, plant: StateSpace, inner: ObserverDesign, desired: DesiredPolynomial, T: Matrix, method_name: str
+    ) -> Self:
+        """Return the observer with a gain for (A₁₂, A₂₂)."""
         parts = partition(plant, T)
         m = plant.matrices
-        inner = ObserverDesign.of(_unmeasured(plant, parts), desired, "ackermann")
         answer: dict[str, Any] = dict.fromkeys("LTFGHM") | {"T": T}
         L = inner.answer["L"]
         if L is not None:
@@ -121,6 +129,13 @@ class ReducedOrderObserver(Result):
             lift = Matrix.block([[known, Matrix.zeros(plant.outputs, L.shape[0])], [L, rest]])
             answer |= {"L": L, "F": F, "G": G, "H": H, "M": (T.inverse() @ lift).normal()}
         return cls(plant, method_name, answer, desired, inner)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the observer with another L, and with the F, G, H and M that follow from it."""
+        if name != "L":
+            return super().with_answer(name, value)
+        inner = self.inner.with_answer("L", value)
+        return type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
 
     def claims(self) -> Iterator[Claim]:
         """Yield that z follows P x, that [C; P] is undone by M, and where the poles are."""
@@ -140,6 +155,9 @@ class ReducedOrderObserver(Result):
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         if answer["L"] is None:
             return
+        if (answer["G"] is None) == plant.matrices.has_input:
+            message = "G belongs to a plant with an input, and to no other"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         A, C, L, F, H, M, R = (letter(name, e) for name in ("A", "C", "L", "F", "H", "M", "R"))
         P = R - L @ C
         yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
@@ -176,6 +194,16 @@ class ReducedOrderObserver(Result):
         inner = [c for c in self.inner.holds_where if c.kind == "existence" and c.expression not in known]
         return (*own, *inner)
 
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """The modes that no gain moves."""
+        return self.inner.unmoved_modes
+
+    @property
+    def gain_family(self) -> dict[str, Any] | None:
+        """The general gain L where it is not unique."""
+        return self.inner.gain_family
+
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The whole question again where T is singular or the pair (A₁₂, A₂₂) loses its rank."""
@@ -196,8 +224,8 @@ class ReducedOrderObserver(Result):
             **{name: self.answer[name] for name in "LTFGHM"},
             "polynomial": self.desired.polynomial,
             "poles": self.inner.roots if self.answer["L"] is not None else (),
-            "fixed_modes": self.inner.unmoved_modes,
-            "family": self.inner.gain_family,
+            "fixed_modes": self.unmoved_modes,
+            "family": self.gain_family,
         }
 
     def write(self, page: Page) -> None:

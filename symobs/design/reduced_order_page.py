@@ -23,6 +23,11 @@ if TYPE_CHECKING:
 def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
     """Write data, test, gain, and the observer without the derivative of the output."""
     given(page, ("observer", design.desired))
+    write_observer_of_rest(page, design)
+
+
+def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:
+    """Write the test, the gain, and the observer without the derivative of the output."""
     parts = partition(page.plant, design.answer["T"])
     with page.section("observability"):
         test = Observability.of(page.plant, "rank")
@@ -91,8 +96,8 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     known = page["y"] - page["D"] @ u if page.plant.matrices.has_feedthrough else page["y"]
     key = "parts_with_feedthrough" if page.plant.matrices.has_feedthrough else "parts"
     page.equal(
-        relation(x_1.derivative, _sum(first), _combination(page, first)),
-        relation(x_2.derivative, _sum(second), _combination(page, second)),
+        relation(x_1.derivative, summed(first), combination(page, first)),
+        relation(x_2.derivative, summed(second), combination(page, second)),
         say=key,
         measured=relation(x_1, page["C"] @ page["x"], known),
         unmeasured=relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
@@ -153,10 +158,15 @@ def _gain(page: Page, design: ReducedOrderObserver) -> None:
     page.verified("as_required", check=relation(*members))
 
 
+def observer_state(page: Page) -> str:
+    """Return the letter of the observer's state: in discrete time z is the variable."""
+    return "w_o" if page.plant.is_discrete else "z_o"
+
+
 def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     """(4.39)-(4.41): z = x̂₂ − L x₁, and the estimate put together again."""
     m, L, u, x_1 = page.plant.matrices, page["L"], page["u"], page["x_1"]
-    name = "w_o" if page.plant.is_discrete else "z_o"
+    name = observer_state(page)
     page.signal(name, page["x_2_hat"] - L @ x_1, silent=True)
     z = page[name]
     closed = _error_matrix(page)
@@ -176,7 +186,7 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
         pairs.append((page["G_z"], u))
     pairs.append((page["H_z"], page["y"]))
     page.conclude_silently(relation(page["F_z"], closed))
-    page.equal(relation(z.derivative, _sum(pairs), _combination(page, pairs)), say="reduced_final", answer=True)
+    page.equal(relation(z.derivative, summed(pairs), combination(page, pairs)), say="reduced_final", answer=True)
     output = page["y"] - page["D"] @ u if m.has_feedthrough else page["y"]
     stacked = block([[output], [z]])
     order, outputs = page.plant.order - page.plant.outputs, page.plant.outputs
@@ -210,14 +220,15 @@ def _impossible(page: Page, design: ReducedOrderObserver) -> None:
     page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)
 
 
-def _sum(pairs: list[tuple[Term, Term]]) -> Term:
+def summed(pairs: list[tuple[Term, Term]]) -> Term:
+    """Return Σ matrix · signal, as letters."""
     total = pairs[0][0] @ pairs[0][1]
     for matrix, signal in pairs[1:]:
         total = total + matrix @ signal
     return total
 
 
-def _combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
+def combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
     """Return the sum with numbers: what is zero is left out, and a 1×1 matrix is a number."""
     total: Term | None = None
     for matrix, signal in pairs:
@@ -225,11 +236,12 @@ def _combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
         if value.is_zero:
             continue
         single = value[0, 0] if value.shape == (1, 1) else None
-        negative = single is not None and single.is_constant and single.fraction() < 0 and total is not None
+        negative = single is not None and single.is_constant and single.fraction() < 0
         if single is not None:
             size = -single if negative else single
             part = signal if size.is_one else page.value(size) * signal
         else:
             part = page.value(value) @ signal
+        part = -part if negative and total is None else part
         total = part if total is None else total - part if negative else total + part
-    return _sum(pairs) if total is None else total
+    return summed(pairs) if total is None else total

@@ -16,6 +16,7 @@ from symobs.phrases import (
     coordinates,
     duality,
     gains,
+    minimal_order,
     modes,
     polynomials,
     rank,
@@ -35,6 +36,7 @@ _MODULES = (
     time,
     gains,
     compensation,
+    minimal_order,
     reduced_order,
     time_varying,
 )

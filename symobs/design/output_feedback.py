@@ -1,0 +1,227 @@
+"""What compensators with either observer have in common: the two designs they are made of, and the closed loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.certificate import Certificate, Claim, check
+from symobs.conditions import sign_of
+from symobs.exact import Factored, Matrix, Scalar, factored, transfer
+from symobs.formula import Environment
+from symobs.formula.term import Term, letter
+from symobs.method import Case, Result
+from symobs.page import relation
+from symobs.stability import no_stable_compensator, stability, stable_somewhere
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.conditions import Condition
+    from symobs.design.gain import GainDesign
+    from symobs.design.observer import ObserverDesign
+    from symobs.design.reduced_order_observer import ReducedOrderObserver
+    from symobs.design.state_feedback import StateFeedbackDesign
+    from symobs.specification import DesiredPolynomial
+    from symobs.system import StateSpace
+
+#: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
+_DECIDABLE_TERMS = 400
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputFeedback(Result):
+    """U = −F(s) Y from a state feedback and an observer, each with its own claims.
+
+    Where one of the two is impossible there is no F.
+    """
+
+    feedback: StateFeedbackDesign
+    estimator: ObserverDesign | ReducedOrderObserver
+
+    task: ClassVar[str] = "compensator"
+
+    # -- what a subclass says ----------------------------------------------------------------------------------------
+
+    @classmethod
+    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
+        """Return the compensator for these polynomials."""
+        raise NotImplementedError
+
+    @classmethod
+    def of(cls, feedback: StateFeedbackDesign, estimator: Any, method_name: str) -> Self:
+        """Return the compensator of two designs for one plant."""
+        raise NotImplementedError
+
+    @cached_property
+    def own_matrix(self) -> Matrix:
+        """The matrix of the compensator's own state."""
+        raise NotImplementedError
+
+    @cached_property
+    def error_coordinates(self) -> Matrix:
+        """The loop in (x, e) or (x, e₂)."""
+        raise NotImplementedError
+
+    @cached_property
+    def estimate_coordinates(self) -> Matrix:
+        """The loop in (x, x̂) or (x, z)."""
+        raise NotImplementedError
+
+    @cached_property
+    def own_transfer(self) -> tuple[Scalar, Scalar]:
+        """F as numerator over denominator, normalised so that χ · denominator + n · numerator is φ_c φ_o for P = n/χ."""
+        raise NotImplementedError
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the compensator with another gain, and with the F that follows from it."""
+        if name not in {"K", "L"}:
+            return super().with_answer(name, value)
+        feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
+        estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
+        return type(self).of(feedback, estimator, self.method)
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a compensator."""
+        return self.answer["F"] is not None
+
+    def certified(self, environment: Environment) -> Iterator[Claim]:
+        """Yield that K and L are the certified gains of the two designs."""
+        for design in (self.feedback, self.estimator):
+            own, certified = self.answer[design.letter], design.answer[design.letter]
+            if own is not certified:
+                yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of both gains and of F."""
+        return (*self.feedback.certificates, *self.estimator.certificates, *self.certificates)
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def verdict(self) -> str:
+        """`no` where either gain does not exist."""
+        if not self.exists:
+            return "no"
+        return super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of both gains."""
+        both = [*self.feedback.holds_where, *self.estimator.holds_where]
+        return tuple({c.expression: c for c in both}.values())
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
+        found = []
+        for design in (self.feedback, self.estimator):
+            for case in design.case_tree:
+                if case.result is None:
+                    found.append(case)
+                    continue
+                other = self.on(case.result.plant, dict(case.substitution))
+                found.append(Case(case.when, case.substitution, other))
+        return tuple(found)
+
+    def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        """Return the compensator on a stratum."""
+        control, observer = self.feedback.desired, self.estimator.desired
+        assert control is not None and observer is not None  # noqa: S101, PT018 - cases belong to desired polynomials
+        return type(self).designed(plant, control.substitute(values), observer.substitute(values), self.method)
+
+    @cached_property
+    def plant_transfer(self) -> tuple[Scalar, Scalar]:
+        """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled."""
+        m = self.plant.matrices
+        return transfer(m.A, m.B, m.C, m.D[0, 0], self.plant.variable)
+
+    @cached_property
+    def loop(self) -> Factored:
+        """P/(1 + PF): the plant with F in the return path, checked against its definition."""
+        numerator, characteristic = self.plant_transfer
+        P, F = numerator / characteristic, self.answer["F"]
+        _, own = self.own_transfer
+        polynomial = self.loop_polynomial
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
+        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable)
+        e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
+        P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e))
+        return form
+
+    @cached_property
+    def loop_polynomial(self) -> Factored:
+        """φ_c φ_o, with the factors that were asked for."""
+        factors: dict[Scalar, int] = {}
+        for design in (self.feedback, self.estimator):
+            for factor, power in _factors_of(design):
+                factors[factor] = factors.get(factor, 0) + power
+        return Factored(Scalar.of(1), tuple(factors.items()))
+
+    @cached_property
+    def own_stability(self) -> str:
+        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`."""
+        plant, F = self.plant, self.answer["F"]
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        if self._is_unavoidably_unstable:
+            return "no"
+        if F.size <= _DECIDABLE_TERMS:
+            verdict = stability(F.denominator, variable, signs, discrete=discrete).verdict
+            if verdict != "conditional":
+                return verdict
+        met = stable_somewhere(F.denominator, variable, signs, discrete=discrete)
+        return "conditional" if len(met) == 2 else "undecided"
+
+    @cached_property
+    def _is_unavoidably_unstable(self) -> bool:
+        """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
+        plant = self.plant
+        signs = plant.symbols.signs
+        if plant.is_discrete:
+            return False
+        wanted = (c for factor, _ in self.loop_polynomial.factors for c in factor.coefficients(plant.variable))
+        numerator, characteristic = self.plant_transfer
+        return all(sign_of(c, signs) == "positive" for c in wanted) and no_stable_compensator(
+            numerator / characteristic, plant.variable, signs
+        )
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract."""
+        answers = {name: self.answer[name] for name in ("K", "L", "F")}
+        if not self.exists:
+            return answers | {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
+        return {
+            **answers,
+            "F_stable": self.own_stability,
+            "compensator_matrix": self.own_matrix,
+            "closed_loop_polynomial": self.loop_polynomial,
+            "closed_loop": self.loop,
+            "closed_loop_matrix": self.error_coordinates,
+            "closed_loop_matrix_estimate": self.estimate_coordinates,
+            "family": self.families,
+        }
+
+    @property
+    def families(self) -> Mapping[str, Any] | None:
+        """The general gains where they are not unique."""
+        found = {d.letter: d.gain_family for d in (self.feedback, self.estimator) if d.gain_family is not None}
+        return found or None
+
+
+def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar, int], ...]:
+    if design.desired is not None:
+        return design.desired.grouped()
+    return factored(design.answer["polynomial"], design.plant.variable).factors
+
+
+def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
+    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    unit, above = numerator.factors()
+    below = tuple((factor, -power) for factor, power in polynomial.factors)
+    return Factored(unit, (*above, (own, 1), *below))

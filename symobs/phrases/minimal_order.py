@@ -1,0 +1,40 @@
+"""The compensator with a minimal-order observer."""
+
+from __future__ import annotations
+
+_DIRECT = "It has a direct term, {direct}, because the measured states act at once."
+
+PHRASES: dict[str, str] = {
+    "partitioned_gain": "Measured and estimated states are fed back by",
+    "minimal_control": "By the separation principle the control law uses the measured states as they are and the estimate of the others:",
+    "output_gain": "With",
+    "minimal_control_in_y": "it reads, in terms of the output and of the observer's state,",
+    "well_posed_assumed": "This determines $u$ where {condition}.",
+    "minimal_control_solved": "Solved for the input,",
+    "ill_posed": "Because of {determinant} this cannot be solved for $u$: the measured output contains the input, which the control law would need "
+    "before it is known. There is no such compensator.",
+    "ill_posed_there": "There {determinant}: the output contains the input, which the control law would need before it is known. There is no such "
+    "compensator.",
+    "minimal_closed": "Put into the observer, it leaves, with {state} and {input}, a system that is driven by $y$ alone:",
+    "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
+    "minimal_stable": _DIRECT + " By itself it is stable.",
+    "minimal_unstable": _DIRECT + " By itself it is not stable, although the loop is.",
+    "minimal_proper": _DIRECT,
+    "minimal_stable_if": _DIRECT + " By itself it is stable exactly where {where}.",
+    "reduced_coordinates": "In state and observer state the same loop reads",
+}
+
+#: A new thought begins here.
+OPENS = ("minimal_control", "partitioned_gain")
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "minimal_stable": ("strictly_proper", "stable"),
+    "minimal_unstable": ("strictly_proper", "unstable"),
+    "minimal_proper": ("strictly_proper",),
+    "minimal_stable_if": ("strictly_proper",),
+}
+
+RESTS_ON: dict[str, str] = {
+    "minimal_control": "separation",
+    "minimal_transfer": "minimal_order",
+}
