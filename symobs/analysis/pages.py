@@ -84,7 +84,7 @@ def _asked(page: Page, name: str, wish: DesiredPolynomial) -> None:
     phi = page.set(f"phi_{name[0]}", wish.polynomial)
     if wish.poles:
         roots = tuple(root_of_pole(pole, page.plant.variable) for pole in wish.poles)
-        page.conclude(f"{name}_poles", poles=Roots(phi.formula, roots))
+        page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
     else:
         page.conclude(f"{name}_polynomial", polynomial=relation(phi, wish.polynomial))
 

@@ -102,6 +102,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
         measured=relation(x_1, page["C"] @ page["x"], known),
         unmeasured=relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
     )
+    _mere_copy(page)
     if design.inner.fixed_polynomial.is_one:
         row, order = page["A_12"], page.plant.order - page.plant.outputs
         test = block([[row @ page["A_22"] ** k if k else row] for k in range(order)])
@@ -126,6 +127,15 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
         say="reduced_error",
         error=relation(page["e_2"], page["x_2"] - page["x_2_hat"]),
     )
+
+
+def _mere_copy(page: Page) -> None:
+    """S2's first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
+    x_2, x_2_hat = page["x_2"], page["x_2_hat"]
+    copy = page["A_21"] @ page["x_1"] + page["A_22"] @ x_2_hat
+    if page.plant.matrices.has_input:
+        copy = copy + page["B_2"] @ page["u"]
+    page.remark("mere_copy", left=relation(x_2.derivative - copy, page["A_22"] @ (x_2 - x_2_hat)))
 
 
 def _error_matrix(page: Page) -> Term:
@@ -194,8 +204,10 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     lift = block([[page.identity(outputs), corner], [L, page.identity(order)]])
     page.define("M_z", page["T"].inverse @ lift, silent=True)
     page.signal("x_hat", page["M_z"] @ stacked, silent=True)
+    estimate = block([[x_1], [page["x_2_hat"]]])
+    trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
-        relation(page["x_hat"], page["T"].inverse @ block([[x_1], [page["x_2_hat"]]]), page["M_z"].shown @ stacked),
+        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
         say="assembled",
         answer=True,
     )

@@ -8,8 +8,10 @@ PHRASES: dict[str, str] = {
     "coordinates_assumed": "These are coordinates where {condition}; elsewhere other rows must complete $C$.",
     "parts": "Only {unmeasured} has to be estimated, since {measured} is measured. The plant falls into two parts,",
     "parts_with_feedthrough": "Only {unmeasured} has to be estimated, since {measured} is known. The plant falls into two parts,",
-    "first_part_measures": "Everything in the first but the last state is known, so it is a measurement of $x_2$ through $A_12$. The pair "
+    "first_part_measures": "But everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
     "($A_12$, $A_22$) is observable because ($C$, $A$) is: {rank}.",
+    "mere_copy": "Correcting the estimate by the output error would do nothing: it takes $x_1$ from the measurement, so there is no such error, "
+    "and a mere copy of the second part goes wrong by {left}.",
     "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
     "reduced_error": "Whatever the input, the error {error} then obeys",
     "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",

@@ -16,10 +16,13 @@ PHRASES: dict[str, str] = {
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
     "declared": "Throughout, {signs}.",
+    "desired_pole": "The pole asked for is {poles}.",
     "desired_poles": "The poles asked for are {poles}.",
     "desired_polynomial": "The polynomial asked for is {polynomial}.",
+    "control_pole": "The control pole is to be {poles}.",
     "control_poles": "The control poles are to be {poles}.",
     "control_polynomial": "The control polynomial is to be {polynomial}.",
+    "observer_pole": "The observer pole is to be {poles}.",
     "observer_poles": "The observer poles are to be {poles}.",
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
 }
