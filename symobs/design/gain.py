@@ -5,7 +5,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -13,6 +13,8 @@ from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.assignment import Pair, remainder
+from symobs.design.family import Family, cases_of_rank
+from symobs.design.several import SeveralOutputs
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
 from symobs.formula import Environment, Literal, Relation
@@ -37,6 +39,8 @@ class GainDesign(Result):
 
     desired: DesiredPolynomial | None
     working: Pair | None = field(default=None, compare=False)
+    #: Entries (row, column), from 0, that are to vanish.
+    zero: tuple[tuple[int, int], ...] = ()
 
     letter: ClassVar[str]
 
@@ -49,7 +53,7 @@ class GainDesign(Result):
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
-        """Return the column of the observer problem as this task's gain."""
+        """Return a gain of the observer problem as this task's gain, and the other way round."""
         raise NotImplementedError
 
     @staticmethod
@@ -98,8 +102,10 @@ class GainDesign(Result):
             yield from self._impossible()
             return
         yield self._assigned(gain)
-        if self.gain_family is not None:
+        if self.gain_family is not None and self.gain_family[self.letter] is not None:
             yield self._assigned(self.gain_family[self.letter])
+        if self.chart is not None:
+            yield from self.chart.claims(self.oriented, self.gain_family)
 
     def _assigned(self, gain: Matrix) -> Claim:
         phi = self.answer["polynomial"]
@@ -116,7 +122,7 @@ class GainDesign(Result):
         e = Environment(variable=variable, values=values)
         A, C, kernel, restricted = (letter(name, e) for name in ("A", "C", "N", "X"))
         pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
-        yield Claim(relation(C @ kernel, Matrix.zeros(1, N.shape[1])), e, "C*N = 0")
+        yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
         yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
         yield Claim(relation(kernel.apply("rank"), X.shape[0], "!==", 0), e, "N has full rank")
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
@@ -144,7 +150,7 @@ class GainDesign(Result):
         if self.desired is None:
             return ()
         if self._pair.is_observable:
-            return (self._pair.determinant,)
+            return self._pair.decisive
         return self._obstacles if self.answer[self.letter] is None else ()
 
     @cached_property
@@ -169,14 +175,30 @@ class GainDesign(Result):
     @cached_property
     def gain_family(self) -> dict[str, Any] | None:
         """The general gain where it is not unique: `parameters` and the gain with them; None where it is unique."""
-        gain = self.answer[self.letter]
+        gain, chart = self.answer[self.letter], self.chart
+        if chart is not None:
+            return chart.fields(self.letter, self.oriented)
         if gain is None or self.desired is None or self._pair.is_observable:
             return None
         N = self._pair.kernel
-        taken = self.plant.field.names + tuple(self.plant.symbols.signs) + gain.field.names
-        names = fresh_names("g", N.shape[1], taken)
+        names = fresh_names("g", N.shape[1], self._taken)
         free = Matrix.column([Scalar.symbol(name) for name in names])
-        return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal()}
+        return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal(), "dimension": len(names)}
+
+    @cached_property
+    def chart(self) -> Family | None:
+        """The family of gains for several outputs (inputs), the gain of the answer in it; None for one."""
+        gain, pair = self.answer[self.letter], self._pair
+        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs):
+            return None
+        names = fresh_names("g", pair.freedom, self._taken)
+        return Family.of(pair, self.desired, names, self.oriented(gain))
+
+    @property
+    def _taken(self) -> tuple[str, ...]:
+        """The names that a parameter of the family cannot have."""
+        named = self.answer[self.letter].field.names, self.answer["polynomial"].field.names
+        return (*self.plant.field.names, *self.plant.symbols.signs, *named[0], *named[1])
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -195,6 +217,8 @@ class GainDesign(Result):
             except ZeroDivisionError:
                 return found
 
+        if isinstance(self._pair, SeveralOutputs) and self._pair.is_observable:
+            return cases_of_rank(self.plant, self.task, solve)
         obstacles = self.existence
         if len(obstacles) <= 1 or self._pair.is_observable:
             return strata(self.plant, obstacles, solve)
@@ -229,7 +253,7 @@ def working_pair(pair: Pair, desired: DesiredPolynomial) -> Pair:
     """Return the pair over one context: plant and specification together."""
     names = {name for factor in desired.factors for name in factor.field.names} - {desired.variable}
     working = Field.of((*pair.A.field.names, *pair.c.field.names, *names))
-    return Pair(pair.A.within(working), pair.c.within(working), pair.variable)
+    return replace(pair, A=pair.A.within(working), c=pair.c.within(working))
 
 
 def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
@@ -256,6 +280,14 @@ def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> 
             names.append(name)
         index += 1
     return tuple(names)
+
+
+def require_one(count: int, what: str, name: str) -> None:
+    """Raise `InputError` where a method for one output (input) is asked about several."""
+    if count != 1:
+        message = f"the method {name} needs one {what}, the plant has {count}"
+        repair = "write sylvester or row_reduced_echelon, which take several"
+        raise InputError(message, where="specification.method", repair=repair)
 
 
 def require_single(count: int, what: str, task: str) -> None:

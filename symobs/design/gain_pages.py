@@ -18,6 +18,7 @@ from symobs.analysis.pages import (
 )
 from symobs.derivation import Case as CaseStep
 from symobs.design.gain import GainDesign, fresh_names
+from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
@@ -70,6 +71,8 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         desired = name_coefficients(page, design, side)
         if style == "canonical_form":
             _canonical(page, desired, side)
+        elif style == "sylvester":
+            write_sylvester(page, design, side, desired)
         else:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
@@ -247,6 +250,9 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
     page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER), divides, roots=roots)
+    if design.chart is not None:
+        write_hidden_family(page, design, side)
+        return
     gain = page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
     free = page["N"] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)

@@ -7,10 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.assignment import Pair
 from symobs.design.canonical import canonical_gain
-from symobs.design.gain import GainDesign, require_single
+from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.design.several import pair_of
+from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
@@ -28,6 +29,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.system import StateSpace
@@ -43,7 +45,7 @@ class ObserverDesign(GainDesign):
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (A, C)."""
-        return Pair(plant.matrices.A, plant.matrices.C, plant.variable)
+        return pair_of(plant.matrices.A, plant.matrices.C, plant.variable)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
@@ -72,15 +74,17 @@ class ObserverDesign(GainDesign):
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
         with page.section("observer"):
-            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant))
+            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant, several=self.plant.outputs > 1))
             if self.answer["L"] is not None:
                 write_observer(page)
 
 
-def page_style(method_name: str, plant: StateSpace) -> str:
+def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
     """Return whose page is written: canonical form for small plants unless a method was asked for."""
     if method_name != "auto":
         return method_name
+    if several:
+        return "sylvester"
     readable = _CANONICAL_PAGES if not plant.field.names else _PARAMETRIC_CANONICAL_PAGES
     return "canonical_form" if plant.order <= readable else "ackermann"
 
@@ -117,6 +121,7 @@ def write_observer(page: Page) -> None:
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
+    require_one(plant.outputs, "output", "canonical_form")
     pair = ObserverDesign.pair(plant)
     if not pair.is_observable:
         return ObserverDesign.of(plant, desired, "canonical_form")
@@ -127,7 +132,14 @@ def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDes
 @method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form")
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = φ(A) 𝒪⁻¹ eₙ."""
+    require_one(plant.outputs, "output", "ackermann")
     return ObserverDesign.of(plant, desired, "ackermann")
+
+
+@method("observer/sylvester", source=SYLVESTER)
+def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """L = (G X⁻¹)ᵀ with AᵀX − XF = CᵀG, F the companion matrix of φ: every G for which X is regular."""
+    return ObserverDesign.of(plant, desired, "sylvester")
 
 
 @task
@@ -151,10 +163,10 @@ def observer(
     """
     plant = plant.knowing(poles, polynomial, L)
     plant.require("C", task="observer")
-    require_single(plant.outputs, "output", "observer")
     reject_both("L", L, poles, polynomial)
     if L is not None:
         return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("observer", method, "ackermann").solve(plant, desired).asked(method)
+    automatic = "ackermann" if plant.outputs == 1 else "sylvester"
+    return choose("observer", method, automatic).solve(plant, desired).asked(method)

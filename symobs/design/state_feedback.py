@@ -7,11 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.assignment import Pair
 from symobs.design.canonical import canonical_gain
-from symobs.design.gain import GainDesign, require_single
+from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import FEEDBACK, write_gain
 from symobs.design.observer import page_style
+from symobs.design.several import pair_of
+from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.specification import (
@@ -28,6 +29,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.page import Page
@@ -44,7 +46,7 @@ class StateFeedbackDesign(GainDesign):
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (Aᵀ, Bᵀ)."""
-        return Pair(plant.matrices.A.T, plant.matrices.B.T, plant.variable)
+        return pair_of(plant.matrices.A.T, plant.matrices.B.T, plant.variable)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
@@ -71,12 +73,13 @@ class StateFeedbackDesign(GainDesign):
         """Write data and gain."""
         given(page, ("control", self.desired))
         with page.section("state_feedback"):
-            write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant))
+            write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant, several=self.plant.inputs > 1))
 
 
 @method("state_feedback/canonical_form", source="S0, Examples 4.1 and 4.2 (controllable canonical form)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
+    require_one(plant.inputs, "input", "canonical_form")
     pair = StateFeedbackDesign.pair(plant)
     if not pair.is_observable:
         return StateFeedbackDesign.of(plant, desired, "canonical_form")
@@ -87,7 +90,14 @@ def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedba
 @method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300")
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = eₙᵀ 𝒞⁻¹ φ(A)."""
+    require_one(plant.inputs, "input", "ackermann")
     return StateFeedbackDesign.of(plant, desired, "ackermann")
+
+
+@method("state_feedback/sylvester", source=SYLVESTER)
+def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = G X⁻¹ with AX − XF = BG, F the companion matrix of φ: every G for which X is regular."""
+    return StateFeedbackDesign.of(plant, desired, "sylvester")
 
 
 @task
@@ -111,10 +121,10 @@ def state_feedback(
     """
     plant = plant.knowing(poles, polynomial, K)
     plant.require("B", task="state_feedback")
-    require_single(plant.inputs, "input", "state_feedback")
     reject_both("K", K, poles, polynomial)
     if K is not None:
         return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("state_feedback", method, "ackermann").solve(plant, desired).asked(method)
+    automatic = "ackermann" if plant.inputs == 1 else "sylvester"
+    return choose("state_feedback", method, automatic).solve(plant, desired).asked(method)
