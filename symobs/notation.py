@@ -101,6 +101,9 @@ LETTERS: dict[str, LetterForm] = {
     "G_z": LetterForm("G", "G", "input matrix of the reduced-order observer"),
     "H_z": LetterForm("H", "H", "output matrix of the reduced-order observer"),
     "M_z": LetterForm("M", "M", "matrix that assembles the estimate"),
+    **{f"xi_{k}": LetterForm(rf"\xi_{k}", f"ξ{'₀₁₂₃₄₅₆₇₈₉'[k]}", "null vector of a pole") for k in range(1, 10)},
+    "Psi": LetterForm(r"\Psi", "Ψ", "upper parts of the null vectors"),
+    "f_psi": LetterForm("f", "f", "lower parts of the null vectors"),
     "F_phi": LetterForm("F", "F", "companion matrix of the desired polynomial"),
     "G_phi": LetterForm("G", "G", "right factor of Sylvester's equation"),
     "X_phi": LetterForm("X", "X", "solution of Sylvester's equation"),
@@ -159,6 +162,7 @@ OPERATORS: dict[str, tuple[str, str]] = {
     ">": (">", ">"),
     "<=": (r"\le", "≤"),
     ">=": (r"\ge", "≥"),
+    "~": (r"\sim", "~"),
 }
 
 GREEK = [
@@ -265,6 +269,8 @@ THEOREMS: dict[str, Theorem] = {
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),
     "canonical_form": Theorem("placement through canonical form", "S0, Example 4.1"),
     "decomposition": Theorem("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
+    "row_reduction": Theorem("row-reduced echelon method", "S3, (7)-(10)"),
+    "companion_form": Theorem("placement through companion form", "S1, slide at 16:01"),
     "sylvester": Theorem(
         "pole assignment by Sylvester's equation",
         "S. P. Bhattacharyya and E. de Souza, Systems & Control Letters 1 (1982), 261-263",

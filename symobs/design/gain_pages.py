@@ -19,6 +19,8 @@ from symobs.analysis.pages import (
 from symobs.derivation import Case as CaseStep
 from symobs.design.gain import GainDesign, fresh_names
 from symobs.design.gain_family_page import write_hidden_family, write_sylvester
+from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
+from symobs.design.names import taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
@@ -71,7 +73,13 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         desired = name_coefficients(page, design, side)
         if style == "canonical_form":
             _canonical(page, desired, side)
-        elif style == "sylvester":
+        elif style == "coefficient_matching":
+            write_matching(page, design, side, desired)
+        elif style == "companion_form":
+            write_companion(page, side, desired)
+        elif style == "row_reduced_echelon" and readable(design):
+            write_row_reduction(page, design, side)
+        elif style == "sylvester" or design.chart is not None:
             write_sylvester(page, design, side, desired)
         else:
             _ackermann(page, desired, side)
@@ -156,13 +164,6 @@ def _say_canonical(page: Page) -> None:
         relation(page["B"], Matrix.unit(order, order - 1)),
         chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
     )
-
-
-def taken_names(page: Page) -> set[str]:
-    """Return the names of parameters and coefficients that stand on the page."""
-    named = page.environment.coefficients
-    inside = {name for meaning in named.values() for name in meaning.field.names}
-    return {*page.plant.symbols.signs, *page.plant.field.names, *named, *inside}
 
 
 def name_entries(page: Page, gain: str) -> None:

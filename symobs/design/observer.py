@@ -7,9 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.canonical import canonical_gain
+from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.design.matching import matching
+from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
@@ -140,6 +142,39 @@ def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
 def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = (G X⁻¹)ᵀ with AᵀX − XF = CᵀG, F the companion matrix of φ: every G for which X is regular."""
     return ObserverDesign.of(plant, desired, "sylvester")
+
+
+@method("observer/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system."""
+    require_one(plant.outputs, "output", "coefficient_matching")
+    pair = ObserverDesign.pair(plant)
+    if not pair.is_observable:
+        return ObserverDesign.of(plant, desired, "coefficient_matching")
+    answer = {"L": matching(pair, desired).solution, "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "coefficient_matching", answer, desired)
+
+
+@method("observer/row_reduced_echelon", source="S3, (7)-(10)")
+def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form."""
+    pair = ObserverDesign.pair(plant)
+    found = row_reduction(pair, desired) if pair.is_observable else None
+    if found is None:
+        return ObserverDesign.of(plant, desired, "row_reduced_echelon")
+    answer = {"L": ObserverDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "row_reduced_echelon", answer, desired)
+
+
+@method("observer/companion_form", source="S1, the double integrator at 16:01")
+def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
+    require_one(plant.outputs, "output", "companion_form")
+    pair = ObserverDesign.pair(plant)
+    if not pair.is_observable:
+        return ObserverDesign.of(plant, desired, "companion_form")
+    answer = {"L": companion_gain(pair, desired), "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "companion_form", answer, desired)
 
 
 @task

@@ -7,10 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.canonical import canonical_gain
+from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import FEEDBACK, write_gain
+from symobs.design.matching import matching
 from symobs.design.observer import page_style
+from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
@@ -98,6 +100,39 @@ def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDes
 def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = G X⁻¹ with AX − XF = BG, F the companion matrix of φ: every G for which X is regular."""
     return StateFeedbackDesign.of(plant, desired, "sylvester")
+
+
+@method("state_feedback/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system."""
+    require_one(plant.inputs, "input", "coefficient_matching")
+    pair = StateFeedbackDesign.pair(plant)
+    if not pair.is_observable:
+        return StateFeedbackDesign.of(plant, desired, "coefficient_matching")
+    answer = {"K": matching(pair, desired).solution.T, "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "coefficient_matching", answer, desired)
+
+
+@method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)")
+def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form."""
+    pair = StateFeedbackDesign.pair(plant)
+    found = row_reduction(pair, desired) if pair.is_observable else None
+    if found is None:
+        return StateFeedbackDesign.of(plant, desired, "row_reduced_echelon")
+    answer = {"K": StateFeedbackDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "row_reduced_echelon", answer, desired)
+
+
+@method("state_feedback/companion_form", source="S1, the double integrator at 16:01")
+def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
+    require_one(plant.inputs, "input", "companion_form")
+    pair = StateFeedbackDesign.pair(plant)
+    if not pair.is_observable:
+        return StateFeedbackDesign.of(plant, desired, "companion_form")
+    answer = {"K": companion_gain(pair, desired).T, "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "companion_form", answer, desired)
 
 
 @task
