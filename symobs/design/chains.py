@@ -17,7 +17,7 @@ from symobs.exact import Matrix, Scalar, apply_polynomial, rank
 from symobs.exact.krylov import Krylov
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
 #: So many orders of the outputs, links of chains and ways to share the factors of φ are tried.
 ORDERS, LINKS, SHARES = 6, 6, 8
@@ -82,15 +82,20 @@ class Chains:
             rows[order[-1]][state] = -coefficient
         return Matrix.of(rows)
 
-    def shared(self, polynomials: Sequence[Sequence[Scalar]], *, keep: bool) -> Matrix:
+    def shared(self, polynomials: Sequence[Sequence[Scalar]], beyond: str) -> Matrix:
         """Return the last rows that give each chain a polynomial of its own.
 
-        With `keep` what leads from a chain to later ones stays as it is in the plant, so that less has to be changed.
+        `beyond` says what leads from a chain to later ones: `nothing`, `one` entry into the next, or what there is in
+        the `plant`, so that less has to be changed.
         """
         size = self.T.shape[0]
         rows = []
         for k, coefficients in enumerate(polynomials):
-            row = [self.last_rows[k, j] if keep and j > self.ends[k] else Scalar.of(0) for j in range(size)]
+            row = [Scalar.of(0)] * size
+            if beyond == "plant":
+                row = [self.last_rows[k, j] if j > self.ends[k] else Scalar.of(0) for j in range(size)]
+            elif beyond == "one" and k + 1 < len(self.starts):
+                row[self.starts[k + 1]] = Scalar.of(1)
             row[self.starts[k] : self.ends[k] + 1] = [-c for c in reversed(coefficients)]
             rows.append(row)
         return Matrix.of(rows)
@@ -130,8 +135,8 @@ def simple_gains(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str)
         for link in islice(permutations(range(len(chains.outputs))), LINKS):
             yield chains.gain(chains.linked(link, coefficients), count)
         for share in islice(shares(factors, chains.lengths, variable), SHARES):
-            for keep in (False, True):
-                yield chains.gain(chains.shared(share, keep=keep), count)
+            for beyond in ("nothing", "one", "plant"):
+                yield chains.gain(chains.shared(share, beyond), count)
 
 
 def _of_one_output(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Iterator[Matrix]:
@@ -186,8 +191,3 @@ def cost(gain: Matrix) -> tuple[int, int]:
         else:
             total += 8 * entry.size
     return len(below.names), total
-
-
-def simplest(gains: Iterable[Matrix]) -> Matrix:
-    """Return the gain that is easiest to read, the first of several."""
-    return min(gains, key=cost)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.observability import Controllability, Observability
 from symobs.certificate import Claim
-from symobs.design.sylvester import Sylvester
+from symobs.design.sylvester import charts_of
 from symobs.exact import Matrix, Scalar
-from symobs.formula import Environment
-from symobs.formula.term import letter
+from symobs.formula import Environment, Literal
+from symobs.formula.term import Term, letter
 from symobs.method import Case
 from symobs.page import relation
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from symobs.design.several import SeveralOutputs
+    from symobs.design.sylvester import Sylvester
     from symobs.method import Result
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
@@ -43,7 +44,7 @@ class Family:
         assert factors is not None  # noqa: S101 - a member exists
         A, C, _ = pair.seen
         own = names[: A.shape[0] * (C.shape[0] - 1)]
-        charts = [Sylvester(A, C, factors, pair.variable, own, row) for row in range(C.shape[0])]
+        charts = charts_of(A, C, factors, pair.variable, own)
         part = pair.part_of(member)
         inside = (chart for chart in charts if chart.free_entries(part) is not None)
         return Family(pair, next(inside, charts[0]), names, member)
@@ -93,8 +94,7 @@ class Family:
     def claims(self, oriented: Callable[[Matrix], Matrix], told: Mapping[str, Any] | None) -> Iterator[Claim]:
         """Yield (A − L₀C)ᵀX − XF = CᵀG and (L − L₀)ᵀX = G for the seen part: L determines G, so no parameter is idle.
 
-        G has e₁ᵀ in its own row, and e₁ᵀ, e₁ᵀF, … are the rows of I: with both equations that row r of Lᵀ has
-        [r; rM; …] X = I, M = (A − LC)ᵀ.
+        w G = e₁ᵀ, and e₁ᵀ, e₁ᵀF, … are the rows of I: with both equations r = w Lᵀ has [r; rM; …] X = I, M = (A − LC)ᵀ.
         """
         if self.is_empty or told is None:
             return
@@ -110,6 +110,8 @@ class Family:
         yield Claim(relation(A_.T @ X - X @ F, C_.T @ G), e, "A.T*X - X*F = C.T*G")
         if self.general is not None:
             yield Claim(relation(letter("L", e).T @ X, G), e, "L.T*X = G")
+        weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
+        yield Claim(relation(Term(Literal(weights), e) @ G, first), e, "w*G = [1, 0, ..., 0]")
         yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")
         rows = len(told["parameters"]) - self.H.shape[0] * self.H.shape[1]
         yield Claim(relation(rows, A.shape[0] * (C.shape[0] - 1)), e, "G has n*(p - 1) parameters")

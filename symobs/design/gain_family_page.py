@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form
-from symobs.design.sylvester import Sylvester
+from symobs.design.sylvester import Sylvester, charts_of
 from symobs.exact import Matrix, companion
 from symobs.page import Page, relation
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 #: What has more terms is not written out: a matrix, a determinant, a general gain.
-_MATRIX, _DETERMINANT, _GAIN = 60, 24, 60
+_MATRIX, _DETERMINANT, _GAIN = 40, 24, 60
 
 
 def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -59,7 +59,7 @@ def write_hidden_family(page: Page, design: GainDesign, side: Side) -> None:
 def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
     """One output (input): G = e₁ᵀ, and X is unique."""
     pair = design.pair(page.plant)
-    equation = Sylvester(pair.A, pair.c, desired.factors, pair.variable, ())
+    (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
     _equation(page, side, "G_phi", "X_phi", equation, equation.G)
     page.define(side.gain, _gain(page, side, "G_phi", "X_phi", equation), say="gain_follows", answer=True)

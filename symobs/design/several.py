@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_result import power_rows
 from symobs.design.assignment import Pair, divide
-from symobs.design.chains import simple_gains, simplest
+from symobs.design.chains import cost, simple_gains
+from symobs.design.sylvester import charts_of
 from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from symobs.exact import Scalar
     from symobs.specification import DesiredPolynomial
 
@@ -78,22 +77,21 @@ class SeveralOutputs(Pair):
             return None
         return tuple(f for f, power in factored(quotient, self.variable).factors for _ in range(power))
 
-    def members(self, desired: DesiredPolynomial) -> Iterator[Matrix]:
-        """Yield gains that are easy to read; none where φ cannot be assigned."""
+    def gain(self, desired: DesiredPolynomial) -> Matrix | None:
+        """Return a gain with det(sI − A + L C) = φ(s) that is easy to read, or None where there is none.
+
+        It lies in a chart of the family: the easiest one of all need not be cyclic.
+        """
         factors = self.remaining(desired)
         if factors is None:
-            return
+            return None
         A, C, S = self.seen
         if not A.shape[0]:
-            yield Matrix.zeros(self.A.shape[0], C.shape[0])
-            return
-        for found in simple_gains(A, C, factors, self.variable):
-            yield (S @ found).normal()
-
-    def gain(self, desired: DesiredPolynomial) -> Matrix | None:
-        """Return the gain with det(sI − A + L C) = φ(s) that is easiest to read, or None where there is none."""
-        members = list(self.members(desired))
-        return simplest(members) if members else None
+            return Matrix.zeros(self.A.shape[0], C.shape[0])
+        found = sorted(dict.fromkeys(simple_gains(A, C, factors, self.variable)), key=cost)
+        charts = charts_of(A, C, factors, self.variable, ())
+        inside = (L for L in found if any(chart.free_entries(L) is not None for chart in charts))
+        return (S @ next(inside, found[0])).normal()
 
     @property
     def freedom(self) -> int:

@@ -1,8 +1,8 @@
 """All gains for several outputs: AᵀX − XF = CᵀG with F the companion matrix of φ and G free, L = (G X⁻¹)ᵀ.
 
 Then (A − LC)ᵀ = X F X⁻¹, so det(sI − A + LC) = φ(s), repeated and irreducible φ included.  Every L for which A − LC is
-cyclic is found by G = LᵀX.  G and G q(F) give the same L for every polynomial q, so one row of G may be held at e₁ᵀ;
-what is left free are n(p − 1) parameters, and L determines them: with r that row of Lᵀ and M = (A − LC)ᵀ the rows
+cyclic is found by G = LᵀX.  G and G q(F) give the same L for every polynomial q, so one row w G may be held at e₁ᵀ;
+what is left free are n(p − 1) parameters, and L determines them: with r = w Lᵀ and M = (A − LC)ᵀ the rows
 r, rM, …, rMⁿ⁻¹ are X⁻¹.  Source: S. P. Bhattacharyya and E. de Souza, Systems & Control Letters 1 (1982), 261-263.
 """
 
@@ -27,14 +27,18 @@ WRITTEN_UP_TO = 60_000
 
 @dataclass(frozen=True)
 class Sylvester:
-    """The equation (A − L₀C)ᵀX − XF = CᵀG for an observable pair; `row` of G is e₁ᵀ, `names` stand for the others."""
+    """The equation (A − L₀C)ᵀX − XF = CᵀG for an observable pair; w G = e₁ᵀ, `names` stand for the other rows.
+
+    `shift` is L₀, None where A and F have no eigenvalue in common.
+    """
 
     A: Matrix
     C: Matrix
     factors: tuple[Scalar, ...]
     variable: str
     names: tuple[str, ...]
-    row: int = 0
+    shift: Matrix | None
+    weights: tuple[int, ...]
 
     @cached_property
     def coefficients(self) -> tuple[Scalar, ...]:
@@ -50,23 +54,26 @@ class Sylvester:
         return companion(self.coefficients)
 
     @cached_property
-    def shift(self) -> Matrix | None:
-        """L₀, which parts the spectrum of A − L₀C from that of F; None where they are apart."""
-        return parting_shift(self.A, self.C, self.factors, self.variable)
-
-    @cached_property
     def shifted(self) -> Matrix:
         """A − L₀C."""
         return self.A if self.shift is None else self.A - self.shift @ self.C
 
     @cached_property
     def G(self) -> Matrix:
-        """G with its free entries."""
+        """G with its free entries: all rows but the first with a weight, which makes w G = e₁ᵀ."""
         outputs, order = self.C.shape
+        held = next(i for i, weight in enumerate(self.weights) if weight)
         free = iter([Scalar.symbol(name) for name in self.names])
-        return Matrix.of(
-            [[Scalar.of(int(j == 0)) if i == self.row else next(free) for j in range(order)] for i in range(outputs)]
-        )
+        rows = [
+            [Scalar.of(int(j == 0 and i == held)) if i == held else next(free) for j in range(order)]
+            for i in range(outputs)
+        ]
+        for i, weight in enumerate(self.weights):
+            if i != held and weight:
+                rows[held] = [a - weight * b for a, b in zip(rows[held], rows[i], strict=True)]
+        scale = self.weights[held]
+        rows[held] = [entry / scale for entry in rows[held]]
+        return Matrix.of(rows)
 
     def raised(self, G: Matrix) -> Matrix:
         """Return φ(Aᵀ)X: the columns are found from the last one, Cᵀ gₙ, by Horner's rule on φ.
@@ -111,9 +118,9 @@ class Sylvester:
         return comb(parameters + order, order) > WRITTEN_UP_TO
 
     def free_entries(self, L: Matrix) -> Matrix | None:
-        """Return the G of a member, its own row being e₁ᵀ; None where A − LC is not cyclic from that row."""
+        """Return the G of a member, with w G = e₁ᵀ; None where A − LC is not cyclic from w Lᵀ."""
         own = L if self.shift is None else L - self.shift
-        start = own.select(range(own.shape[0]), [self.row]).T
+        start = Matrix.row(self.weights) @ own.T
         rows, closed = [start], (self.A - L @ self.C).T
         for _ in range(self.A.shape[0] - 1):
             rows.append(rows[-1] @ closed)
@@ -121,6 +128,20 @@ class Sylvester:
             return (own.T @ Matrix.block([[row] for row in rows]).inverse()).normal()
         except ZeroDivisionError:
             return None
+
+
+def charts_of(
+    A: Matrix, C: Matrix, factors: tuple[Scalar, ...], variable: str, names: tuple[str, ...]
+) -> list[Sylvester]:
+    """Return charts: for each row of G that may be held, then for the sum of all rows and for another combination.
+
+    Every cyclic member lies in the chart of almost every combination.
+    """
+    shift, outputs = parting_shift(A, C, factors, variable), range(C.shape[0])
+    weights = [tuple(int(i == j) for j in outputs) for i in outputs]
+    if len(outputs) > 1:
+        weights += [(1,) * len(outputs), tuple(i + 1 for i in outputs)]
+    return [Sylvester(A, C, factors, variable, names, shift, w) for w in weights]
 
 
 def parting_shift(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Matrix | None:

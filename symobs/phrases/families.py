@@ -9,7 +9,7 @@ PHRASES: dict[str, str] = {
     "sylvester_state_feedback": "For a matrix $G_phi$ let $X_phi$ be the solution of Sylvester's equation",
     "similar_observer": "Where $X_phi$ is regular, the gain that follows makes the transpose of $A - L C$ similar to $F_phi$:",
     "similar_state_feedback": "Where $X_phi$ is regular, the gain that follows makes $A - B K$ similar to $F_phi$:",
-    "one_row_held": "A polynomial in $F_phi$ may be multiplied to $G_phi$ from the right without changing the gain, so one row of it can be held:",
+    "one_row_held": "A polynomial in $F_phi$ may be multiplied to $G_phi$ from the right without changing the gain, so one row of it, or one combination of rows, can be held:",
     "solution_is": "The solution of the equation is then",
     "determinant_free": "where the free entries must not make the determinant vanish,",
     "solution_of_member": "for which the solution is",
