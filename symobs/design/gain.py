@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.design.assignment import Pair, remainder
+from symobs.design.assignment import Pair, divide, remainder
 from symobs.design.family import Family, cases_of_rank
 from symobs.design.several import SeveralOutputs
+from symobs.design.zeros import contradict, equations_for, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
 from symobs.formula import Environment, Literal, Relation
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
+#: Entries of a gain: (row, column), from 0.
+Places: TypeAlias = tuple[tuple[int, int], ...]
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GainDesign(Result):
@@ -39,8 +43,7 @@ class GainDesign(Result):
 
     desired: DesiredPolynomial | None
     working: Pair | None = field(default=None, compare=False)
-    #: Entries (row, column), from 0, that are to vanish.
-    zero: tuple[tuple[int, int], ...] = ()
+    zero: Places = ()
 
     letter: ClassVar[str]
 
@@ -72,12 +75,17 @@ class GainDesign(Result):
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
-        """Return the design that assigns φ, or the negative result."""
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str, zero: Places = ()) -> Self:
+        """Return the design that assigns φ, with zeros in these places of the gain, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
-        gain = pair.gain(desired)
+        gain = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired, pair)
+        return cls(plant, method_name, answer, desired, pair, zero)
+
+    @classmethod
+    def places(cls, zero: Places) -> Places:
+        """Return places of this task's gain as places of that of the observer problem."""
+        return zero if cls.letter == "L" else tuple((j, i) for i, j in zero)
 
     @classmethod
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
@@ -99,9 +107,18 @@ class GainDesign(Result):
             e = Environment(variable=self.plant.variable)
             yield Claim(relation(phi, self.desired.polynomial), e, "the polynomial is the one asked for")
         if gain is None:
-            yield from self._impossible()
+            if not self.zero or not self.divides:
+                yield from self._impossible()
+            elif self.excluded:
+                e = Environment(variable=self.plant.variable, relations=self.equations)
+                says = "with zeros there, 1 lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
+                yield Claim(relation(1, 0), e, says if self.letter == "L" else says.replace("L*C", "B*K"))
             return
         yield self._assigned(gain)
+        if self.zero:
+            e = Environment(variable=self.plant.variable)
+            entries = Matrix.row([gain[i, j] for i, j in self.zero])
+            yield Claim(relation(entries, Matrix.zeros(1, len(self.zero))), e, f"zeros in {self.letter} as asked for")
         if self.gain_family is not None and self.gain_family[self.letter] is not None:
             yield self._assigned(self.gain_family[self.letter])
         if self.chart is not None:
@@ -139,10 +156,29 @@ class GainDesign(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where φ cannot be assigned."""
+        """`no` where φ cannot be assigned; `undecided` where no gain was found with the zeros asked for."""
         if self.answer[self.letter] is None:
-            return "no"
+            return "undecided" if self.zero and self.divides and not self.excluded else "no"
         return super().verdict
+
+    @property
+    def divides(self) -> bool:
+        """Whether the fixed modes are among the poles asked for."""
+        pair = self._pair
+        return pair.is_observable or divide(self.answer["polynomial"], pair.fixed_polynomial, pair.variable) is not None
+
+    @cached_property
+    def equations(self) -> tuple[Scalar, ...]:
+        """What the entries that are not to vanish must satisfy."""
+        assert self.desired is not None  # noqa: S101 - zeros are asked for together with poles
+        pair = self._pair
+        general = unknown_gain(pair.A.shape[0], pair.c.shape[0], self.places(self.zero))
+        return tuple(value for value in equations_for(pair, self.desired, general) if value)
+
+    @cached_property
+    def excluded(self) -> bool:
+        """Whether no gain has its zeros where they are asked for."""
+        return contradict(self.equations)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -208,7 +244,7 @@ class GainDesign(Result):
             return ()
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-            found = type(self).of(plant, desired.substitute(values), self.method)
+            found = type(self).of(plant, desired.substitute(values), self.method, self.zero)
             own = self.answer[self.letter]
             if own is None or found.answer[self.letter] is None:
                 return found
@@ -246,6 +282,7 @@ class GainDesign(Result):
             "stable_if": self.stability.inequalities(self.plant.symbols.signs),
             "fixed_modes": self.unmoved_modes,
             "family": self.gain_family,
+            **({"zero": [[i + 1, j + 1] for i, j in self.zero]} if self.zero else {}),
         }
 
 

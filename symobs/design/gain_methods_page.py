@@ -82,6 +82,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
+    page.remark(f"null_vectors_{side.kind}")
     for number, part in enumerate(found, 1):
         _reduce(page, side, part, number)
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")

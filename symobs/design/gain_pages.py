@@ -261,7 +261,11 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
 
 
 def _impossible(page: Page, design: GainDesign, side: Side) -> None:
-    """The fixed modes are not among the poles asked for."""
+    """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
+    if design.zero and design.divides:
+        listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
+        page.conclude("impossible_zero" if design.excluded else "undecided_zero", places=listed)
+        return
     fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     page.conclude(
         f"impossible_{side.kind}",

@@ -19,11 +19,13 @@ from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.specification import (
     DesiredPolynomial,
+    Entries,
     GainText,
     Name,
     Poles,
     PolynomialText,
     desired_polynomial,
+    read_entries,
     read_gain,
     reject_both,
 )
@@ -184,16 +186,20 @@ def observer(
     poles: Poles = None,
     polynomial: PolynomialText = None,
     L: GainText = None,
+    zero: Entries = None,
     method: Name = "auto",
 ) -> Result:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
 
-    plant         n states, one output; B may be missing
+    plant         n states, p outputs; B may be missing
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n; or
-    L             a given n×1 gain, whose polynomial, poles and stability are reported
-    Returns L (n×1), polynomial, A (A − LC), B_u (B − LD), B_y (L); where (C, A) is not observable either the family of
-    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    L             a given n×p gain, whose polynomial, poles and stability are reported
+    zero          entries of L that are to vanish: "(1, 2), (3, 1)" or "[* 0; * *; 0 *]"
+    Returns L (n×p), polynomial, A (A − LC), B_u (B − LD), B_y (L); where L is not unique, because there are several
+    outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
+    AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot
+    be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, (4.18)-(4.20) and Theorem 4.4.
     """
     plant = plant.knowing(poles, polynomial, L)
@@ -204,4 +210,8 @@ def observer(
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
     automatic = "ackermann" if plant.outputs == 1 else "sylvester"
-    return choose("observer", method, automatic).solve(plant, desired).asked(method)
+    chosen = choose("observer", method, automatic)
+    if zero is not None:
+        places = read_entries(zero, "zero", (plant.order, plant.outputs))
+        return ObserverDesign.of(plant, desired, chosen.name, places).asked(method)
+    return chosen.solve(plant, desired).asked(method)

@@ -19,11 +19,13 @@ from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.specification import (
     DesiredPolynomial,
+    Entries,
     GainText,
     Name,
     Poles,
     PolynomialText,
     desired_polynomial,
+    read_entries,
     read_gain,
     reject_both,
 )
@@ -142,16 +144,20 @@ def state_feedback(
     poles: Poles = None,
     polynomial: PolynomialText = None,
     K: GainText = None,
+    zero: Entries = None,
     method: Name = "auto",
 ) -> Result:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s).
 
-    plant         n states, one input; C may be missing
+    plant         n states, m inputs; C may be missing
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n; or
-    K             a given 1×n gain, whose polynomial, poles and stability are reported
-    Returns K (1×n), polynomial, closed_loop_matrix (A − BK); where (A, B) is not controllable either the family of
-    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    K             a given m×n gain, whose polynomial, poles and stability are reported
+    zero          entries of K that are to vanish: "(1, 2), (3, 1)" or "[* 0 *; * * 0]"
+    Returns K (m×n), polynomial, closed_loop_matrix (A − BK); where K is not unique, because there are several inputs
+    or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
+    AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be
+    assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, Example 4.2 and the pole assignment theorem.
     """
     plant = plant.knowing(poles, polynomial, K)
@@ -162,4 +168,8 @@ def state_feedback(
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
     automatic = "ackermann" if plant.inputs == 1 else "sylvester"
-    return choose("state_feedback", method, automatic).solve(plant, desired).asked(method)
+    chosen = choose("state_feedback", method, automatic)
+    if zero is not None:
+        places = read_entries(zero, "zero", (plant.inputs, plant.order))
+        return StateFeedbackDesign.of(plant, desired, chosen.name, places).asked(method)
+    return chosen.solve(plant, desired).asked(method)

@@ -19,6 +19,9 @@ PHRASES: dict[str, str] = {
     "gains whose closed-loop matrix is not cyclic.",
     "member_several": "A gain with short entries belongs to",
     "member_zero": "The entries asked for are zero in the gain that belongs to",
+    "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
+    "equated to those asked for, are equations for the other entries that have no common solution.",
+    "undecided_zero": "No gain with rational entries and zeros in the places {places} was found, and it is not proved that there is none.",
     "gain_follows": "The gain is",
     "no_member": "A gain with short entries, whose closed-loop matrix is not cyclic, is",
     "family_hidden": "It is not the only one. The gains form a family of dimension {count}: the part that is seen has the freedom of Sylvester's equation, "

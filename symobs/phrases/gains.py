@@ -25,6 +25,10 @@ PHRASES: dict[str, str] = {
     "companion_vector_state_feedback": "The last row of the inverse of the controllability matrix is",
     "companion_rows": "With its images as rows,",
     "companion_reached": "the pair is brought to companion form:",
+    "null_vectors_observer": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of the transpose of $A - L C$ "
+    "when the gain takes it to the lower part.",
+    "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of $A - B K$ when the gain "
+    "takes it to the lower part.",
     "pole_reduced": "For the pole {pole} the matrix and its row-reduced echelon form are",
     "pair_reduced": "For the conjugate pair that belongs to the factor {pole} the real matrix and its row-reduced echelon form are",
     "factor_reduced": "For the factor {pole}, whose companion matrix stands for its roots, the matrix and its row-reduced echelon form are",
