@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.functions import symbols_named
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
@@ -202,8 +202,7 @@ class Bounds:
         )
 
     def equal(self, left: Bound, right: Bound) -> bool:
-        message = f"sizes are not compared: {left}, {right}"
-        raise AssertionError(message)
+        raise AssertionError(f"sizes are not compared: {left}, {right}")
 
 
 def check(claim: Claim) -> Certificate:
@@ -260,9 +259,8 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
 
 def _in_time(formula: Formula) -> bool:
     """Whether the value at t = 0 or a derivative by T is asked for."""
-    if isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}:
-        return True
-    return any(_in_time(part) for part in children(formula))
+    own = isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}
+    return own or any(_in_time(part) for part in children(formula))
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
@@ -279,6 +277,8 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         return agree(left, right, arithmetic)
     if operator == "!==":
         return differ(left, right, arithmetic)
+    if operator == "~":  # the rows span the same space
+        return rank(left) == rank(right) == rank(Matrix.block([[left], [right]]))
     if operator == "!=":
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)

@@ -6,6 +6,7 @@ the name of a kind, and the problem file, the command line and Python all read t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,6 +30,7 @@ Horizon: TypeAlias = Annotated[Any, "Horizon"]
 TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
 Intensity: TypeAlias = Annotated[Any, "Intensity"]
 Sign: TypeAlias = Annotated[Any, "Sign"]
+Entries: TypeAlias = Annotated[Any, "Entries"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -51,6 +53,10 @@ KINDS: dict[str, dict[str, Any]] = {
     "SignalText": {
         "description": 'a signal as a function of the time t, "t^2" or "[t; 1]"',
         "oneOf": [{"type": "string"}, {"type": "number"}, {"type": "array"}],
+    },
+    "Entries": {
+        "description": 'entries of a matrix: (row, column) counted from 1, "(1, 2), (3, 1)", or a pattern, "[* 0; * *]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
     },
     "Sign": {"description": "1 or -1", "enum": [1, -1]},
     "Name": {"description": "a name", "type": "string"},
@@ -216,6 +222,39 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
     return gain
+
+
+def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
+    """Return entries, counted from 0, from pairs (row, column) counted from 1 or from a pattern of 0 and *."""
+    where = f"specification.{name}"
+    rows = value if isinstance(value, (list, tuple)) else [value]
+    text = "; ".join(" ".join(map(str, row)) if isinstance(row, (list, tuple)) else str(row) for row in rows)
+    if "*" in text or set(re.findall(r"[0-9]+", text)) == {"0"}:
+        return _read_pattern(text, where, shape)
+    numbers = [int(digits) for digits in re.findall(r"[0-9]{1,4}", text)]
+    if not numbers or len(numbers) % 2 or re.search(r"[^0-9,;\s()\[\]]", text):
+        message = f"{text[:40]!r} is no list of entries"
+        raise InputError(message, where=where, repair='write (row, column) counted from 1: "(1, 2), (3, 1)"')
+    found = tuple(dict.fromkeys((i - 1, j - 1) for i, j in zip(numbers[::2], numbers[1::2], strict=True)))
+    for i, j in found:
+        if not (0 <= i < shape[0] and 0 <= j < shape[1]):
+            message = f"there is no entry ({i + 1}, {j + 1}) in a {shape[0]}×{shape[1]} gain"
+            raise InputError(
+                message, where=where, repair='count rows and columns from 1, or write a pattern, "[* 0; * *]"'
+            )
+    return found
+
+
+def _read_pattern(text: str, where: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
+    """Return the places of the zeros of a pattern."""
+    rows = [row.replace(",", " ").split() for row in text.strip(" []").replace("\n", ";").split(";")]
+    if any(sign not in {"0", "*"} for row in rows for sign in row):
+        message = f"the pattern {text[:40]!r} has other signs than 0 and *"
+        raise InputError(message, where=where, repair='write for example "[* 0; * *]"')
+    if (len(rows), *{len(row) for row in rows}) != shape:
+        message = f"the pattern {text[:40]!r} is not {shape[0]}×{shape[1]}"
+        raise ShapeMismatch(message, where=where, repair=f"write {shape[0]} rows of {shape[1]} signs 0 or *")
+    return tuple((i, j) for i, row in enumerate(rows) for j, sign in enumerate(row) if sign == "0")
 
 
 def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:

@@ -277,6 +277,8 @@ class Reader:
     def holds(self, left: Value, operator: str, right: Value) -> bool:
         if operator in {"=", "!=="}:
             return self.agree(left, right) == (operator == "=")
+        if operator == "~":
+            return bool(left.rank() == right.rank() == left.col_join(right).rank())
         difference = scalar(left) - scalar(right)
         return all(compare(difference.subs(point), operator) for point in self.samples())
 

@@ -18,7 +18,7 @@ from symobs import problem
 from symobs.cli import cli
 from symobs.exact import Matrix
 from symobs.expect import mismatches
-from symobs.expression import parse_matrix
+from symobs.expression import parse_matrix, parse_scalar
 from symobs.formula import Literal
 from symobs.method import formats, render
 from tests.second_reader import sympy_scalar
@@ -34,6 +34,7 @@ FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND-DOWN", "S4-PEND-UP", "S4-LTV"}
 ROWS |= {"S0-REC", "S0-GRAM", "S0-Ex4.1-GRAM", "S0-Ex4.3-GRAM", "S1-TANK", "S4-PEND-GRAM", "S4-MSUM", "S4-NOISE"}
 ROWS |= {"S0-DUAL", "S4-DUALNEG", "S0-PBH", "S0-DET", "S3-ASSUMP", "S0-OMAT"}
+ROWS |= {"S1-OBS", "S1-PP", "S3-RRE", "S3-ALT", "S3-ZEROS", "S2-EX-PEND", "S2-TRACK"}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 
@@ -176,12 +177,27 @@ def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[s
     count = 0
     for place, expect in every_spoiled(found):
         lines = mismatches(results, expect)
+        if not lines and is_member(results[-1], place, expect):
+            continue
         assert len(lines) == 1, (place, expect)
         assert f"expect.{place}" in lines[0]
         count += 1
     record_property("spoiled values", count)
     print(f"{path.stem}: {count} spoiled values, all noticed")  # noqa: T201 - shown by pytest -s
     assert count > len(found.expect) / 2
+
+
+def is_member(result: Result, place: str, expect: Mapping[str, Any]) -> bool:
+    """Tell whether a spoiled gain meets the claim all the same, there being many: by SymPy's own determinant."""
+    letter = place.rpartition(".")[2]
+    if letter not in {"K", "L"} or result.fields["family"] is None:
+        return False
+    entry = expect.get(result.task, expect)[letter]
+    gain = rows(*[[sympy_scalar(parse_scalar(x), {}) for x in row] for row in entry])
+    plant, variable = result.plant, sympy.Symbol(result.plant.variable)
+    moved = gain * plant.C if letter == "L" else plant.B * gain
+    found = (variable * sympy.eye(plant.order) - plant.A + moved).det(method="berkowitz")
+    return bool(sympy.expand(found - result.polynomial) == 0)
 
 
 def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:

@@ -7,8 +7,9 @@ that was not established before.  Renderers accept checked derivations only.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NoReturn, TypeAlias, assert_never
+from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Value: TypeAlias = Scalar | Matrix | Signal
+_BUG = "please report this: it is a bug of symobs"
 
 
 @dataclass(frozen=True)
@@ -92,8 +94,7 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
             environment = _after(step, environment, discrete)
         except SENSELESS as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
-            repair = "please report this: it is a bug of symobs"
-            raise DerivationRejected(message, repair=repair, line=str(step)) from error
+            raise DerivationRejected(message, repair=_BUG, line=str(step)) from error
     return environment
 
 
@@ -306,14 +307,17 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
         return (
             inside if not Ideal.of(inside.relations).is_whole else _reject(plain_relation(when, environment.variable))
         )
-    replaced = {}
-    for name, value in environment.values.items():
+    named, lost = dict(substitution), set[str]()
+    for name, value in environment.coefficients.items():
         try:
-            replaced[name] = substitute(value, substitution)
-        except ZeroDivisionError:  # the letter means nothing on this stratum
-            continue
-    named = {name: value.substitute(substitution) for name, value in environment.coefficients.items()}
-    inside = replace(environment, values=replaced, coefficients={**substitution, **named}, assumed=())
+            named[name] = _there(value, substitution, lost)
+        except ZeroDivisionError:
+            lost.add(name)
+    replaced = {}
+    for name, known in environment.values.items():
+        with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
+            replaced[name] = _there(known, substitution, lost)
+    inside = replace(environment, values=replaced, coefficients=named, assumed=())
     if isinstance(when, Together):
         return replace(inside, relations=_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
@@ -322,6 +326,13 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
     if not says_no_more or verify(when, inside)[0] == "":
         _reject(plain_relation(when, environment.variable))
     return inside
+
+
+def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> Any:
+    """Return a value on a stratum; raises ZeroDivisionError where it has none, or rests on what has none."""
+    if lost.intersection(value.names):
+        raise ZeroDivisionError
+    return substitute(value, substitution)
 
 
 def _left_of(when: Together, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
@@ -350,7 +361,7 @@ def _left_of(when: Together, substitution: dict[str, Scalar], environment: Envir
 
 def _reject(line: str) -> NoReturn:
     message = f"the line {line} is not true"
-    raise DerivationRejected(message, repair="please report this: it is a bug of symobs", line=line)
+    raise DerivationRejected(message, repair=_BUG, line=line)
 
 
 # -- properties that no equation states -------------------------------------------------------------------------------

@@ -37,6 +37,11 @@ class Pair:
         return self.krylov.determinant
 
     @property
+    def decisive(self) -> tuple[Scalar, ...]:
+        """What vanishes exactly where an observable pair ceases to be."""
+        return (self.determinant,)
+
+    @property
     def is_observable(self) -> bool:
         """Whether det 𝒪 is not 0 identically."""
         return not self.krylov.is_singular

@@ -12,9 +12,9 @@ from symobs.design.gain_pages import (
     closed_loop_matrix,
     error_determinant,
     name_entries,
-    taken_names,
     write_gain,
 )
+from symobs.design.names import taken_names
 from symobs.design.observer import page_style, write_observer
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer

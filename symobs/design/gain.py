@@ -5,14 +5,17 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.design.assignment import Pair, remainder
+from symobs.design.assignment import Pair, divide, remainder
+from symobs.design.family import Family, cases_of_rank
+from symobs.design.several import SeveralOutputs
+from symobs.design.zeros import contradict, equations_for, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, roots_of
 from symobs.formula import Environment, Literal, Relation
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
+#: Entries of a gain: (row, column), from 0.
+Places: TypeAlias = tuple[tuple[int, int], ...]
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GainDesign(Result):
@@ -37,6 +43,7 @@ class GainDesign(Result):
 
     desired: DesiredPolynomial | None
     working: Pair | None = field(default=None, compare=False)
+    zero: Places = ()
 
     letter: ClassVar[str]
 
@@ -49,7 +56,7 @@ class GainDesign(Result):
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
-        """Return the column of the observer problem as this task's gain."""
+        """Return a gain of the observer problem as this task's gain, and the other way round."""
         raise NotImplementedError
 
     @staticmethod
@@ -68,12 +75,17 @@ class GainDesign(Result):
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
-        """Return the design that assigns φ, or the negative result."""
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str, zero: Places = ()) -> Self:
+        """Return the design that assigns φ, with zeros in these places of the gain, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
-        gain = pair.gain(desired)
+        gain = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired, pair)
+        return cls(plant, method_name, answer, desired, pair, zero)
+
+    @classmethod
+    def places(cls, zero: Places) -> Places:
+        """Return places of this task's gain as places of that of the observer problem."""
+        return zero if cls.letter == "L" else tuple((j, i) for i, j in zero)
 
     @classmethod
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
@@ -95,11 +107,22 @@ class GainDesign(Result):
             e = Environment(variable=self.plant.variable)
             yield Claim(relation(phi, self.desired.polynomial), e, "the polynomial is the one asked for")
         if gain is None:
-            yield from self._impossible()
+            if not self.zero or not self.divides:
+                yield from self._impossible()
+            elif self.excluded:
+                e = Environment(variable=self.plant.variable, relations=self.equations)
+                says = "with zeros there, 1 lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
+                yield Claim(relation(1, 0), e, says if self.letter == "L" else says.replace("L*C", "B*K"))
             return
         yield self._assigned(gain)
-        if self.gain_family is not None:
+        if self.zero:
+            e = Environment(variable=self.plant.variable)
+            entries = Matrix.row([gain[i, j] for i, j in self.zero])
+            yield Claim(relation(entries, Matrix.zeros(1, len(self.zero))), e, f"zeros in {self.letter} as asked for")
+        if self.gain_family is not None and self.gain_family[self.letter] is not None:
             yield self._assigned(self.gain_family[self.letter])
+        if self.chart is not None:
+            yield from self.chart.claims(self.oriented, self.gain_family)
 
     def _assigned(self, gain: Matrix) -> Claim:
         phi = self.answer["polynomial"]
@@ -116,7 +139,7 @@ class GainDesign(Result):
         e = Environment(variable=variable, values=values)
         A, C, kernel, restricted = (letter(name, e) for name in ("A", "C", "N", "X"))
         pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
-        yield Claim(relation(C @ kernel, Matrix.zeros(1, N.shape[1])), e, "C*N = 0")
+        yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
         yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
         yield Claim(relation(kernel.apply("rank"), X.shape[0], "!==", 0), e, "N has full rank")
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
@@ -133,10 +156,29 @@ class GainDesign(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where φ cannot be assigned."""
+        """`no` where φ cannot be assigned; `undecided` where no gain was found with the zeros asked for."""
         if self.answer[self.letter] is None:
-            return "no"
+            return "undecided" if self.zero and self.divides and not self.excluded else "no"
         return super().verdict
+
+    @property
+    def divides(self) -> bool:
+        """Whether the fixed modes are among the poles asked for."""
+        pair = self._pair
+        return pair.is_observable or divide(self.answer["polynomial"], pair.fixed_polynomial, pair.variable) is not None
+
+    @cached_property
+    def equations(self) -> tuple[Scalar, ...]:
+        """What the entries that are not to vanish must satisfy."""
+        assert self.desired is not None  # noqa: S101 - zeros are asked for together with poles
+        pair = self._pair
+        general = unknown_gain(pair.A.shape[0], pair.c.shape[0], self.places(self.zero))
+        return tuple(value for value in equations_for(pair, self.desired, general) if value)
+
+    @cached_property
+    def excluded(self) -> bool:
+        """Whether no gain has its zeros where they are asked for."""
+        return contradict(self.equations)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -144,7 +186,7 @@ class GainDesign(Result):
         if self.desired is None:
             return ()
         if self._pair.is_observable:
-            return (self._pair.determinant,)
+            return self._pair.decisive
         return self._obstacles if self.answer[self.letter] is None else ()
 
     @cached_property
@@ -169,14 +211,30 @@ class GainDesign(Result):
     @cached_property
     def gain_family(self) -> dict[str, Any] | None:
         """The general gain where it is not unique: `parameters` and the gain with them; None where it is unique."""
-        gain = self.answer[self.letter]
+        gain, chart = self.answer[self.letter], self.chart
+        if chart is not None:
+            return chart.fields(self.letter, self.oriented)
         if gain is None or self.desired is None or self._pair.is_observable:
             return None
         N = self._pair.kernel
-        taken = self.plant.field.names + tuple(self.plant.symbols.signs) + gain.field.names
-        names = fresh_names("g", N.shape[1], taken)
+        names = fresh_names("g", N.shape[1], self._taken)
         free = Matrix.column([Scalar.symbol(name) for name in names])
-        return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal()}
+        return {"parameters": names, self.letter: (gain + self.oriented(N @ free)).normal(), "dimension": len(names)}
+
+    @cached_property
+    def chart(self) -> Family | None:
+        """The family of gains for several outputs (inputs), the gain of the answer in it; None for one."""
+        gain, pair = self.answer[self.letter], self._pair
+        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs):
+            return None
+        names = fresh_names("g", pair.freedom, self._taken)
+        return Family.of(pair, self.desired, names, self.oriented(gain))
+
+    @property
+    def _taken(self) -> tuple[str, ...]:
+        """The names that a parameter of the family cannot have."""
+        named = self.answer[self.letter].field.names, self.answer["polynomial"].field.names
+        return (*self.plant.field.names, *self.plant.symbols.signs, *named[0], *named[1])
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -186,7 +244,7 @@ class GainDesign(Result):
             return ()
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-            found = type(self).of(plant, desired.substitute(values), self.method)
+            found = type(self).of(plant, desired.substitute(values), self.method, self.zero)
             own = self.answer[self.letter]
             if own is None or found.answer[self.letter] is None:
                 return found
@@ -195,6 +253,8 @@ class GainDesign(Result):
             except ZeroDivisionError:
                 return found
 
+        if isinstance(self._pair, SeveralOutputs) and self._pair.is_observable:
+            return cases_of_rank(self.plant, self.task, solve)
         obstacles = self.existence
         if len(obstacles) <= 1 or self._pair.is_observable:
             return strata(self.plant, obstacles, solve)
@@ -222,6 +282,7 @@ class GainDesign(Result):
             "stable_if": self.stability.inequalities(self.plant.symbols.signs),
             "fixed_modes": self.unmoved_modes,
             "family": self.gain_family,
+            **({"zero": [[i + 1, j + 1] for i, j in self.zero]} if self.zero else {}),
         }
 
 
@@ -229,7 +290,7 @@ def working_pair(pair: Pair, desired: DesiredPolynomial) -> Pair:
     """Return the pair over one context: plant and specification together."""
     names = {name for factor in desired.factors for name in factor.field.names} - {desired.variable}
     working = Field.of((*pair.A.field.names, *pair.c.field.names, *names))
-    return Pair(pair.A.within(working), pair.c.within(working), pair.variable)
+    return replace(pair, A=pair.A.within(working), c=pair.c.within(working))
 
 
 def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
@@ -256,6 +317,14 @@ def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> 
             names.append(name)
         index += 1
     return tuple(names)
+
+
+def require_one(count: int, what: str, name: str) -> None:
+    """Raise `InputError` where a method for one output (input) is asked about several."""
+    if count != 1:
+        message = f"the method {name} needs one {what}, the plant has {count}"
+        repair = "write sylvester or row_reduced_echelon, which take several"
+        raise InputError(message, where="specification.method", repair=repair)
 
 
 def require_single(count: int, what: str, task: str) -> None:

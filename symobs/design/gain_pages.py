@@ -18,6 +18,9 @@ from symobs.analysis.pages import (
 )
 from symobs.derivation import Case as CaseStep
 from symobs.design.gain import GainDesign, fresh_names
+from symobs.design.gain_family_page import write_hidden_family, write_sylvester
+from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
+from symobs.design.names import taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
@@ -70,6 +73,14 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         desired = name_coefficients(page, design, side)
         if style == "canonical_form":
             _canonical(page, desired, side)
+        elif style == "coefficient_matching":
+            write_matching(page, design, side, desired)
+        elif style == "companion_form":
+            write_companion(page, side, desired)
+        elif style == "row_reduced_echelon" and readable(design):
+            write_row_reduction(page, design, side)
+        elif style == "sylvester" or design.chart is not None:
+            write_sylvester(page, design, side, desired)
         else:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
@@ -153,13 +164,6 @@ def _say_canonical(page: Page) -> None:
         relation(page["B"], Matrix.unit(order, order - 1)),
         chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
     )
-
-
-def taken_names(page: Page) -> set[str]:
-    """Return the names of parameters and coefficients that stand on the page."""
-    named = page.environment.coefficients
-    inside = {name for meaning in named.values() for name in meaning.field.names}
-    return {*page.plant.symbols.signs, *page.plant.field.names, *named, *inside}
 
 
 def name_entries(page: Page, gain: str) -> None:
@@ -247,6 +251,9 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
     page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER), divides, roots=roots)
+    if design.chart is not None:
+        write_hidden_family(page, design, side)
+        return
     gain = page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
     free = page["N"] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
@@ -254,7 +261,11 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
 
 
 def _impossible(page: Page, design: GainDesign, side: Side) -> None:
-    """The fixed modes are not among the poles asked for."""
+    """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
+    if design.zero and design.divides:
+        listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
+        page.conclude("impossible_zero" if design.excluded else "undecided_zero", places=listed)
+        return
     fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     page.conclude(
         f"impossible_{side.kind}",

@@ -7,20 +7,25 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.assignment import Pair
-from symobs.design.canonical import canonical_gain
-from symobs.design.gain import GainDesign, require_single
+from symobs.design.canonical import canonical_gain, companion_gain
+from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.design.matching import matching
+from symobs.design.row_reduction import gain_of, row_reduction
+from symobs.design.several import pair_of
+from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.specification import (
     DesiredPolynomial,
+    Entries,
     GainText,
     Name,
     Poles,
     PolynomialText,
     desired_polynomial,
+    read_entries,
     read_gain,
     reject_both,
 )
@@ -28,6 +33,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.system import StateSpace
@@ -43,7 +49,7 @@ class ObserverDesign(GainDesign):
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (A, C)."""
-        return Pair(plant.matrices.A, plant.matrices.C, plant.variable)
+        return pair_of(plant.matrices.A, plant.matrices.C, plant.variable)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
@@ -72,15 +78,17 @@ class ObserverDesign(GainDesign):
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
         with page.section("observer"):
-            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant))
+            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant, several=self.plant.outputs > 1))
             if self.answer["L"] is not None:
                 write_observer(page)
 
 
-def page_style(method_name: str, plant: StateSpace) -> str:
+def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
     """Return whose page is written: canonical form for small plants unless a method was asked for."""
     if method_name != "auto":
         return method_name
+    if several:
+        return "sylvester"
     readable = _CANONICAL_PAGES if not plant.field.names else _PARAMETRIC_CANONICAL_PAGES
     return "canonical_form" if plant.order <= readable else "ackermann"
 
@@ -117,6 +125,7 @@ def write_observer(page: Page) -> None:
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
+    require_one(plant.outputs, "output", "canonical_form")
     pair = ObserverDesign.pair(plant)
     if not pair.is_observable:
         return ObserverDesign.of(plant, desired, "canonical_form")
@@ -127,7 +136,47 @@ def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDes
 @method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form")
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = φ(A) 𝒪⁻¹ eₙ."""
+    require_one(plant.outputs, "output", "ackermann")
     return ObserverDesign.of(plant, desired, "ackermann")
+
+
+@method("observer/sylvester", source=SYLVESTER)
+def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """L = (G X⁻¹)ᵀ with AᵀX − XF = CᵀG, F the companion matrix of φ: every G for which X is regular."""
+    return ObserverDesign.of(plant, desired, "sylvester")
+
+
+@method("observer/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system."""
+    require_one(plant.outputs, "output", "coefficient_matching")
+    pair = ObserverDesign.pair(plant)
+    if not pair.is_observable:
+        return ObserverDesign.of(plant, desired, "coefficient_matching")
+    answer = {"L": matching(pair, desired).solution, "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "coefficient_matching", answer, desired)
+
+
+@method("observer/row_reduced_echelon", source="S3, (7)-(10)")
+def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form."""
+    pair = ObserverDesign.pair(plant)
+    found = row_reduction(pair, desired) if pair.is_observable else None
+    if found is None:
+        return ObserverDesign.of(plant, desired, "row_reduced_echelon")
+    answer = {"L": ObserverDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "row_reduced_echelon", answer, desired)
+
+
+@method("observer/companion_form", source="S1, the double integrator at 16:01")
+def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
+    require_one(plant.outputs, "output", "companion_form")
+    pair = ObserverDesign.pair(plant)
+    if not pair.is_observable:
+        return ObserverDesign.of(plant, desired, "companion_form")
+    answer = {"L": companion_gain(pair, desired), "polynomial": desired.polynomial}
+    return ObserverDesign(plant, "companion_form", answer, desired)
 
 
 @task
@@ -137,24 +186,32 @@ def observer(
     poles: Poles = None,
     polynomial: PolynomialText = None,
     L: GainText = None,
+    zero: Entries = None,
     method: Name = "auto",
 ) -> Result:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
 
-    plant         n states, one output; B may be missing
+    plant         n states, p outputs; B may be missing
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n; or
-    L             a given n×1 gain, whose polynomial, poles and stability are reported
-    Returns L (n×1), polynomial, A (A − LC), B_u (B − LD), B_y (L); where (C, A) is not observable either the family of
-    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    L             a given n×p gain, whose polynomial, poles and stability are reported
+    zero          entries of L that are to vanish: "(1, 2), (3, 1)" or "[* 0; * *; 0 *]"
+    Returns L (n×p), polynomial, A (A − LC), B_u (B − LD), B_y (L); where L is not unique, because there are several
+    outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
+    AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot
+    be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, (4.18)-(4.20) and Theorem 4.4.
     """
     plant = plant.knowing(poles, polynomial, L)
     plant.require("C", task="observer")
-    require_single(plant.outputs, "output", "observer")
     reject_both("L", L, poles, polynomial)
     if L is not None:
         return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("observer", method, "ackermann").solve(plant, desired).asked(method)
+    automatic = "ackermann" if plant.outputs == 1 else "sylvester"
+    chosen = choose("observer", method, automatic)
+    if zero is not None:
+        places = read_entries(zero, "zero", (plant.order, plant.outputs))
+        return ObserverDesign.of(plant, desired, chosen.name, places).asked(method)
+    return chosen.solve(plant, desired).asked(method)

@@ -8,7 +8,8 @@ from symobs.analysis.observability import Observability
 from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
 from symobs.conditions import vanishing_factors
 from symobs.design.gain import fresh_names
-from symobs.design.gain_pages import OBSERVER, define_test_matrix, taken_names
+from symobs.design.gain_pages import OBSERVER, define_test_matrix
+from symobs.design.names import taken_names
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots

@@ -7,20 +7,25 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import given
-from symobs.design.assignment import Pair
-from symobs.design.canonical import canonical_gain
-from symobs.design.gain import GainDesign, require_single
+from symobs.design.canonical import canonical_gain, companion_gain
+from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import FEEDBACK, write_gain
+from symobs.design.matching import matching
 from symobs.design.observer import page_style
+from symobs.design.row_reduction import gain_of, row_reduction
+from symobs.design.several import pair_of
+from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
 from symobs.specification import (
     DesiredPolynomial,
+    Entries,
     GainText,
     Name,
     Poles,
     PolynomialText,
     desired_polynomial,
+    read_entries,
     read_gain,
     reject_both,
 )
@@ -28,6 +33,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.page import Page
@@ -44,7 +50,7 @@ class StateFeedbackDesign(GainDesign):
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (Aᵀ, Bᵀ)."""
-        return Pair(plant.matrices.A.T, plant.matrices.B.T, plant.variable)
+        return pair_of(plant.matrices.A.T, plant.matrices.B.T, plant.variable)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
@@ -71,12 +77,13 @@ class StateFeedbackDesign(GainDesign):
         """Write data and gain."""
         given(page, ("control", self.desired))
         with page.section("state_feedback"):
-            write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant))
+            write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant, several=self.plant.inputs > 1))
 
 
 @method("state_feedback/canonical_form", source="S0, Examples 4.1 and 4.2 (controllable canonical form)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
+    require_one(plant.inputs, "input", "canonical_form")
     pair = StateFeedbackDesign.pair(plant)
     if not pair.is_observable:
         return StateFeedbackDesign.of(plant, desired, "canonical_form")
@@ -87,7 +94,47 @@ def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedba
 @method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300")
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = eₙᵀ 𝒞⁻¹ φ(A)."""
+    require_one(plant.inputs, "input", "ackermann")
     return StateFeedbackDesign.of(plant, desired, "ackermann")
+
+
+@method("state_feedback/sylvester", source=SYLVESTER)
+def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = G X⁻¹ with AX − XF = BG, F the companion matrix of φ: every G for which X is regular."""
+    return StateFeedbackDesign.of(plant, desired, "sylvester")
+
+
+@method("state_feedback/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system."""
+    require_one(plant.inputs, "input", "coefficient_matching")
+    pair = StateFeedbackDesign.pair(plant)
+    if not pair.is_observable:
+        return StateFeedbackDesign.of(plant, desired, "coefficient_matching")
+    answer = {"K": matching(pair, desired).solution.T, "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "coefficient_matching", answer, desired)
+
+
+@method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)")
+def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form."""
+    pair = StateFeedbackDesign.pair(plant)
+    found = row_reduction(pair, desired) if pair.is_observable else None
+    if found is None:
+        return StateFeedbackDesign.of(plant, desired, "row_reduced_echelon")
+    answer = {"K": StateFeedbackDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "row_reduced_echelon", answer, desired)
+
+
+@method("state_feedback/companion_form", source="S1, the double integrator at 16:01")
+def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
+    """K = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
+    require_one(plant.inputs, "input", "companion_form")
+    pair = StateFeedbackDesign.pair(plant)
+    if not pair.is_observable:
+        return StateFeedbackDesign.of(plant, desired, "companion_form")
+    answer = {"K": companion_gain(pair, desired).T, "polynomial": desired.polynomial}
+    return StateFeedbackDesign(plant, "companion_form", answer, desired)
 
 
 @task
@@ -97,24 +144,32 @@ def state_feedback(
     poles: Poles = None,
     polynomial: PolynomialText = None,
     K: GainText = None,
+    zero: Entries = None,
     method: Name = "auto",
 ) -> Result:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s).
 
-    plant         n states, one input; C may be missing
+    plant         n states, m inputs; C may be missing
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n; or
-    K             a given 1×n gain, whose polynomial, poles and stability are reported
-    Returns K (1×n), polynomial, closed_loop_matrix (A − BK); where (A, B) is not controllable either the family of
-    gains or verdict `no` with the fixed modes.  Raises `InputError` for wrong poles or shapes.
+    K             a given m×n gain, whose polynomial, poles and stability are reported
+    zero          entries of K that are to vanish: "(1, 2), (3, 1)" or "[* 0 *; * * 0]"
+    Returns K (m×n), polynomial, closed_loop_matrix (A − BK); where K is not unique, because there are several inputs
+    or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
+    AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be
+    assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, Example 4.2 and the pole assignment theorem.
     """
     plant = plant.knowing(poles, polynomial, K)
     plant.require("B", task="state_feedback")
-    require_single(plant.inputs, "input", "state_feedback")
     reject_both("K", K, poles, polynomial)
     if K is not None:
         return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    return choose("state_feedback", method, "ackermann").solve(plant, desired).asked(method)
+    automatic = "ackermann" if plant.inputs == 1 else "sylvester"
+    chosen = choose("state_feedback", method, automatic)
+    if zero is not None:
+        places = read_entries(zero, "zero", (plant.inputs, plant.order))
+        return StateFeedbackDesign.of(plant, desired, chosen.name, places).asked(method)
+    return chosen.solve(plant, desired).asked(method)

@@ -6,7 +6,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.calculus import antiderivative, exponential_of_integral
 from symobs.exact.complex import Complex
-from symobs.exact.elimination import echelon, independent_rows, kernel, rank, unit_rows
+from symobs.exact.elimination import echelon, independent_rows, kernel, rank, reduced_echelon, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge
@@ -45,6 +45,7 @@ __all__ = [
     "kernel",
     "product_of",
     "rank",
+    "reduced_echelon",
     "root_of_pole",
     "roots_are",
     "roots_of",

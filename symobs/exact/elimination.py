@@ -91,3 +91,14 @@ def independent_rows(matrix: Matrix, relations: Ideal | None = None) -> tuple[in
 def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:
     """Return the rows eᵢᵀ of the identity."""
     return Matrix.of([[int(j == i) for j in range(order)] for i in rows], order)
+
+
+def reduced_echelon(matrix: Matrix) -> tuple[tuple[int, ...], Matrix]:
+    """Return (pivot columns, row-reduced echelon form without its zero rows)."""
+    pivots, reduced = ring.echelon(matrix.polynomials, lambda entry: not entry)
+    field, one = matrix.field, matrix.field.one
+    rows = [
+        [Scalar(field, entry, one) / Scalar(field, row[pivot], one) for entry in row]
+        for row, pivot in zip(reduced, pivots, strict=True)
+    ]
+    return tuple(pivots), Matrix.of(rows, matrix.shape[1])

@@ -142,7 +142,7 @@ Formula: TypeAlias = (
 class Relation:
     """members[0] operators[0] members[1] …: a chain of equations and comparisons, each link a claim.
 
-    Operators are `=`, `!=`, `<`, `>`, `<=`, `>=`.
+    Operators are `=`, `!=`, `<`, `>`, `<=`, `>=`, and `~` between matrices whose rows span the same space.
     """
 
     members: tuple[Formula, ...]

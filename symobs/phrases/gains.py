@@ -16,6 +16,30 @@ PHRASES: dict[str, str] = {
     "canonical_state_feedback": "The pair is brought to controllable canonical form by",
     "row_observer": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
     "row_state_feedback": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
+    "unknown_gain": "The gain is taken with unknown entries,",
+    "polynomial_of_unknown": "and with them the polynomial is",
+    "equal_coefficients": "Its coefficients are to be those of the polynomial asked for:",
+    "linear_system": "This is a system of linear equations,",
+    "solution_of_system": "whose solution is",
+    "companion_vector_observer": "The last row of the inverse of the controllability matrix of the dual pair ($Aᵀ$, $Cᵀ$) is, as a column,",
+    "companion_vector_state_feedback": "The last row of the inverse of the controllability matrix is",
+    "companion_rows": "With its images as rows,",
+    "companion_reached": "the pair is brought to companion form:",
+    "null_vectors_observer": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of the transpose of $A - L C$ "
+    "when the gain takes it to the lower part.",
+    "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of $A - B K$ when the gain "
+    "takes it to the lower part.",
+    "pole_reduced": "For the pole {pole} the matrix and its row-reduced echelon form are",
+    "pair_reduced": "For the conjugate pair that belongs to the factor {pole} the real matrix and its row-reduced echelon form are",
+    "factor_reduced": "For the factor {pole}, whose companion matrix stands for its roots, the matrix and its row-reduced echelon form are",
+    "generalised": "A further independent null vector does not exist for {pole}, which is asked for again: the vector before it goes, with the "
+    "opposite sign, to the right side, and the row-reduced echelon form is",
+    "relations_read_off": "From it are read off, for the components of a null vector,",
+    "free_chosen": "What is free is chosen:",
+    "vectors_chosen": "With a choice of what is free, and the upper parts before the lower ones, this gives",
+    "upper_parts": "The upper parts of these vectors, and the lower ones, are the columns of",
+    "row_reduced_observer": "The gain takes each upper part to its lower part:",
+    "row_reduced_state_feedback": "The gain takes each upper part to its lower part:",
     "last_column": "Ackermann's formula takes the last column of the inverse of the observability matrix,",
     "last_row": "Ackermann's formula takes the last row of the inverse of the controllability matrix,",
     "ackermann_observer": "and puts $A$ into the polynomial asked for:",
@@ -61,7 +85,11 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     )
 }
 
+NAMING = ("pole_reduced", "pair_reduced", "factor_reduced", "generalised")
+
 RESTS_ON: dict[str, str] = {
+    "upper_parts": "row_reduction",
+    "companion_rows": "companion_form",
     "assignable_observer": "observer_poles",
     "open_observer": "duality",
     "canonical_observer": "canonical_form",

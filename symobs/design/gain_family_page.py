@@ -1,0 +1,117 @@
+"""The page of the family of gains: companion matrix, Sylvester's equation, its solution, the general gain, one member."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import determinant_form
+from symobs.design.sylvester import Sylvester, charts_of
+from symobs.exact import Matrix, companion
+from symobs.page import Page, relation
+
+if TYPE_CHECKING:
+    from symobs.design.gain import GainDesign
+    from symobs.design.gain_pages import Side
+    from symobs.formula import Relation
+    from symobs.formula.term import Term
+    from symobs.specification import DesiredPolynomial
+
+#: What has more terms is not written out: a matrix, a determinant, a general gain.
+_MATRIX, _DETERMINANT, _GAIN = 40, 24, 60
+
+
+def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
+    page.define("F_phi", companion(desired.coefficients), say="companion_of_wish")
+    chart = design.chart
+    if chart is None:
+        _only_gain(page, design, side, desired)
+        return
+    equation = chart.equation
+    _shift(page, equation, side, design)
+    _equation(page, side, "G_phi", "X_phi", equation, equation.G)
+    page.remark("dimension_several", count=str(len(chart.names)))
+    if chart.general is not None and chart.general.size <= _GAIN:
+        general = design.oriented(chart.general)
+        page.define(f"{side.gain}_G", _gain(page, side, "G_phi", "X_phi", equation), general, say="general_gain")
+    own = chart.own_G
+    if own is None:
+        page.define(side.gain, design.answer[side.gain], say="no_member", answer=True)
+        return
+    page.define("G_1", own, say="member_zero" if design.zero else "member_several")
+    solution = page.set("X_1", equation.solution(own))
+    page.equal(
+        relation(solution, solution.shown),
+        relation(solution.apply("det"), determinant_form(page, solution.value.determinant())),
+        say="solution_of_member",
+    )
+    page.conclude_silently(_sylvester(page, side, "G_1", "X_1", equation))
+    page.define(side.gain, _gain(page, side, "G_1", "X_1", equation), say="gain_follows", answer=True)
+
+
+def write_hidden_family(page: Page, design: GainDesign, side: Side) -> None:
+    """Write one gain and the dimension of the family where some modes are fixed."""
+    assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
+    page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
+    page.remark("family_hidden", count=str(len(design.chart.names)))
+
+
+def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """One output (input): G = e₁ᵀ, and X is unique."""
+    pair = design.pair(page.plant)
+    (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
+    _shift(page, equation, side, design)
+    _equation(page, side, "G_phi", "X_phi", equation, equation.G)
+    page.define(side.gain, _gain(page, side, "G_phi", "X_phi", equation), say="gain_follows", answer=True)
+
+
+def _shift(page: Page, equation: Sylvester, side: Side, design: GainDesign) -> None:
+    """Part the spectra where they meet."""
+    if equation.shift is None:
+        return
+    gain = page.define(f"{side.gain}_0", design.oriented(equation.shift), say="spectra_meet")
+    moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
+    page.define("A_0", page["A"] - moved)
+
+
+def _state_matrix(page: Page, equation: Sylvester) -> Term:
+    return page["A"] if equation.shift is None else page["A_0"]
+
+
+def _equation(page: Page, side: Side, G: str, X: str, equation: Sylvester, value: Matrix) -> None:
+    """Write G, the equation, and X with its determinant."""
+    page.set(G, value)
+    solution = page.set(X, equation.solution(value))
+    page.equal(_sylvester(page, side, G, X, equation), say=f"sylvester_{side.kind}")
+    page.equal(_similar(page, side, G, X, equation), say=f"similar_{side.kind}")
+    page.equal(relation(page[G], value), say="one_row_held" if value.shape[0] > 1 else "one_gain_only")
+    if solution.value.size <= _MATRIX:
+        page.equal(relation(solution, solution.shown), say="solution_is" if value.shape[0] > 1 else "")
+    determinant = solution.value.determinant()
+    if determinant.size <= _DETERMINANT:
+        page.equal(
+            relation(solution.apply("det"), determinant_form(page, determinant)),
+            say="determinant_free" if value.shape[0] > 1 else "",
+        )
+
+
+def _sylvester(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Relation:
+    """AᵀX − XF = CᵀG, or AX − XF = BG."""
+    A, F = _state_matrix(page, equation), page["F_phi"]
+    if side.gain == "L":
+        return relation(A.T @ page[X] - page[X] @ F, page["C"].T @ page[G])
+    return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
+
+
+def _gain(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Term:
+    """L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
+    found = page[G] @ page[X].inverse
+    found = found.T if side.gain == "L" else found
+    return found if equation.shift is None else page[f"{side.gain}_0"] + found
+
+
+def _similar(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Relation:
+    """(A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
+    A, moved = _state_matrix(page, equation), page[G] @ page[X].inverse
+    left = A.T - page["C"].T @ moved if side.gain == "L" else A - page["B"] @ moved
+    return relation(left, page[X] @ page["F_phi"] @ page[X].inverse)
