@@ -196,7 +196,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         return
     if isinstance(fact, Exactly):
         _about_letters(fact.property.subject, environment)
-        value = as_scalar(evaluate(fact.property.subject, environment, Exact(environment)))
+        value = _denominator_of_all(evaluate(fact.property.subject, environment, Exact(environment)))
         polynomial = _polynomial(value, environment)
         needed = _needed(fact.property.name, polynomial, environment, discrete)
         said = {_positive_part(relation, environment) for relation in fact.where}
@@ -205,9 +205,16 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
     _about_letters(fact.subject, environment)
-    value = as_scalar(evaluate(fact.subject, environment, Exact(environment)))
-    if fact.name not in PREDICATES or not PREDICATES[fact.name](value, environment, discrete):
-        _reject(f"{fact.name}({value})")
+    found = evaluate(fact.subject, environment, Exact(environment))
+    whole = isinstance(found, Matrix) and fact.name == "strictly_proper"
+    parts = found.entries if whole else (_denominator_of_all(found),)
+    if fact.name not in PREDICATES or not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
+        _reject(f"{fact.name}({found})")
+
+
+def _denominator_of_all(value: Any) -> Scalar:
+    """Return a scalar as it is; of a matrix of rational functions what holds all their poles."""
+    return value.common_denominator() if isinstance(value, Matrix) and value.shape != (1, 1) else as_scalar(value)
 
 
 def _needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 from symobs.certificate import Claim
-from symobs.design.gain import letters_of, require_single
+from symobs.design.gain import letters_of
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.observer import ObserverDesign
-from symobs.design.output_feedback import OutputFeedback
+from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected, InputError, together
 from symobs.exact import Matrix, Scalar, controller
@@ -44,10 +44,12 @@ class CompensatorDesign(OutputFeedback):
         """Return the compensator of two designs for one plant."""
         plant = feedback.plant
         K, L = feedback.answer["K"], estimator.answer["L"]
-        F = None
-        if K is not None and L is not None:
+        F: Scalar | Matrix | None = None
+        if K is not None and L is not None and plant.inputs == plant.outputs == 1:
             numerator, denominator = own_transfer(feedback, estimator)
             F = numerator / denominator
+        elif K is not None and L is not None:
+            F = realised(plant, K, L).function(plant.variable)
         return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
 
     def _environment(self) -> Environment:
@@ -70,9 +72,9 @@ class CompensatorDesign(OutputFeedback):
             yield Claim(relation(F, K @ moved.inverse @ L), e)
 
     @cached_property
-    def own_matrix(self) -> Matrix:
-        """A − BK − LC + LDK."""
-        return compensator_matrix(self.plant, self.answer["K"], self.answer["L"]).normal()
+    def realisation(self) -> Realisation:
+        """A − BK − LC + LDK, L, K, 0."""
+        return realised(self.plant, self.answer["K"], self.answer["L"])
 
     @cached_property
     def own_transfer(self) -> tuple[Scalar, Scalar]:
@@ -99,11 +101,12 @@ class CompensatorDesign(OutputFeedback):
         write_compensator(page, self)
 
 
-def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:
-    """Return A − BK − LC + LDK."""
+def realised(plant: StateSpace, K: Matrix, L: Matrix) -> Realisation:
+    """Return F in state space: A − BK − LC + LDK, L, K, 0."""
     m = plant.matrices
     matrix = m.A - m.B @ K - L @ m.C
-    return matrix + L @ (m.D @ K) if m.has_feedthrough else matrix
+    whole = matrix + L @ (m.D @ K) if m.has_feedthrough else matrix
+    return Realisation(whole.normal(), L, K, Matrix.zeros(plant.inputs, plant.outputs))
 
 
 def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tuple[Scalar, Scalar]:
@@ -148,19 +151,17 @@ def compensator(
     minimal   F(s) = W [K₂ (sI − F + G W K₂)⁻¹ (H − G W N) + N],  N = K₁ + K₂ L,  W = (I − N D)⁻¹,  [K₁ K₂] = K T⁻¹, for
               ż = F z + G u + H y; proper, its direct term W N
 
-    plant                                   n states, one input, one output, D allowed
+    plant                                   n states, m inputs, p outputs, D allowed
     control_poles or control_polynomial     the n poles of A − BK
     observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of F
     observer                                `full` or `minimal`
-    Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop (P/(1 + PF), F in the return path),
+    Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop ((I + PF)⁻¹ P, F in the return path),
     closed_loop_matrix in (x, e) or (x, e₂) and closed_loop_matrix_estimate in (x, x̂) or (x, z).  Where I − N D is
     singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
     Source: S0, section 4.3, (4.23)-(4.29), and section 4.6.
     """
     plant = plant.knowing(control_poles, control_polynomial, observer_poles, observer_polynomial)
     plant.require("B", "C", task="compensator")
-    require_single(plant.inputs, "input", "compensator")
-    require_single(plant.outputs, "output", "compensator")
 
     def wanted(loop: str, poles: object, polynomial: object, degree: int) -> DesiredPolynomial | None:
         names = (f"{loop}_poles", f"{loop}_polynomial")
@@ -168,8 +169,9 @@ def compensator(
 
     minimal = "minimal" in (observer, method.removesuffix("_order"))
     estimated = plant.order - (plant.outputs if minimal else 0)
-    chosen, control, estimate = together(
-        lambda: choose("compensator", method, _automatic(observer, plant, method)),
+    _, chosen, control, estimate = together(
+        lambda: _require_kind(observer, plant, method),
+        lambda: choose("compensator", method, _METHODS.get(observer, "separation")),
         lambda: wanted("control", control_poles, control_polynomial, plant.order),
         lambda: wanted("observer", observer_poles, observer_polynomial, estimated),
     )
@@ -177,8 +179,8 @@ def compensator(
     return found
 
 
-def _automatic(observer: str, plant: StateSpace, method_name: str) -> str:
-    """Return the method of a kind of observer; raises `InputError` where there is none, or another was asked for."""
+def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
+    """Raise `InputError` where there is no such kind of observer, another one was asked for, or it has nothing to do."""
     if observer not in _METHODS:
         message = f"{observer[:40]!r} is not a kind of observer"
         raise InputError(message, where="specification.observer", repair='write "full" or "minimal"')
@@ -190,4 +192,3 @@ def _automatic(observer: str, plant: StateSpace, method_name: str) -> str:
     if "minimal" in (observer, method_name.removesuffix("_order")) and plant.order == plant.outputs:
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="specification.observer", repair="use state_feedback with x = C⁻¹ (y − D u)")
-    return _METHODS[observer]

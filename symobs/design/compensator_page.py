@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
 LARGE = 60
+#: Matrices of rational functions with more terms than this are not written out.
+MATRIX = 60
 #: Conditions with more terms than this are left to the JSON.
 _READABLE_TERMS = 40
 
@@ -41,14 +43,14 @@ _READABLE_TERMS = 40
 def write_compensator(page: Page, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
-    style = page_style("auto", design.plant)
+    plant = design.plant
     large = design.answer["F"] is not None and design.answer["F"].size > LARGE
     with page.section("state_feedback"):
-        write_gain(page, design.feedback, FEEDBACK, style)
+        write_gain(page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
         if large:
             name_entries(page, "K")
     with page.section("observer"):
-        write_gain(page, design.estimator, OBSERVER, style)
+        write_gain(page, design.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
         if large:
             name_entries(page, "L")
         if design.answer["L"] is not None:
@@ -57,13 +59,17 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
         return
     with page.section("compensator"):
         _state_space(page, design)
-        if large:
+        if not design.is_single:
+            _transfer_matrix(page, design)
+        elif large:
             _named_transfer_function(page, design)
         else:
             _transfer_function(page, design)
     with page.section("closed_loop"):
         _error_coordinates(page, design, large=large)
-        if large:
+        if not design.is_single:
+            return_path_of_several(page, design)
+        elif large:
             own = (page.s @ page.identity(design.plant.order) - page["A_c"]).apply("det")
             named_return_path(page, design, own)
         else:
@@ -103,6 +109,22 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
+def _transfer_matrix(page: Page, design: CompensatorDesign) -> None:
+    """(4.25) for several inputs or outputs: the resolvent, then the entries."""
+    K, L, F = page["K"], page["L"], design.answer["F"]
+    formula = K @ (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse @ L
+    define_or_hold(page, "F", formula, F, "transfer_function_of_compensator")
+    say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
+
+
+def define_or_hold(page: Page, name: str, formula: Term, value: Matrix, say: str) -> None:
+    """Introduce a transfer matrix, with its entries where they can be read."""
+    page.define(
+        name, formula, *([page.value(value)] if value.size <= MATRIX else []), say=say, answer=True, closing=False
+    )
+    page.conclude_silently(relation(page[name], value))
+
+
 def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, **slots: Slot) -> None:
     """Say that F is proper and, where the conditions are few, whether or where it is stable by itself."""
     plant, F = page.plant, design.answer["F"]
@@ -111,7 +133,7 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         word = "stable" if found == "yes" else "unstable"
         page.conclude(f"{stem}_{word}", proper, predicate(word, page["F"]), **slots)
         return
-    polynomial = monic(F.denominator, plant.variable)
+    polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
     if sum(value.size for value in positive) > _READABLE_TERMS:
         page.conclude(f"{stem}_proper", proper, **slots)
@@ -151,7 +173,7 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     """P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
     page.diagram("loop", plant=plant_form, compensator=page.value(design.answer["F"]))
-    form = design.loop
+    form = design.single_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
@@ -162,6 +184,24 @@ def return_path(page: Page, design: OutputFeedback) -> None:
         page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
     else:
         page.conclude("loop_polynomial")
+
+
+def return_path_of_several(page: Page, design: OutputFeedback) -> None:
+    """(I + PF)⁻¹ P for several inputs or outputs."""
+    plant = design.plant
+    response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
+    if plant.matrices.has_feedthrough:
+        response = response + page["D"]
+    P = Matrix.of([[design.plant_function]]) if isinstance(design.plant_function, Scalar) else design.plant_function
+    define_or_hold(page, "P", response, P, "plant_transfer")
+    page.diagram("loop", plant=page["P"], compensator=page["F"])
+    formula = (page.identity(plant.outputs) + page["P"] @ page["F"]).inverse @ page["P"]
+    entries = [[page.term(formula_of_factored(entry)) for entry in row] for row in design.loop_of_several]
+    loop = Matrix.of([[entry.value for entry in row] for row in design.loop_of_several])
+    shown = [block(entries)] if loop.size <= MATRIX else []
+    page.define("G_cl", formula, *shown, say="return_path", answer=True, closing=False)
+    page.conclude_silently(relation(page["G_cl"], loop))
+    page.conclude("loop_matrix_poles")
 
 
 def _plant(page: Page, design: OutputFeedback) -> Term:
@@ -246,8 +286,8 @@ def cautions(page: Page, design: OutputFeedback) -> None:
     """Warn where an expert would: a repeated control pole is defective, so its exponential alone does not bound x."""
     plant = design.plant
     desired = design.feedback.desired
-    if desired is None or plant.symbols.signs or not desired.is_numeric:
-        return
+    if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
+        return  # with several inputs a repeated pole need not be defective
     for factor, power in desired.grouped():
         if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
             pole = -factor.coefficients(plant.variable)[1]

@@ -13,7 +13,7 @@ from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.gain import letters_of
-from symobs.design.output_feedback import OutputFeedback
+from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.design.reduced_order_observer import ReducedOrderObserver, completed
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected
@@ -51,10 +51,8 @@ class MinimalOrderCompensator(OutputFeedback):
         """Return the compensator of two designs for one plant."""
         K, L = feedback.answer["K"], estimator.answer["L"]
         answer: dict[str, Any] = {"K": K, "L": L, "F": None}
-        if K is not None and L is not None:
-            numerator, denominator = _own_transfer(feedback.plant, K, estimator)
-            if not well_posedness(feedback.plant, K, estimator).is_zero:
-                answer["F"] = numerator / denominator
+        if K is not None and L is not None and not well_posedness(feedback.plant, K, estimator).is_zero:
+            answer["F"] = _function(feedback.plant, K, estimator)
         return cls(feedback.plant, method_name, answer, feedback, estimator)
 
     def claims(self) -> Iterator[Claim]:
@@ -121,19 +119,9 @@ class MinimalOrderCompensator(OutputFeedback):
         return split(self.answer["K"], self.estimator)
 
     @cached_property
-    def realisation(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """F(s) in state space: F − G W K₂, H − G W N, W K₂, W N, with W = (I − N D)⁻¹."""
-        N, K_2 = self.split
-        known, D = self.estimator.answer, self.plant.matrices.D
-        W = (Matrix.identity(self.plant.inputs) - N @ D).inverse()
-        direct, through = (W @ N).normal(), (W @ K_2).normal()
-        own = (known["F"] - known["G"] @ through).normal()
-        return own, (known["H"] - known["G"] @ direct).normal(), through, direct
-
-    @property
-    def own_matrix(self) -> Matrix:
-        """F − G W K₂."""
-        return self.realisation[0]
+    def realisation(self) -> Realisation:
+        """F − G W K₂, H − G W N, W K₂, W N, with W = (I − N D)⁻¹."""
+        return _realised(self.plant, self.answer["K"], self.estimator)
 
     @cached_property
     def own_transfer(self) -> tuple[Scalar, Scalar]:
@@ -165,7 +153,7 @@ class MinimalOrderCompensator(OutputFeedback):
         """The fields of the contract, the coordinates and the direct term."""
         fields = dict(super().fields)
         if self.exists:
-            fields |= {"T": self.estimator.answer["T"], "direct_term": self.realisation[3]}
+            fields |= {"T": self.estimator.answer["T"], "direct_term": self.realisation.D}
         return fields
 
     @property
@@ -191,6 +179,23 @@ def well_posedness(plant: StateSpace, K: Matrix, estimator: ReducedOrderObserver
     """Return det(I − N D)."""
     N, _ = split(K, estimator)
     return (Matrix.identity(plant.inputs) - N @ plant.matrices.D).determinant()
+
+
+def _realised(plant: StateSpace, K: Matrix, estimator: ReducedOrderObserver) -> Realisation:
+    """Return F in state space."""
+    N, K_2 = split(K, estimator)
+    F, G, H = (estimator.answer[name] for name in "FGH")
+    W = (Matrix.identity(plant.inputs) - N @ plant.matrices.D).inverse()
+    direct, through = (W @ N).normal(), (W @ K_2).normal()
+    return Realisation((F - G @ through).normal(), (H - G @ direct).normal(), through, direct)
+
+
+def _function(plant: StateSpace, K: Matrix, estimator: ReducedOrderObserver) -> Scalar | Matrix:
+    """Return F(s)."""
+    if plant.inputs == plant.outputs == 1:
+        numerator, denominator = _own_transfer(plant, K, estimator)
+        return numerator / denominator
+    return _realised(plant, K, estimator).function(plant.variable)
 
 
 def _own_transfer(plant: StateSpace, K: Matrix, estimator: ReducedOrderObserver) -> tuple[Scalar, Scalar]:

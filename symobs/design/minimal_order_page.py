@@ -12,8 +12,10 @@ from symobs.design.compensator_page import (
     LARGE,
     Namer,
     cautions,
+    define_or_hold,
     named_return_path,
     return_path,
+    return_path_of_several,
     say_stability,
 )
 from symobs.design.gain_pages import FEEDBACK, error_determinant, name_entries, write_gain
@@ -33,7 +35,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     large = design.exists and design.answer["F"].size > LARGE
     with page.section("state_feedback"):
-        write_gain(page, design.feedback, FEEDBACK, page_style("auto", design.plant))
+        write_gain(page, design.feedback, FEEDBACK, page_style("auto", design.plant, several=design.plant.inputs > 1))
         if large:
             name_entries(page, "K")
     write_observer_of_rest(page, design.estimator)
@@ -47,7 +49,9 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
         _transfer_function(page, design, large=large)
     with page.section("closed_loop"):
         _error_coordinates(page, design)
-        if large:
+        if not design.is_single:
+            return_path_of_several(page, design)
+        elif large:
             named_return_path(page, design, _own_determinant(page))
         else:
             return_path(page, design)
@@ -135,7 +139,9 @@ def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bo
     if page.plant.matrices.has_feedthrough:
         formula = page["W_u"] @ formula
     direct = page["W_u"] @ K_y if page.plant.matrices.has_feedthrough else K_y
-    if large:
+    if not design.is_single:
+        define_or_hold(page, "F", formula, design.answer["F"], "minimal_transfer")
+    elif large:
         variable, names = page.plant.variable, Namer(page)
         F = formula.scalar
         lead = F.denominator.coefficients(variable)[0]

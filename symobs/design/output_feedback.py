@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from symobs.certificate import Certificate, Claim, check
 from symobs.conditions import sign_of
-from symobs.exact import Factored, Matrix, Scalar, factored, transfer
+from symobs.exact import Factored, Matrix, Scalar, factored, transfer, transfer_matrix
 from symobs.formula import Environment
-from symobs.formula.term import Term, letter
+from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
 from symobs.stability import no_stable_compensator, stability, stable_somewhere
@@ -28,6 +28,34 @@ if TYPE_CHECKING:
 
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
+
+
+class Realisation(NamedTuple):
+    """A system in state space."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+    def function(self, variable: str) -> Matrix:
+        """Return C (sI − A)⁻¹ B + D."""
+        numerators, characteristic = transfer_matrix(*self, variable)
+        return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
+
+
+def closed(plant: Realisation, returned: Realisation) -> Realisation:
+    """Return the plant with another system in the return path, negative feedback: u = v − (C₂ x₂ + D₂ y)."""
+    A, B, C, D = plant
+    through = (Matrix.identity(B.shape[1]) + returned.D @ D).inverse()
+    v, state, own = through, through @ returned.D @ C, through @ returned.C
+    output, fed = C - D @ state, D @ own
+    return Realisation(
+        Matrix.block([[A - B @ state, -(B @ own)], [returned.B @ output, returned.A - returned.B @ fed]]).normal(),
+        Matrix.block([[B @ v], [returned.B @ D @ v]]).normal(),
+        Matrix.block([[output, -fed]]).normal(),
+        (D @ v).normal(),
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,8 +83,8 @@ class OutputFeedback(Result):
         raise NotImplementedError
 
     @cached_property
-    def own_matrix(self) -> Matrix:
-        """The matrix of the compensator's own state."""
+    def realisation(self) -> Realisation:
+        """F in state space."""
         raise NotImplementedError
 
     @cached_property
@@ -71,7 +99,10 @@ class OutputFeedback(Result):
 
     @cached_property
     def own_transfer(self) -> tuple[Scalar, Scalar]:
-        """F as numerator over denominator, normalised so that χ · denominator + n · numerator is φ_c φ_o for P = n/χ."""
+        """F as numerator over denominator, normalised so that χ · denominator + n · numerator is φ_c φ_o for P = n/χ.
+
+        For one input and one output.
+        """
         raise NotImplementedError
 
     def with_answer(self, name: str, value: object) -> Self:
@@ -133,15 +164,50 @@ class OutputFeedback(Result):
         assert control is not None and observer is not None  # noqa: S101, PT018 - cases belong to desired polynomials
         return type(self).designed(plant, control.substitute(values), observer.substitute(values), self.method)
 
+    @property
+    def is_single(self) -> bool:
+        """Whether there are one input and one output."""
+        return self.plant.inputs == self.plant.outputs == 1
+
+    @property
+    def own_matrix(self) -> Matrix:
+        """The matrix of the compensator's own state."""
+        return self.realisation.A
+
     @cached_property
     def plant_transfer(self) -> tuple[Scalar, Scalar]:
-        """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled."""
+        """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled; single only."""
         m = self.plant.matrices
         return transfer(m.A, m.B, m.C, m.D[0, 0], self.plant.variable)
 
     @cached_property
-    def loop(self) -> Factored:
-        """P/(1 + PF): the plant with F in the return path, checked against its definition."""
+    def plant_function(self) -> Scalar | Matrix:
+        """P(s)."""
+        if self.is_single:
+            numerator, characteristic = self.plant_transfer
+            return numerator / characteristic
+        m = self.plant.matrices
+        return Realisation(m.A, m.B, m.C, m.D).function(self.plant.variable)
+
+    @cached_property
+    def loop(self) -> Factored | tuple[tuple[Factored, ...], ...]:
+        """(I + PF)⁻¹ P: the plant with F in the return path, checked against its definition."""
+        return self.single_loop if self.is_single else self.loop_of_several
+
+    @cached_property
+    def loop_of_several(self) -> tuple[tuple[Factored, ...], ...]:
+        """The entries of (I + PF)⁻¹ P, from the loop in state space."""
+        m, variable = self.plant.matrices, self.plant.variable
+        whole = closed(Realisation(m.A, m.B, m.C, m.D), self.realisation).function(variable)
+        values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
+        e = Environment(variable=variable, values=values)
+        P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e))
+        return tuple(tuple(factored(entry, variable) for entry in row) for row in whole.rows)
+
+    @cached_property
+    def single_loop(self) -> Factored:
+        """P/(1 + PF)."""
         numerator, characteristic = self.plant_transfer
         P, F = numerator / characteristic, self.answer["F"]
         _, own = self.own_transfer
@@ -170,11 +236,12 @@ class OutputFeedback(Result):
         variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
         if self._is_unavoidably_unstable:
             return "no"
+        denominator = F.common_denominator()
         if F.size <= _DECIDABLE_TERMS:
-            verdict = stability(F.denominator, variable, signs, discrete=discrete).verdict
+            verdict = stability(denominator, variable, signs, discrete=discrete).verdict
             if verdict != "conditional":
                 return verdict
-        met = stable_somewhere(F.denominator, variable, signs, discrete=discrete)
+        met = stable_somewhere(denominator, variable, signs, discrete=discrete)
         return "conditional" if len(met) == 2 else "undecided"
 
     @cached_property
@@ -182,7 +249,7 @@ class OutputFeedback(Result):
         """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
         plant = self.plant
         signs = plant.symbols.signs
-        if plant.is_discrete:
+        if plant.is_discrete or not self.is_single:
             return False
         wanted = (c for factor, _ in self.loop_polynomial.factors for c in factor.coefficients(plant.variable))
         numerator, characteristic = self.plant_transfer

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Certificate, Claim
-from symobs.design.gain import letters_of, require_single
+from symobs.design.gain import letters_of
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Root, Scalar, unit_rows
@@ -257,7 +257,7 @@ def reduced_order_observer(
 ) -> Result:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s).
 
-    plant         n > 1 states, one output; B may be missing
+    plant         n states, p < n outputs, none a combination of the others; B may be missing
     poles         n − p desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n − p
     T             optional n×n coordinates x̄ = T x whose upper p rows are C
@@ -267,7 +267,6 @@ def reduced_order_observer(
     """
     plant = plant.knowing(poles, polynomial, T)
     plant.require("C", task="reduced_order_observer")
-    require_single(plant.outputs, "output", "reduced_order_observer")
     if plant.order == plant.outputs:
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")

@@ -149,21 +149,27 @@ def _determinant(page: Page) -> Term:
 
 
 def _gain(page: Page, design: ReducedOrderObserver) -> None:
-    """Compare the coefficients of det(sI − A₂₂ + L A₁₂), linear in L, with those of φ."""
+    """Compare the coefficients of det(sI − A₂₂ + L A₁₂), linear in L for one output, with those of φ."""
     desired, variable = design.desired, page.plant.variable
-    unknown = page["L"].value
+    unknown, several = page["L"].value, page.plant.outputs > 1
     found = _determinant(page).scalar
-    page.equal(relation(page["L"], unknown), relation(_determinant(page), page.value(found)), say="with_unknown_gain")
+    if not several:
+        page.equal(
+            relation(page["L"], unknown), relation(_determinant(page), page.value(found)), say="with_unknown_gain"
+        )
     grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
     plain = page.value(desired.polynomial)
-    page.define("phi_o", *([plain] if desired.is_expanded else [grouped, plain]), say="wanted_polynomial")
-    pairs = zip(found.coefficients(variable)[1:], desired.coefficients, strict=True)
-    page.equal(*(relation(have, want) for have, want in pairs if not have.is_constant), say="compare")
+    wished = [plain] if desired.is_expanded else [grouped, plain]
+    page.define("phi_o", *wished, say="polynomial_is_to_be" if several else "wanted_polynomial")
+    if not several:
+        pairs = zip(found.coefficients(variable)[1:], desired.coefficients, strict=True)
+        page.equal(*(relation(have, want) for have, want in pairs if not have.is_constant), say="compare")
     if not design.inner.fixed_polynomial.is_one:
         fixed, facts = _fixed_modes(page, design)
         modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, variable))
         page.remark("reduced_not_unique", *facts, predicate("polynomial", page["phi_o"] / fixed), modes=modes)
-    key = "hence_gain" if design.inner.fixed_polynomial.is_one else ""
+    key = "one_of_several" if several else "hence_gain"
+    key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
     page.verified("as_required", check=relation(*members))

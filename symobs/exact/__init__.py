@@ -15,7 +15,7 @@ from symobs.exact.polynomial import apply_polynomial, companion, from_coefficien
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 from symobs.exact.sides import stable_roots
-from symobs.exact.transfer import controller, transfer
+from symobs.exact.transfer import controller, transfer, transfer_matrix
 
 __all__ = [
     "EIGENVALUE",
@@ -51,5 +51,6 @@ __all__ = [
     "roots_of",
     "stable_roots",
     "transfer",
+    "transfer_matrix",
     "unit_rows",
 ]

@@ -1,15 +1,11 @@
-"""Transfer functions of systems with one input and one output, without an inverse over the field."""
+"""Transfer functions, without an inverse over the field."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symobs.exact import ring
 from symobs.exact.field import Field
+from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
-
-if TYPE_CHECKING:
-    from symobs.exact.matrix import Matrix
 
 
 def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple[Scalar, Scalar]:
@@ -21,6 +17,16 @@ def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple
         return moved - characteristic + d * characteristic, characteristic
     numerator, characteristic = _bordered(A, b, c, field, variable)
     return numerator + d * characteristic, characteristic
+
+
+def transfer_matrix(A: Matrix, B: Matrix, C: Matrix, D: Matrix, variable: str) -> tuple[Matrix, Scalar]:
+    """Return (N, χ) with C (sI − A)⁻¹ B + D = N/χ and χ = det(sI − A); common factors are left in."""
+    order, rows = A.shape[0], []
+    for i in range(C.shape[0]):
+        c = C.select([i], range(order))
+        pairs = [transfer(A, B.select(range(order), [j]), c, D[i, j], variable) for j in range(B.shape[1])]
+        rows.append([numerator for numerator, _ in pairs])
+    return Matrix.of(rows), A.characteristic_polynomial(variable)
 
 
 def controller(

@@ -29,6 +29,7 @@ PHRASES: dict[str, str] = {
     "with_coefficients": "where",
     "named_entries": "From here on we write its entries as",
     "loop_poles": "Its poles {poles} are those of the state feedback and those of the observer, as they must be.",
+    "loop_matrix_poles": "The poles of its entries are among those of the state feedback and those of the observer.",
     "loop_polynomial": "Its denominator is the product of the two polynomials asked for, as it must be.",
     "defective": _DEFECTIVE,
     "defective_instead": _DEFECTIVE + " With distinct poles they are, for example with {instead}.",

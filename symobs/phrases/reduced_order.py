@@ -16,6 +16,8 @@ PHRASES: dict[str, str] = {
     "reduced_error": "Whatever the input, the error {error} then obeys",
     "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",
     "wanted_polynomial": "and is to become",
+    "polynomial_is_to_be": "Its characteristic polynomial is to become",
+    "one_of_several": "Several gains do that, because there are several outputs. One with short entries is",
     "compare": "Equal coefficients require",
     "hence_gain": "hence",
     "derivative_of_output": "The right-hand side of the observer contains the derivative of the output. It disappears if not the estimate itself "

@@ -1,0 +1,228 @@
+"""Compensators for several inputs and outputs, with either observer: the loop's polynomial, F(s), refusals."""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs import StateSpace
+from symobs.design.output_feedback import Realisation, closed
+from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Matrix
+from tests.plain import (
+    at_number,
+    characteristic,
+    matrix_at,
+    multiply,
+    observability_rows,
+    product,
+    rank_of,
+    seeded,
+    subtract,
+    transposed,
+)
+
+if TYPE_CHECKING:
+    import random
+
+    from tests.plain import Rows
+
+DRAWS = 400 if os.environ.get("SYMOBS_FULL") else 40
+#: order, inputs, outputs
+SIZES = ((2, 1, 1), (3, 1, 2), (3, 2, 1), (3, 2, 2), (4, 2, 2), (4, 1, 3), (4, 2, 3))
+
+
+def identity(order: int) -> Rows:
+    return [[Fraction(int(i == j)) for j in range(order)] for i in range(order)]
+
+
+def determinant(rows: Rows) -> Fraction:
+    """Read det M off det(sI − M)."""
+    constant = characteristic(rows)[-1]
+    return constant if len(rows) % 2 == 0 else -constant
+
+
+def inverse(rows: Rows) -> Rows:
+    """Solve M X = I column by column, by elimination on [M I]."""
+    order = len(rows)
+    work = [row + unit for row, unit in zip([list(row) for row in rows], identity(order), strict=True)]
+    for column in range(order):
+        pivot = next(i for i in range(column, order) if work[i][column])
+        work[column], work[pivot] = work[pivot], work[column]
+        lead = work[column][column]
+        work[column] = [entry / lead for entry in work[column]]
+        for i in range(order):
+            if i != column and work[i][column]:
+                factor = work[i][column]
+                work[i] = [a - factor * b for a, b in zip(work[i], work[column], strict=True)]
+    return [row[order:] for row in work]
+
+
+def added(left: Rows, right: Rows) -> Rows:
+    return [[a + b for a, b in zip(p, q, strict=True)] for p, q in zip(left, right, strict=True)]
+
+
+def drawn(generator: random.Random, rows: int, columns: int, *, sparse: bool = False) -> Rows:
+    entries = (0, 0, 1) if sparse else (-2, -1, 0, 0, 1, 1, 2, 3)
+    return [[Fraction(generator.choice(entries)) for _ in range(columns)] for _ in range(rows)]
+
+
+def plant(generator: random.Random, order: int, inputs: int, outputs: int, *, feedthrough: bool) -> list[Rows]:
+    """Draw a controllable and observable plant whose outputs are independent."""
+    while True:
+        A, B, C = drawn(generator, order, order), drawn(generator, order, inputs), drawn(generator, outputs, order)
+        D = drawn(generator, outputs, inputs) if feedthrough else [[Fraction(0)] * inputs for _ in range(outputs)]
+        seen = rank_of(observability_rows(A, C)) == order == rank_of(observability_rows(transposed(A), transposed(B)))
+        if seen and rank_of(C) == outputs:
+            return [A, B, C, D]
+
+
+def wanted(generator: random.Random, degree: int) -> tuple[list[str], list[Fraction]]:
+    """Draw poles, repeated ones and a complex pair among them, and their polynomial."""
+    poles: list[str] = []
+    factors: list[list[Fraction]] = []
+    while len(poles) < degree:
+        if degree - len(poles) > 1 and generator.random() < 0.3:
+            real, imaginary = generator.randint(1, 4), generator.randint(1, 3)
+            poles += [f"-{real} + {imaginary}i", f"-{real} - {imaginary}i"]
+            factors.append([Fraction(1), Fraction(2 * real), Fraction(real**2 + imaginary**2)])
+        else:
+            real = generator.randint(1, 4)
+            poles.append(f"-{real}")
+            factors.append([Fraction(1), Fraction(real)])
+    return poles, product(factors)
+
+
+def texts(rows: Rows) -> list[list[str]]:
+    return [[str(entry) for entry in row] for row in rows]
+
+
+@pytest.mark.parametrize("feedthrough", [False, True], ids=["", "feedthrough"])
+@pytest.mark.parametrize("observer", ["full", "minimal"])
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_the_loop_has_the_poles_of_control_and_observer(
+    size: tuple[int, int, int], observer: str, *, feedthrough: bool
+) -> None:
+    """Det(I + P F) χ_P χ_F = φ_c φ_o det(I + D F(∞)) at numbers s, F read off the answer entry by entry."""
+    order, inputs, outputs = size
+    met = 0
+    for draw in range(max(1, DRAWS // (4 * len(SIZES)))):
+        generator = seeded((size, observer, feedthrough, draw))
+        A, B, C, D = plant(generator, order, inputs, outputs, feedthrough=feedthrough)
+        control, phi_c = wanted(generator, order)
+        estimated, phi_o = wanted(generator, order - (outputs if observer == "minimal" else 0))
+        found = symobs.compensator(
+            StateSpace(texts(A), texts(B), texts(C), texts(D)),
+            control_poles=control,
+            observer_poles=estimated,
+            observer=observer,
+        )
+        if found.answer["F"] is None:  # ill-posed: said so, with the determinant that vanishes
+            assert observer == "minimal"
+            assert feedthrough
+            assert any("det(I - N*D) = 0" in certificate.claim for certificate in found.certificates)
+            continue
+        met += 1
+        own = matrix_at(found.fields["compensator_matrix"], {})
+        direct = matrix_at(found.fields["direct_term"], {}) if observer == "minimal" else drawn_zero(inputs, outputs)
+        whole = product([phi_c, phi_o])
+        for s in (Fraction(7, 3), Fraction(-9, 4), Fraction(11)):
+            F = function_at(found.answer["F"], s)
+            P = added(multiply(multiply(C, inverse(subtract(scaled(identity(order), s), A))), B), D)
+            loop = determinant(added(identity(outputs), multiply(P, F)))
+            own_chi = at_number(characteristic(own), s)
+            expected = at_number(whole, s) * determinant(added(identity(outputs), multiply(D, direct)))
+            assert loop * at_number(characteristic(A), s) * own_chi == expected
+            G = [[entry_at(entry, s) for entry in row] for row in rows_of(found.fields["closed_loop"])]
+            assert multiply(added(identity(outputs), multiply(P, F)), G) == P
+        large = Fraction(10**12)
+        for row, limits in zip(function_at(found.answer["F"], large), direct, strict=True):
+            assert all(abs(entry - limit) < Fraction(1, 10**6) for entry, limit in zip(row, limits, strict=True))
+    assert met
+
+
+def drawn_zero(rows: int, columns: int) -> Rows:
+    return [[Fraction(0)] * columns for _ in range(rows)]
+
+
+def scaled(rows: Rows, factor: Fraction) -> Rows:
+    return [[entry * factor for entry in row] for row in rows]
+
+
+def function_at(F: Any, s: Fraction) -> Rows:
+    return matrix_at(F if isinstance(F, Matrix) else Matrix.of([[F]]), {"s": s})
+
+
+def rows_of(value: Any) -> Any:
+    return value if isinstance(value, tuple) else ((value,),)
+
+
+def entry_at(entry: Any, s: Fraction) -> Fraction:
+    return matrix_at(Matrix.of([[entry.value]]), {"s": s})[0][0]
+
+
+def test_the_loop_in_state_space_has_feedthrough_on_both_sides() -> None:
+    """A static plant y = 2u behind a static return 3: y = 2/(1 + 6) v."""
+    nothing, column, row = Matrix.zeros(0, 0), Matrix.zeros(0, 1), Matrix.zeros(1, 0)
+    two, three = Matrix.of([[2]]), Matrix.of([[3]])
+    loop = closed(Realisation(nothing, column, row, two), Realisation(nothing, column, row, three))
+    assert str(loop.D) == "[2/7]"
+
+
+def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:
+    """S0, Example 4.4 with D = 1/31: the direct term of the control law meets that of the plant."""
+    found = symobs.compensator(
+        StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "1/31"),
+        control_poles=[-2, -2],
+        observer_poles=[-10],
+        observer="minimal",
+    )
+    assert found.verdict == "no"
+    assert found.answer["K"] is not None
+    assert "cannot be solved for u" in found.to("text")
+    with pytest.raises(CertificateRejected):
+        found.with_answer("F", symobs.compensator(SERVO, **ASKED).answer["F"])
+
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+ASKED: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10], "observer": "minimal"}
+
+
+def test_a_well_posed_compensator_cannot_be_called_ill_posed() -> None:
+    found = symobs.compensator(SERVO, **ASKED)
+    with pytest.raises(CertificateRejected):
+        found.with_answer("F", None)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "where", "words"),
+    [
+        ({"observer": "reduced", "observer_poles": [-1, -2]}, "specification.observer", '"full" or "minimal"'),
+        ({"observer": "minimal", "method": "separation"}, "specification.method", "leave the method out"),
+        ({"observer": "minimal", "observer_poles": [-1, -2]}, "specification.observer_poles", "1"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused_with_the_repair(keywords: Any, where: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        symobs.compensator(SERVO, **{**ASKED, **keywords})
+    assert caught.value.where == where
+    assert words in caught.value.repair
+
+
+def test_nothing_is_left_to_estimate_where_the_outputs_show_the_state() -> None:
+    with pytest.raises(InputError, match="nothing is left to estimate"):
+        symobs.compensator(
+            StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0; 0 1]"),
+            control_poles=[-2, -2],
+            observer_poles=[],
+            observer="minimal",
+        )
+
+
+def test_the_method_alone_asks_for_the_minimal_observer() -> None:
+    asked = {name: value for name, value in ASKED.items() if name != "observer"}
+    assert symobs.compensator(SERVO, method="minimal_order", **asked).F == symobs.compensator(SERVO, **ASKED).F
