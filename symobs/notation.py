@@ -109,16 +109,28 @@ LETTERS: dict[str, LetterForm] = {
     **{f"xi_{k}": LetterForm(rf"\xi_{k}", f"ξ{'₀₁₂₃₄₅₆₇₈₉'[k]}", "null vector of a pole") for k in range(1, 10)},
     "Psi": LetterForm(r"\Psi", "Ψ", "upper parts of the null vectors"),
     "f_psi": LetterForm("f", "f", "lower parts of the null vectors"),
-    "F_phi": LetterForm("F", "F", "companion matrix of the desired polynomial"),
-    "G_phi": LetterForm("G", "G", "right factor of Sylvester's equation"),
-    "X_phi": LetterForm("X", "X", "solution of Sylvester's equation"),
-    "G_1": LetterForm("G_1", "G₁", "right factor of Sylvester's equation for one gain"),
-    "X_1": LetterForm("X_1", "X₁", "solution of Sylvester's equation for one gain"),
+    **{
+        f"{letter}_{side}": LetterForm(rf"{letter}_{{\mathrm {side}}}", f"{letter}_{side}", meaning)
+        for side in "co"
+        for letter, meaning in (
+            ("F", "companion matrix of the desired polynomial"),
+            ("G", "right factor of Sylvester's equation"),
+            ("X", "solution of Sylvester's equation"),
+        )
+    },
+    **{
+        f"{letter}_{side}1": LetterForm(rf"{letter}_{{\mathrm {side}1}}", f"{letter}_{side}₁", meaning)
+        for side in "co"
+        for letter, meaning in (
+            ("G", "right factor of Sylvester's equation for one gain"),
+            ("X", "solution of Sylvester's equation for one gain"),
+        )
+    },
     "L_G": LetterForm("L(G)", "L(G)", "general observer gain"),
     "K_G": LetterForm("K(G)", "K(G)", "general state feedback gain"),
     "L_0": LetterForm("L_0", "L₀", "gain by which the plant is shifted"),
     "K_0": LetterForm("K_0", "K₀", "gain by which the plant is shifted"),
-    "A_0": LetterForm("A_0", "A₀", "shifted state matrix"),
+    **{f"A_{side}0": LetterForm(rf"A_{{\mathrm {side}0}}", f"A_{side}₀", "shifted state matrix") for side in "co"},
     "x_1": LetterForm("x_1", "x₁", "measured states"),
     "x_2": LetterForm("x_2", "x₂", "states that are not measured"),
     "x_2_hat": LetterForm(r"\hat x_2", "x̂₂", "estimate of the states that are not measured"),

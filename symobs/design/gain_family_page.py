@@ -22,31 +22,31 @@ _MATRIX, _DETERMINANT, _GAIN = 40, 24, 60
 
 def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
-    page.define("F_phi", companion(desired.coefficients), say="companion_of_wish")
+    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     chart = design.chart
     if chart is None:
         _only_gain(page, design, side, desired)
         return
     equation = chart.equation
     _shift(page, equation, side, design)
-    _equation(page, side, "G_phi", "X_phi", equation, equation.G)
-    page.remark("dimension_several", count=str(len(chart.names)))
+    _equation(page, side, "", equation, equation.G)
+    page.remark(f"dimension_{side.kind}", count=str(len(chart.names)))
     if chart.general is not None and chart.general.size <= _GAIN:
         general = design.oriented(chart.general)
-        page.define(f"{side.gain}_G", _gain(page, side, "G_phi", "X_phi", equation), general, say="general_gain")
+        page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
     own = chart.own_G
     if own is None:
         page.define(side.gain, design.answer[side.gain], say="no_member", answer=True)
         return
-    page.define("G_1", own, say="member_zero" if design.zero else "member_several")
-    solution = page.set("X_1", equation.solution(own))
+    page.define(f"G_{side.index}1", own, say="member_zero" if design.zero else "member_several")
+    solution = page.set(f"X_{side.index}1", equation.solution(own))
     page.equal(
         relation(solution, solution.shown),
         relation(solution.apply("det"), determinant_form(page, solution.value.determinant())),
         say="solution_of_member",
     )
-    page.conclude_silently(_sylvester(page, side, "G_1", "X_1", equation))
-    page.define(side.gain, _gain(page, side, "G_1", "X_1", equation), say="gain_follows", answer=True)
+    page.conclude_silently(_sylvester(page, side, "1", equation))
+    page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
 
 
 def write_hidden_family(page: Page, design: GainDesign, side: Side) -> None:
@@ -61,8 +61,8 @@ def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolyn
     pair = design.pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
-    _equation(page, side, "G_phi", "X_phi", equation, equation.G)
-    page.define(side.gain, _gain(page, side, "G_phi", "X_phi", equation), say="gain_follows", answer=True)
+    _equation(page, side, "", equation, equation.G)
+    page.define(side.gain, _gain(page, side, "", equation), say="gain_follows", answer=True)
 
 
 def _shift(page: Page, equation: Sylvester, side: Side, design: GainDesign) -> None:
@@ -71,20 +71,21 @@ def _shift(page: Page, equation: Sylvester, side: Side, design: GainDesign) -> N
         return
     gain = page.define(f"{side.gain}_0", design.oriented(equation.shift), say="spectra_meet")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
-    page.define("A_0", page["A"] - moved)
+    page.define(f"A_{side.index}0", page["A"] - moved)
 
 
-def _state_matrix(page: Page, equation: Sylvester) -> Term:
-    return page["A"] if equation.shift is None else page["A_0"]
+def _state_matrix(page: Page, side: Side, equation: Sylvester) -> Term:
+    return page["A"] if equation.shift is None else page[f"A_{side.index}0"]
 
 
-def _equation(page: Page, side: Side, G: str, X: str, equation: Sylvester, value: Matrix) -> None:
+def _equation(page: Page, side: Side, which: str, equation: Sylvester, value: Matrix) -> None:
     """Write G, the equation, and X with its determinant."""
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     page.set(G, value)
     solution = page.set(X, equation.solution(value))
-    page.equal(_sylvester(page, side, G, X, equation), say=f"sylvester_{side.kind}")
-    page.equal(_similar(page, side, G, X, equation), say=f"similar_{side.kind}")
-    page.equal(relation(page[G], value), say="one_row_held" if value.shape[0] > 1 else "one_gain_only")
+    page.equal(_sylvester(page, side, which, equation), say=f"sylvester_{side.kind}")
+    page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
+    page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
     if solution.value.size <= _MATRIX:
         page.equal(relation(solution, solution.shown), say="solution_is" if value.shape[0] > 1 else "")
     determinant = solution.value.determinant()
@@ -95,23 +96,26 @@ def _equation(page: Page, side: Side, G: str, X: str, equation: Sylvester, value
         )
 
 
-def _sylvester(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Relation:
+def _sylvester(page: Page, side: Side, which: str, equation: Sylvester) -> Relation:
     """AᵀX − XF = CᵀG, or AX − XF = BG."""
-    A, F = _state_matrix(page, equation), page["F_phi"]
+    A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     if side.gain == "L":
         return relation(A.T @ page[X] - page[X] @ F, page["C"].T @ page[G])
     return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
 
 
-def _gain(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Term:
+def _gain(page: Page, side: Side, which: str, equation: Sylvester) -> Term:
     """L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     found = page[G] @ page[X].inverse
     found = found.T if side.gain == "L" else found
     return found if equation.shift is None else page[f"{side.gain}_0"] + found
 
 
-def _similar(page: Page, side: Side, G: str, X: str, equation: Sylvester) -> Relation:
+def _similar(page: Page, side: Side, which: str, equation: Sylvester) -> Relation:
     """(A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
-    A, moved = _state_matrix(page, equation), page[G] @ page[X].inverse
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
+    A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse
     left = A.T - page["C"].T @ moved if side.gain == "L" else A - page["B"] @ moved
-    return relation(left, page[X] @ page["F_phi"] @ page[X].inverse)
+    return relation(left, page[X] @ page[f"F_{side.index}"] @ page[X].inverse)

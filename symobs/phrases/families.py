@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+_SIDES = (("observer", "o"), ("state_feedback", "c"))
+
 PHRASES: dict[str, str] = {
     "companion_of_wish": "The companion matrix of this polynomial is",
     "spectra_meet": "It has roots in common with the characteristic polynomial of the plant. A fixed gain is therefore taken out first,",
-    "sylvester_observer": "For a matrix $G_phi$ let $X_phi$ be the solution of Sylvester's equation",
-    "sylvester_state_feedback": "For a matrix $G_phi$ let $X_phi$ be the solution of Sylvester's equation",
-    "similar_observer": "Where $X_phi$ is regular, the gain that follows makes the transpose of $A - L C$ similar to $F_phi$:",
-    "similar_state_feedback": "Where $X_phi$ is regular, the gain that follows makes $A - B K$ similar to $F_phi$:",
-    "one_row_held": "A polynomial in $F_phi$ may be multiplied to $G_phi$ from the right without changing the gain, so one row of it, or one combination of rows, can be held:",
+    "sylvester_observer": "For a matrix $G_o$ let $X_o$ be the solution of Sylvester's equation",
+    "sylvester_state_feedback": "For a matrix $G_c$ let $X_c$ be the solution of Sylvester's equation",
+    "similar_observer": "Where $X_o$ is regular, the gain that follows makes the transpose of $A - L C$ similar to $F_o$:",
+    "similar_state_feedback": "Where $X_c$ is regular, the gain that follows makes $A - B K$ similar to $F_c$:",
+    **{
+        f"one_row_held_{kind}": f"A polynomial in $F_{side}$ may be multiplied to $G_{side}$ from the right without changing the gain, so one row of it, "
+        "or one combination of rows, can be held:"
+        for kind, side in _SIDES
+    },
     "solution_is": "The solution of the equation is then",
     "determinant_free": "where the free entries must not make the determinant vanish,",
     "solution_of_member": "for which the solution is",
     "one_gain_only": "For one output (input) nothing is left free. The solution of the equation is",
     "general_gain": "All these gains are",
-    "dimension_several": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of $G_phi$. Left out are "
-    "gains whose closed-loop matrix is not cyclic.",
+    **{
+        f"dimension_{kind}": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of "
+        f"$G_{side}$. Left out are gains whose closed-loop matrix is not cyclic."
+        for kind, side in _SIDES
+    },
     "member_several": "A gain with short entries belongs to",
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "

@@ -93,8 +93,7 @@ class Breaker(Generic[B]):
         if box.width <= room:
             return [Piece(box)]
         written = self._written(formula)
-        is_table = isinstance(written, Literal) and isinstance(written.value, Matrix)
-        return self._matrix(written, room, head) if is_table else self._opened(formula, room)
+        return self._matrix(written, room, head) if _is_table(written) else self._opened(formula, room)
 
     def _opened(self, formula: Formula, room: float) -> list[Piece[B]]:
         match self._written(formula):
@@ -299,3 +298,11 @@ class Breaker(Generic[B]):
                     last = replace(last, box=self.printer.joined([last.box, mark], Level.ATOM))
                 pieces += [*body, last]
         return self._enclosed(pieces, *self.printer.brackets())
+
+
+def _is_table(formula: Formula) -> bool:
+    """Whether a formula is a matrix whose entries stand written out, so that each has a place."""
+    if isinstance(formula, Block):
+        entries = [entry.value if isinstance(entry, Literal) else entry for row in formula.rows for entry in row]
+        return all(isinstance(entry, (Quotient, Scalar)) for entry in entries)
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix)
