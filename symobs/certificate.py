@@ -24,7 +24,6 @@ from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, Va
 from symobs.formula import (
     Apply,
     At,
-    Derivative,
     Environment,
     Exact,
     Formula,
@@ -36,6 +35,7 @@ from symobs.formula import (
     agree,
     children,
     contains,
+    derived_by,
     differ,
     evaluate,
 )
@@ -250,19 +250,15 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     if environment.relations and environment.coefficients:
         return True
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
-    if any(contains(formula, (At, Integral)) or _in_time(formula) for formula in formulas):
+    if any(contains(formula, (At, Integral)) for formula in formulas):
         return True
-    if not any(contains(formula, (Derivative,)) for formula in formulas):
+    by = {name for formula in formulas for name in derived_by(formula)}
+    if by - {TIME}:
+        return True
+    if not by:
         return False
     values = (*leaves, *environment.coefficients.values())
     return any(TIME in symbols_named(name) for value in values for name in value.field.names)
-
-
-def _in_time(formula: Formula) -> bool:
-    """Whether the value at t = 0 or a derivative by T is asked for."""
-    if isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}:
-        return True
-    return any(_in_time(part) for part in children(formula))
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:

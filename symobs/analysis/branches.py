@@ -213,7 +213,7 @@ def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:
         if name in e.values:
             value = e.values[name]
             start = Matrix.zeros(*value.shape) if isinstance(value, Matrix) else Scalar.of(0)
-            yield Claim(relation(letter(name, e).apply("at_0"), start), e, f"{name} is 0 at t = 0")
+            yield Claim(relation(letter(name, e).at("t", 0), start), e, f"{name} is 0 at t = 0")
 
 
 def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix]) -> Environment:

@@ -101,5 +101,5 @@ def _tell_horizons(result: InitialStateCovariance, page: Page) -> None:
             "best_horizon",
             number=str(index + 1),
             variance=relation(variance, variance.value),
-            rate=relation(variance.apply("by_T"), front * bracket),
+            rate=relation(variance.derivative_by("T"), front * bracket),
         )

@@ -154,7 +154,7 @@ class Gramian(Branched):
         if "exponential" in self.answer:
             Phi = letter("exp_At", e)
             yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-            yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+            yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
             integrand = Phi.T @ C.T @ C @ Phi
             yield from from_zero(["primitive"], e)
             whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)

@@ -154,11 +154,11 @@ class InitialState(Branched):
     def _about_motion(self, e: Environment) -> Iterator[Claim]:
         A, Phi, free = letter("A", e), letter("exp_At", e), letter("y_t", e)
         yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
         if "x_f" in e.values:
             x_f, u = letter("x_f", e), letter("u_t", e)
             yield Claim(relation(rate_of(x_f), A @ x_f + letter("B", e) @ u), e, "x_f' = A*x_f + B*u")
-            yield Claim(relation(x_f.apply("at_0"), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
+            yield Claim(relation(x_f.at("t", 0), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
             free = free - letter("C", e) @ x_f
             if self.plant.matrices.has_feedthrough:
                 free = free - letter("D", e) @ u
@@ -174,7 +174,7 @@ class InitialState(Branched):
             return
         at_zero = []
         for _ in range(self.plant.order):
-            at_zero.append(free.apply("at_0"))
+            at_zero.append(free.at("t", 0))
             free = rate_of(free)
         start, O = block([[part] for part in at_zero]), letter("O", e)
         if "candidate" in e.values:

@@ -131,7 +131,7 @@ class InitialStateCovariance(Branched):
         Phi, A, C, W, R = (letter(name, e) for name in ("exp_At", "A", "C", "W", "R"))
         horizon = self.answer["horizon"]
         yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
         yield from from_zero(["W_t", "R_t", "Q_t"], e)
         whole = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
         yield Claim(relation(W, Term(whole, e)), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t)")

@@ -19,7 +19,7 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
 from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, kernel
-from symobs.formula import At, Environment, Literal
+from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task_in_time
 from symobs.page import relation
@@ -153,7 +153,7 @@ class TimeVaryingObservability(Result):
             minor = _det(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
-                instant = Term(At(minor.formula, TIME, answer["point"]), e)
+                instant = minor.at(TIME, answer["point"])
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
             A, C, states, X = (letter(name, e) for name in ("A", "C", "V", "X"))
@@ -165,8 +165,8 @@ class TimeVaryingObservability(Result):
         answer, order, asked = self.answer, self.plant.order, self.asked_for
         Phi = letter("Phi", e)
         yield Claim(relation(Phi.derivative, letter("A", e) @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
-        yield Claim(relation(_at(Phi, TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
-        seen = letter("C", e) @ _at(Phi, START, asked.start)
+        yield Claim(relation(Phi.at(TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
+        seen = letter("C", e) @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
         if answer["kernel"] is not None:
             yield Claim(relation(answer["kernel"].shape[1], hidden), e, "there are n - rank vectors v")
@@ -178,8 +178,8 @@ class TimeVaryingObservability(Result):
         if answer["gramian_in_time"] is not None:
             G = letter("G", e)
             yield Claim(relation(G.derivative, seen.T @ seen), e, "G' = Phi.T*C.T*C*Phi")
-            yield Claim(relation(_at(G, TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
-            yield Claim(relation(answer["gramian"], _at(G, TIME, asked.end)), e, "the Gramian is G(end)")
+            yield Claim(relation(G.at(TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
+            yield Claim(relation(answer["gramian"], G.at(TIME, asked.end)), e, "the Gramian is G(end)")
 
     def _state_claims(self, e: Environment) -> Iterator[Claim]:
         m, start = self.plant.matrices, self.asked_for.start
@@ -187,9 +187,9 @@ class TimeVaryingObservability(Result):
         if "u" in e.values:
             rate = rate + letter("B", e) @ letter("u", e)
         yield Claim(relation(f.derivative, rate), e, "f' = A*f + B*u")
-        yield Claim(relation(_at(f, TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
+        yield Claim(relation(f.at(TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
         if self.answer["x0"] is not None:
-            state = _at(letter("Phi", e), START, start) @ letter("x_0", e) + f
+            state = letter("Phi", e).at(START, start) @ letter("x_0", e) + f
             seen = letter("C", e) @ state
             seen = seen + letter("D", e) @ letter("u", e) if "u" in e.values and m.has_feedthrough else seen
             yield Claim(relation(letter("x_0", e).derivative, Matrix.zeros(self.plant.order, 1)), e, "x0 is constant")
@@ -273,10 +273,6 @@ class TimeVaryingObservability(Result):
 
 def _det(matrix: Matrix, environment: Environment) -> Term:
     return Term(Literal(matrix), environment).apply("det")
-
-
-def _at(term: Term, name: str, instant: Scalar) -> Term:
-    return Term(At(term.formula, name, instant), term.environment)
 
 
 def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:

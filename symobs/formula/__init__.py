@@ -27,6 +27,7 @@ from symobs.formula.nodes import (
     Transpose,
     children,
     contains,
+    derived_by,
     letters,
     with_children,
 )
@@ -64,6 +65,7 @@ __all__ = [
     "agree",
     "children",
     "contains",
+    "derived_by",
     "differ",
     "evaluate",
     "letters",
