@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from math import log2
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
+from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import symbols_named
@@ -280,7 +280,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
         sure = any(_excluded_from_zero(entry, environment) for entry in entries)
         return sure or never_together_zero(entries, environment.relations, environment.signs)
-    sign = sign_of(as_scalar(left) - as_scalar(right), environment.signs)
+    sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.above)
     return (
         sign
         in {

@@ -80,6 +80,7 @@ class MatrixExponential(Branched):
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation and the start."""
+        yield from super().claims()
         if self.answer["matrix"] is None:
             return
         e = time_environment(self.plant, {"A": self.plant.matrices.A, "exp_At": self.answer["matrix"]})

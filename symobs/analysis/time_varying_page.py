@@ -10,7 +10,7 @@ from symobs.conditions import never_zero
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal
 from symobs.exact import Matrix, Scalar, antiderivative, rank
-from symobs.formula import Integral, Literal
+from symobs.formula import Integral, Literal, Shown
 from symobs.formula.term import Term, block
 from symobs.page import relation, sentence
 
@@ -28,7 +28,8 @@ def write(page: Page, result: TimeVaryingObservability) -> None:
     asked = result.asked_for
     given(page)
     if asked.interval is not None:
-        page.conclude("on_interval", start=asked.start, end=asked.end)
+        ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
+        page.conclude("on_interval", **{name: Shown(end.formula, Literal(end.value)) for name, end in ends.items()})
     with page.section("transition"):
         _transition(page, result)
     if result.answer["transition_matrix"] is not None:
@@ -296,7 +297,12 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
         xi = page["y_t"] - page["C"] @ page["x_u"]
         page.define("xi", xi - page["D"] @ page["u_t"] if m.has_feedthrough else xi, say="xi_forced")
     if answer["x0"] is None:
-        page.conclude("x0_none" if answer["rank"] == page.plant.order else "x0_not_unique")
+        if answer["rank"] < page.plant.order:
+            page.conclude("x0_not_unique")
+        elif answer["candidate"] is None:
+            page.remark("x0_open")
+        else:
+            _refuse(page, result)
         return
     seen = _seen(page, result)
     moment = antiderivative_since((seen.T @ page["xi"]).value.normal(), asked.start)
@@ -310,6 +316,17 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
     if asked.input is not None and m.has_feedthrough:
         output = output + page["D"] @ page["u_t"]
     page.verified("x0_checked", output=relation(output, page["y_t"]))
+
+
+def _refuse(page: Page, result: TimeVaryingObservability) -> None:
+    """Give the only state that could explain the output, and what its own output leaves."""
+    asked, answer = result.asked_for, result.answer
+    Phi = page["Phi"].at(START, asked.start)
+    whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, answer["moment"])
+    page.define("x_0", page["W"].inverse @ whole, say="x0_candidate")
+    rest = page["xi"] - _seen(page, result) @ page["x_0"]
+    shown = rest.value[0, 0] if isinstance(rest.value, Matrix) and rest.value.shape == (1, 1) else rest.value
+    page.conclude("x0_none", rest=relation(rest, shown, "!==", shown * 0))
 
 
 def _signal(page: Page, value: Matrix) -> Term:

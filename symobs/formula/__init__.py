@@ -29,6 +29,7 @@ from symobs.formula.nodes import (
     contains,
     derived_by,
     letters,
+    roots_written,
     with_children,
 )
 from symobs.formula.restricted import Restricted
@@ -69,5 +70,6 @@ __all__ = [
     "differ",
     "evaluate",
     "letters",
+    "roots_written",
     "with_children",
 ]

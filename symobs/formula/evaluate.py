@@ -49,6 +49,7 @@ class Environment:
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
+    above       polynomials in the parameters that a stated inequality keeps above 0
     """
 
     variable: str = "s"
@@ -60,6 +61,7 @@ class Environment:
     signs: Mapping[str, str] = field(default_factory=dict)
     assumed: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
+    above: tuple[Scalar, ...] = ()
 
     def knows(self, name: str) -> bool:
         """Whether a letter is established."""

@@ -9,8 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs.exact.functions import all_roots
+
 if TYPE_CHECKING:
     from symobs.exact import Matrix, Root, Scalar
+    from symobs.exact.functions import Function
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,6 +253,12 @@ def derived_by(formula: Formula) -> frozenset[str]:
     """Return the names by which a formula takes derivatives."""
     own = {formula.name} if isinstance(formula, Derivative) else set()
     return frozenset(own).union(*(derived_by(part) for part in children(formula)))
+
+
+def roots_written(formula: Formula) -> frozenset[Function]:
+    """Return the square roots in the values that a formula writes out, those in arguments of functions too."""
+    own = all_roots(formula.value) if isinstance(formula, Literal) else ()
+    return frozenset(own).union(*(roots_written(part) for part in children(formula)))
 
 
 def letters(formula: Formula) -> frozenset[str]:
