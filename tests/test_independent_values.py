@@ -17,7 +17,6 @@ from symobs import problem
 from symobs.expression import parse_scalar
 from symobs.face import to_sympy
 from tests.problems_by_hand import (
-    IN_TIME,
     PROBLEMS,
     VARYING,
     canonical_transformation,
@@ -30,7 +29,9 @@ from tests.problems_by_hand import (
     modes,
     observability_matrix,
     points,
+    s,
 )
+from tests.problems_in_time import PROBLEMS_IN_TIME
 from tests.second_reader import Reader, facts_in, sympy_scalar, values_of
 
 if TYPE_CHECKING:
@@ -328,4 +329,49 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
 
 
 def test_every_worked_example_is_written_out_here() -> None:
-    assert {path.stem for path in FOLDER.glob("*.toml")} == set(PROBLEMS) | IN_TIME | VARYING
+    assert {path.stem for path in FOLDER.glob("*.toml")} == set(PROBLEMS) | set(PROBLEMS_IN_TIME) | VARYING
+
+
+# -- functions of time -------------------------------------------------------------------------------------------------
+
+#: Letters that a page in functions of time is free to choose, or that the lines which follow bind: a solution of
+#: Lyapunov's equation, a vector of the kernel, a basis of it.
+CHOSEN = {"P_l", "v", "N", "X"}
+
+
+def in_time(name: str, result: Result) -> Reader:
+    """Return the reader of a page in functions of time."""
+    hand = PROBLEMS_IN_TIME[name]
+
+    def samples() -> Iterator[dict[Any, Any]]:
+        return hand.points(name, 40)
+
+    return Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())
+
+
+@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
+def test_every_line_of_every_page_in_time(name: str) -> None:
+    for result in results(name):
+        facts, reader = list(facts_in(result.derivation.steps)), in_time(name, result)
+        tally = reader.read()
+        assert tally.compared + len(tally.unknown) >= values_of(facts)
+        assert set(tally.unknown) <= CHOSEN
+        print(f"{name}, {result.task}: {len(facts)} lines, {tally.compared} values")  # noqa: T201 - shown by pytest -s
+        assert tally.compared >= len(facts) > 0
+
+
+@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
+def test_every_answer_in_time(name: str) -> None:
+    hand = PROBLEMS_IN_TIME[name]
+    for result in results(name):
+        reader, expected = in_time(name, result), hand.answers(result.task)
+        assert set(result.fields) - VERDICTS - {"best_horizon"} == set(expected)
+        if result.answer.get("chosen"):
+            signs = [(to_sympy(c.expression, {}), c.operator) for c in result.holds_where]
+            reader.narrowed = signs
+        for field_name, wanted in expected.items():
+            found = to_sympy(result.fields[field_name], {})
+            if field_name in ROOTS or not isinstance(found, (sympy.MatrixBase, sympy.Expr)):
+                assert same(field_name, found, tuple(wanted) if field_name == "x0" else wanted, s, {}), field_name
+            else:
+                assert reader.agree(found, wanted), (name, field_name)
