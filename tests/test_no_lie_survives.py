@@ -238,8 +238,8 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
         print(f"{path.stem}: {name}: {numbers}")  # noqa: T201 - shown by pytest -rP
         assert count.lies == []
         assert count.tried == count.rejected + count.true
-        assert count.rejected > 0.75 * count.tried, "conditions of cases are the same up to a factor"
-    assert lines.tried >= 80, "the examples together are at least 1,500"
+        assert count.rejected > 0.8 * count.tried
+    assert lines.tried >= 100
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
