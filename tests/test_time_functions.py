@@ -157,13 +157,22 @@ def test_gramians_of_random_pairs(rows: list[list[int]], row: list[int]) -> None
     assert W == W.T
     seen = sympy.Matrix([row]) * symobs.matrix_exponential(symobs.StateSpace(rows)).matrix
     rate = W.diff(T) - (seen.T * seen).subs(t, T)
-    assert all(abs(sympy.N(e.subs(T, sympy.Rational(5, 7)), 30)) < 1e-20 for e in rate)
+    A, C = sympy.Matrix(rows), sympy.Matrix([row])
+    lyapunov = A.T * W + W * A + C.T * C - W.diff(T)
+    assert all(vanishes(e) for e in (*rate, *lyapunov))
     assert W.subs(T, 0).applyfunc(sympy.simplify) == sympy.zeros(2, 2)
     O = sympy.Matrix([row, list(sympy.Matrix([row]) * sympy.Matrix(rows))])
     assert len(result.kernel) == 2 - O.rank()
     for vector in result.kernel:
         assert (O * sympy.Matrix(vector)).is_zero_matrix
+        assert all(map(vanishes, W * sympy.Matrix(vector)))
+    assert vanishes(W.det()) == (O.rank() < 2), "nothing else is in the kernel of W"
+    assert W.applyfunc(lambda e: sympy.Integer(not vanishes(e))).is_zero_matrix == (O.rank() == 0)
     assert result.finite_sum == O.T * O
+
+
+def vanishes(value: Any) -> bool:
+    return bool(abs(sympy.N(value.subs(T, sympy.Rational(5, 7)), 40)) < 1e-20)
 
 
 # -- branches ----------------------------------------------------------------------------------------------------------
