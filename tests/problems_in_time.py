@@ -225,3 +225,48 @@ PROBLEMS_IN_TIME = {
         R=r,
     ),
 }
+
+
+# -- plants in which the time stands -----------------------------------------------------------------------------------
+
+#: What the letters of pages about time-varying plants must be worth.
+VARYING: dict[str, dict[str, Any]] = {
+    "time_varying_integrator": {
+        "A": Matrix([[0, t], [0, 0]]),
+        "B": Matrix([0, 1]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[0, t], [0, 0]]), "u": Matrix([0, 1])},
+        "y": {"x": Matrix([[1, 0]])},
+        "M": Matrix([[0, (t**2 - t0**2) / 2], [0, 0]]),
+        "Phi": Matrix([[1, (t**2 - t0**2) / 2], [0, 1]]),
+        "W": Matrix([[T, T**3 / 6], [T**3 / 6, T**5 / 20]]),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[0, t]]),
+        "O": sympy.diag(1, t),
+        "t_start": sympy.Integer(0),
+        "t_end": T,
+        "y_t": a + b * t**2 / 2 + t**3 / 3,
+        "u_t": sympy.Integer(1),
+        "x_u": Matrix([t**3 / 3, t]),
+        "xi": a + b * t**2 / 2,
+        "x_0": Matrix([a, b]),
+        "x_t": Matrix([a + b * t**2 / 2 + t**3 / 3, b + t]),
+    },
+    "frozen_time_misleads": {
+        "A": Matrix([[0, 1], [0, 0]]),
+        "C": Matrix([[1, -t]]),
+        "x'": {"x": Matrix([[0, 1], [0, 0]])},
+        "y": {"x": Matrix([[1, -t]])},
+        "M": Matrix([[0, t - t0], [0, 0]]),
+        "Phi": Matrix([[1, t - t0], [0, 1]]),
+        "W": Matrix([[T, -T], [-T, T]]),
+        "N_0": Matrix([[1, -t]]),
+        "N_1": Matrix([[0, 0]]),
+        "O": Matrix([[1, -t], [0, 0]]),
+        "V": Matrix([t, 1]),
+        "X": Matrix([0]),
+        "v": Matrix([1, 1]),
+        "t_start": sympy.Integer(1),
+        "t_end": 1 + T,
+    },
+}

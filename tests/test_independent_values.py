@@ -18,7 +18,6 @@ from symobs.expression import parse_scalar
 from symobs.face import to_sympy
 from tests.problems_by_hand import (
     PROBLEMS,
-    VARYING,
     canonical_transformation,
     characteristic,
     compare,
@@ -31,7 +30,7 @@ from tests.problems_by_hand import (
     points,
     s,
 )
-from tests.problems_in_time import PROBLEMS_IN_TIME
+from tests.problems_in_time import PROBLEMS_IN_TIME, VARYING
 from tests.second_reader import Reader, facts_in, sympy_scalar, values_of
 
 if TYPE_CHECKING:
@@ -329,7 +328,7 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
 
 
 def test_every_worked_example_is_written_out_here() -> None:
-    assert {path.stem for path in FOLDER.glob("*.toml")} == set(PROBLEMS) | set(PROBLEMS_IN_TIME) | VARYING
+    assert {path.stem for path in FOLDER.glob("*.toml")} == set(PROBLEMS) | set(PROBLEMS_IN_TIME) | set(VARYING)
 
 
 # -- functions of time -------------------------------------------------------------------------------------------------
@@ -375,3 +374,21 @@ def test_every_answer_in_time(name: str) -> None:
                 assert same(field_name, found, tuple(wanted) if field_name == "x0" else wanted, s, {}), field_name
             else:
                 assert reader.agree(found, wanted), (name, field_name)
+
+
+@pytest.mark.parametrize("name", VARYING)
+def test_every_line_and_answer_where_the_plant_varies(name: str) -> None:
+    (result,), known = results(name), VARYING[name]
+    facts = list(facts_in(result.derivation.steps))
+    positive = [{sympy.Symbol("T"): sympy.Rational(k, 3)} for k in range(1, 6)]
+    tally = Reader(result.derivation, known, lambda: iter(positive)).read()
+    assert tally.compared + len(tally.unknown) >= values_of(facts)
+    assert tally.unknown == []
+    fields = {"matrix": "O", "transition_matrix": "Phi", "gramian": "W", "x0": "x_0"}
+    for field_name, letter in fields.items():
+        if field_name in result.fields:
+            found = to_sympy(result.fields[field_name], {})
+            assert all(map(is_zero, sympy.Matrix(found) - known[letter])), field_name
+    assert [to_sympy(block, {}) for block in result.fields["stack"]] == [known["N_0"], known["N_1"]]
+    assert is_zero(to_sympy(result.fields["determinant"], {}) - known["W"].det())
+    assert result.fields["rank"] == known["O"].rank() == 2 - len(result.fields["kernel"])

@@ -20,7 +20,7 @@ from symobs.exact import Scalar
 from symobs.exact.functions import derivative, function, identities, square_root, substitute, tidy
 from symobs.exact.quasi import Key, Quasi, quasi_of
 from symobs.face import to_sympy
-from tests.problems_by_hand import IN_TIME
+from tests.problems_in_time import PROBLEMS_IN_TIME
 
 FOLDER = Path(__file__).parents[1] / "worked_examples"
 POINT = {"T": "7/5", "omega": "3/2", "b": "4/5", "x10": "3", "x20": "-2", "q": "5/7", "r": "2/3", "a": "6/5"}
@@ -60,7 +60,7 @@ def gramian_of(A: Any, C: Any, end: Any) -> Any:
     return integral(lambda time: (C * expm(A, time)).T * (C * expm(A, time)), end, A.rows, A.rows)
 
 
-@pytest.mark.parametrize("name", sorted(IN_TIME))
+@pytest.mark.parametrize("name", sorted(PROBLEMS_IN_TIME))
 def test_worked_examples_against_quadrature(name: str) -> None:
     found = problem.read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
     for result in found.solve():
