@@ -6,6 +6,7 @@ Pages are read by the second reader, with SymPy's `diff` and `integrate`; the wi
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -197,6 +198,34 @@ def test_an_initial_state_is_found_again(x0: list[int], u: list[int]) -> None:
     spoiled = symobs.time_varying_observability(plant, interval="1, 3", output=f"{output} + t^7", input=str(driven))
     assert spoiled.x0 is None
     assert "No initial state" in spoiled.to("text")
+
+
+def test_that_no_state_explains_an_output_is_proved() -> None:
+    result = solved("integrator", interval="1, 3", output="t^7")
+    candidate = result.answer["candidate"]
+    assert result.x0 is None
+    for value in (candidate * 2, candidate * 0):
+        with pytest.raises(CertificateRejected):
+            result.with_answer("candidate", value)
+    right = solved("integrator", interval="1, 3", output="2 + t^2/2")
+    with pytest.raises(CertificateRejected):
+        replace(
+            right,
+            answer={**right.answer, "x0": None, "candidate": right.answer["x0"], "moment": result.answer["moment"]},
+        )
+
+
+def test_the_interval_said_is_the_one_asked_for() -> None:
+    result = solved("integrator", interval="1, 3")
+    other = result.derivation
+    liar = object.__new__(type(result))
+    liar.__dict__.update({k: v for k, v in result.__dict__.items() if k != "derivation"})
+    liar.__dict__["write"] = lambda page: setattr(page, "steps", list(other.steps))
+    assert liar.derivation.steps == other.steps
+    liar.__dict__.pop("derivation")
+    liar.__dict__["asked_for"] = replace(result.asked_for, interval=(Scalar.of(1), Scalar.of(4)))
+    with pytest.raises(DerivationRejected, match="another t_end"):
+        _ = liar.derivation
 
 
 # -- what is refused ---------------------------------------------------------------------------------------------------
