@@ -111,7 +111,7 @@ def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar])
     if found in {"positive", "negative", "zero"}:
         return found
     beside = (sign_of(value / polynomial, signs) for polynomial in above)
-    return next((sign for sign in beside if sign in {"positive", "negative"}), found)
+    return next((sign for sign in beside if sign != "real"), found)
 
 
 def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
