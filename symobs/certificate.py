@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from math import log2
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
+from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.functions import symbols_named
@@ -24,7 +24,6 @@ from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, Va
 from symobs.formula import (
     Apply,
     At,
-    Derivative,
     Environment,
     Exact,
     Formula,
@@ -36,6 +35,7 @@ from symobs.formula import (
     agree,
     children,
     contains,
+    derived_by,
     differ,
     evaluate,
 )
@@ -249,18 +249,15 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     if environment.relations and environment.coefficients:
         return True
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
-    if any(contains(formula, (At, Integral)) or _in_time(formula) for formula in formulas):
+    if any(contains(formula, (At, Integral)) for formula in formulas):
         return True
-    if not any(contains(formula, (Derivative,)) for formula in formulas):
+    by = {name for formula in formulas for name in derived_by(formula)}
+    if by - {TIME}:
+        return True
+    if not by:
         return False
     values = (*leaves, *environment.coefficients.values())
     return any(TIME in symbols_named(name) for value in values for name in value.field.names)
-
-
-def _in_time(formula: Formula) -> bool:
-    """Whether the value at t = 0 or a derivative by T is asked for."""
-    own = isinstance(formula, Apply) and formula.function in {"at_0", "by_T"}
-    return own or any(_in_time(part) for part in children(formula))
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
@@ -284,7 +281,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
         sure = any(_excluded_from_zero(entry, environment) for entry in entries)
         return sure or never_together_zero(entries, environment.relations, environment.signs)
-    sign = sign_of(as_scalar(left) - as_scalar(right), environment.signs)
+    sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.above)
     return (
         sign
         in {

@@ -105,6 +105,15 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     return whole if sign == "real" else sign
 
 
+def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar]) -> str:
+    """Return what is certain about the sign of a value where some polynomials are above 0 besides."""
+    found = sign_of(value, signs)
+    if found in {"positive", "negative", "zero"}:
+        return found
+    beside = (sign_of(value / polynomial, signs) for polynomial in above)
+    return next((sign for sign in beside if sign != "real"), found)
+
+
 def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
     """Tell whether the declared signs alone exclude that the value is 0."""
     return sign_of(value, signs) in {"positive", "negative", "nonzero"}

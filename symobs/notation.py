@@ -159,11 +159,15 @@ def is_of_time(name: str) -> bool:
     return name in _OF_TIME or name.startswith(("N_", "Phi_"))
 
 
+def shows_time(name: str) -> bool:
+    """Whether the time is written in a letter: e^{At}, W(t); its value at an instant stands behind a bar."""
+    return name in LETTERS and LETTERS[name].text.endswith("t)")
+
+
 FUNCTIONS: dict[str, tuple[str, str]] = {
     "det": (r"\det", "det"),
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
-    "by_T": (r"\frac{d}{dT}", "d/dT"),
     **{name: (rf"\{name}", name) for name in ("sin", "cos", "sinh", "cosh")},
     "mu_at": (r"\mu", "μ"),
     "phi_at": (r"\varphi", "φ"),

@@ -15,7 +15,7 @@ from typing import Annotated, Any, TypeAlias
 from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
-from symobs.expression import parse_poles, parse_polynomial
+from symobs.expression import parse_matrix, parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
@@ -274,17 +274,32 @@ def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
     return start, end
 
 
-def read_signal(value: object, plant: StateSpace, name: str, size: int) -> Matrix:
-    """Return a signal of `size` components, rational in t; raises `ShapeMismatch`."""
+def read_signal(value: object, plant: StateSpace, name: str, size: int, *, functions: bool = False) -> Matrix:
+    """Return a signal of `size` components: rational in t, or with `functions` also in exp, sin, …; raises `ShapeMismatch`."""
     where = f"specification.{name}"
-    symbols = plant.symbols.seen(value, "t").with_time()
-    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
-    signal = read_matrix(listed, symbols, where)
+    signal = parse_signal(value, plant.symbols, where, functions=functions)
     signal = signal.T if signal.shape == (1, size) else signal
     if signal.shape != (size, 1):
         message = f"{name} has {signal.shape[0]}×{signal.shape[1]} entries, expected a column of {size}"
         raise ShapeMismatch(message, where=where, repair=f"write {size} entries, set apart by semicolons")
     return signal
+
+
+def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Matrix:
+    """Return the entries of a signal, of any number."""
+    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
+    known = symbols.seen(value, "t").with_time()
+    if not functions:
+        return read_matrix(listed, known, where)
+    rows: Any = listed.tolist() if hasattr(listed, "tolist") else listed
+    if not isinstance(rows, str):
+        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
+    return parse_matrix(rows, known.names, where=where, functions=True)
+
+
+def _text(entry: object) -> object:
+    """Return a SymPy expression as text: the grammar reads its functions."""
+    return str(entry) if is_sympy(entry) else entry
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object) -> None:

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import sympy
-
 from symobs.exact import Factored, Scalar
 from symobs.expression import parse_polynomial
-from symobs.face import to_sympy
 from symobs.specification import read_poles
+from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.claims_of_modes import MODES
 from tests.plain import (
     Point,
@@ -283,20 +281,6 @@ def rank_holds(result: Result, at: Setting) -> None:
     assert not kernel or not any(any(row) for row in multiply(rows, transposed(kernel)))
 
 
-def stack_holds(result: Any, at: Setting) -> None:
-    """Hold N₀, N₁, … to SymPy's derivatives, and the rank of the stack at the point, where it is not smaller by chance."""
-    plant, t = result.plant, sympy.Symbol("t")
-    stack = to_sympy(result.fields["stack"], plant.symbols.objects)
-    expected = plant.C
-    for row in stack:
-        assert (row - expected).applyfunc(sympy.cancel).is_zero_matrix
-        expected = row * plant.A + row.diff(t)
-    rows = [row for block in result.fields["stack"] for row in matrix_at(block, at.point)]
-    assert rank_of(rows) == result.fields["rank"]
-    if not plant.A.has(t) and not plant.C.has(t):
-        assert rows == observability_rows(at.A, at.C)
-
-
 def polynomial_holds(result: Any, at: Setting) -> None:
     chi, variable = characteristic(at.A), result.plant.variable
     assert coefficients_at(result.fields["polynomial"], variable, at.point) == chi
@@ -329,12 +313,18 @@ def reduced_order_holds(result: Any, at: Setting, prefix: str = "") -> None:
     assert characteristic(F) == at.wanted[prefix]
 
 
-def held_elsewhere(_result: Any, _at: Setting) -> None:
-    """Leave functions of time to `test_time_functions`, which holds them against numeric integration."""
-
-
 def conditions_hold(conditions: Iterable[Condition], point: Point) -> bool:
-    return all((value_at(c.expression, point) == 0) == (c.operator == "==") for c in conditions)
+    return all(_IS[c.operator](value_at(c.expression, point)) for c in conditions)
+
+
+_IS: dict[str, Callable[[Fraction], bool]] = {
+    "==": lambda value: value == 0,
+    "!=": lambda value: value != 0,
+    ">": lambda value: value > 0,
+    "<": lambda value: value < 0,
+    ">=": lambda value: value >= 0,
+    "<=": lambda value: value <= 0,
+}
 
 
 def applicable(result: Result, point: Point) -> Iterator[Result]:
@@ -359,10 +349,6 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "characteristic_polynomial": polynomial_holds,
     "transfer_function": transfer_holds,
     "reduced_order_observer": reduced_order_holds,
-    "time_varying_observability": stack_holds,
-    "matrix_exponential": held_elsewhere,
-    "gramian": held_elsewhere,
-    "initial_state": held_elsewhere,
-    "initial_state_covariance": held_elsewhere,
+    **FUNCTIONS_OF_TIME,
     **MODES,
 }

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import HealthCheck, settings
 
+from symobs.phrases import PHRASES
+from tests.steps import OWN_PHRASES
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
@@ -41,6 +44,13 @@ def require_tool(name: str) -> str:
 def require_tool_fixture() -> Callable[[str], str]:
     """Offer `require_tool` to tests without an import."""
     return require_tool
+
+
+@pytest.fixture
+def own_phrases(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Put in the phrases that steps written by hand use."""
+    for key, phrase in OWN_PHRASES.items():
+        monkeypatch.setitem(PHRASES, key, phrase)
 
 
 # With SYMOBS_REQUIRE_TOOLS=1 every skip is a failure, whoever asked for it: nothing is left out in silence.

@@ -6,6 +6,7 @@ place.  Nothing here knows what is true; `tests/truth.py` does.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -87,6 +88,10 @@ def changes(item: Any) -> Iterator[Change]:
         for index, part in enumerate(item):
             for change in changes(part):
                 yield change.within(f"[{index}]", (*item[:index], change.value, *item[index + 1 :]))
+    elif isinstance(item, Mapping):
+        for key, part in item.items():
+            for change in changes(part):
+                yield change.within(f"[{key}]", {**item, key: change.value})
     elif isinstance(item, Relation):
         yield from _of_relation(item)
     elif isinstance(item, Root):

@@ -2,7 +2,9 @@
 
 Nothing of `symobs.exact`, `symobs.formula.evaluate`, `certificate` or `derivation.check` takes part: a scalar is read by
 its terms, a matrix is a list of lists, a determinant is an elimination.  A polynomial identity of degree d that is false
-holds at a point drawn from 10⁹ values with probability at most d / 10⁹; three points are drawn.
+holds at a point drawn from 10⁹ values with probability at most d / 10⁹; three points are drawn.  Functions of time are
+numbers of 60 digits there, derivatives are those of Taylor coefficients (`series`), and a primitive has its integrand as
+derivative at a random instant.
 """
 
 from __future__ import annotations
@@ -14,12 +16,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
+from symobs.exact.functions import known
 from symobs.formula import (
     Apply,
+    At,
     Block,
     Derivative,
     Exactly,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -34,6 +39,7 @@ from symobs.formula import (
     Together,
     Transpose,
 )
+from tests import series
 from tests.plain import multiply, transposed
 
 if TYPE_CHECKING:
@@ -43,7 +49,7 @@ if TYPE_CHECKING:
     from symobs.formula import Environment, Fact, Formula
     from tests.plain import Rows
 
-LARGEST = 10**9
+LARGEST = 2**30
 
 
 def identity(order: int) -> Rows:
@@ -201,12 +207,15 @@ class World:
 
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
+        function = known(name)
+        if function is not None:
+            return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)
             return found if isinstance(found, Fraction) else found[0][0]
         draw = random.Random(f"{self.seed} {name}")  # noqa: S311 - repeatable by design
-        size = Fraction(draw.randint(1, LARGEST), draw.randint(1, 9))
+        size = Fraction(draw.randint(LARGEST // 8, LARGEST), draw.choice((1, 2, 3)) * LARGEST // 4)
         sign = self.signs.get(name, "real")
         down = sign in {"negative", "nonpositive"} or (sign in {"real", "nonzero"} and draw.random() < 0.5)
         return -size if down else size
@@ -272,14 +281,27 @@ class World:
             case Power(base, exponent):
                 return power(self.value(base), exponent)
             case Transpose(operand):
-                return transposed(self.value(operand))
+                value = self.value(operand)
+                return value if is_number(value) else transposed(value)
             case Apply(function, argument):
                 return self.apply(function, self.value(argument))
             case Block(rows):
                 return stacked([[self.value(entry) for entry in row] for row in rows])
-            case Derivative(operand):
-                return self.rate(self.value(operand))
+            case Derivative(operand, name):
+                return self.derivative(operand, name)
+            case At(operand, name, instant):
+                return self.at(name, self.scalar(instant)).value(operand)
+            case Integral(integrand, primitive, name, lower, upper):
+                there = self.at(name, World(self.seed, "", {}).number(f"instant {name}"))
+                if zeroed(plus(there.derivative(primitive, name), times(Fraction(-1), there.value(integrand)))) != 0:
+                    raise ArithmeticError(primitive)
+                first, last = (self.at(name, self.scalar(end)).value(primitive) for end in (lower, upper))
+                return plus(last, times(Fraction(-1), first))
         raise TypeError(item)
+
+    def at(self, name: str, instant: Fraction) -> World:
+        """Return the world where a generator is a given number."""
+        return replace(self, meanings={**self.meanings, name: instant})
 
     def apply(self, function: str, table: Rows) -> Any:
         if function.endswith("_at"):
@@ -290,6 +312,17 @@ class World:
         if function == "rank":
             return Fraction(eliminate(table, len(table[0]))[0])
         return {"det": determinant, "adj": adjugate}[function](table)
+
+    def derivative(self, operand: Formula, name: str) -> Any:
+        """Return the derivative of a value by a generator, or of a signal by the time."""
+        now = self.number(name)
+        parts = now.parts if isinstance(now, series.Series) else [now]
+        value = self.at(name, series.Series.moving(parts[0], len(parts) + 1)).value(operand)
+        if not isinstance(value, dict):
+            return series.rate(value)
+        slopes = {signal: series.rate(table) for signal, table in value.items()}
+        whole = self.rate(self.value(operand))
+        return whole if zeroed(slopes) == 0 else plus(whole, slopes)
 
     def rate(self, signal: Mapping[str, Rows]) -> Any:
         parts = [times(table, self.value(self.rates[name])) for name, table in signal.items()]
@@ -341,8 +374,10 @@ class World:
                         stratum.meanings[EIGENVALUE] = self.eigenvalue(when)
                     stratum.meanings |= dict(substitution)
                     for relation in when.relations if isinstance(when, Together) else (when,):
-                        yield "condition", single(self.difference(relation))
-                        if relation.operators == ("=",):
+                        (operator,) = relation.operators
+                        kind = f"condition {operator}" if operator in {"<", ">"} else "condition"
+                        yield kind, single(self.difference(relation))
+                        if operator == "=":
                             yield "zero", single(stratum.difference(relation))
                     yield from stratum.read(inside)
             sentence = getattr(step, "sentence", None)
@@ -398,7 +433,7 @@ class World:
                     yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
                 case Exactly(about, where):
                     yield f"property {about.name}", single(self.value(about.subject))
-                    yield "region", {(relation.operators, single(self.difference(relation))) for relation in where}
+                    yield "region", [(relation.operators, single(self.difference(relation))) for relation in where]
                 case str():
                     yield "word", fact
                 case _:

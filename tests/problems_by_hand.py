@@ -225,9 +225,6 @@ cart_pole = {
     "signs": dict.fromkeys(["M", "m", "l", "g", "b", *(f"{x}{k}" for x in "pq" for k in range(1, 5))], "positive"),
 }
 
-#: Worked examples in which the time t stands in the matrices: `test_time_varying` reads their pages, with SymPy's calculus.
-VARYING = {"time_varying_integrator", "frozen_time_misleads"}
-
 PROBLEMS = {
     "servo_observer": Hand(**servo, observer=(s + 10) ** 2),
     "output_feedback_servo": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2),
@@ -316,20 +313,6 @@ PROBLEMS = {
 
 #: Examples with several outputs or inputs, whose gains are not unique: `test_gain_families` holds them to the claim itself.
 FAMILIES = {"triple_pole_two_outputs", "two_masses_zeros", "hidden_state_two_outputs", "two_inputs_feedback"}
-
-#: Examples in functions of time, which `test_time_functions` holds against numeric integration.
-IN_TIME = {
-    "servo_gramian",
-    "third_order_gramian",
-    "hidden_state_gramian",
-    "pendulum_gramian",
-    "pendulum_overdamped_gramian",
-    "tanks",
-    "tanks_initial_state",
-    "servo_initial_state",
-    "double_integrator_noise",
-    "lag_noise",
-}
 
 
 def points(name: str, count: int) -> Iterator[dict[Any, Any]]:

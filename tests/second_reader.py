@@ -1,27 +1,34 @@
 """A second opinion on derivations: plain SymPy matrices, and of symobs nothing but the shape of its formula tree.
 
 `Reader` walks the steps of a derivation, gives every letter a value of its own making, and compares all members of
-every line.  It works with symbols, or at one rational point where the expressions are too large for SymPy.
+every line.  It works with symbols, or at one rational point where the expressions are too large for SymPy.  Functions of
+time are SymPy's, derivatives and values at an instant are taken by SymPy, integrals by quadrature: the witness of an
+integral is not looked at.  What has functions in it is compared with 50 digits at points the signs allow.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import reduce
+from itertools import islice
 from math import prod
 from operator import mul
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import mpmath
 import sympy
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import Matrix
+from symobs.exact.functions import known as function_named
 from symobs.formula import (
     Apply,
+    At,
     Block,
     Derivative,
     Exactly,
     Identity,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -74,7 +81,7 @@ def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
 
     def power(name: str, exponent: int) -> Any:
         if (name, exponent) not in powers:
-            powers[name, exponent] = names.get(name, sympy.Symbol(name)) ** exponent
+            powers[name, exponent] = sympy_generator(name, names) ** exponent
         return powers[name, exponent]
 
     def polynomial(part: Scalar) -> Any:
@@ -83,6 +90,14 @@ def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
         )
 
     return polynomial(value.numerator) / polynomial(value.denominator)
+
+
+def sympy_generator(name: str, names: Mapping[str, Any]) -> Any:
+    """Return what a generator means: a function of time by its name, any other what `names` says, else a symbol."""
+    function = function_named(name)
+    if function is None:
+        return names.get(name, sympy.Symbol(name))
+    return getattr(sympy, function.kind)(sympy_scalar(function.argument, names))
 
 
 def sympy_root(root: Root, names: Mapping[str, Any]) -> Any:
@@ -105,6 +120,7 @@ class Reader:
 
     known     what letters must be worth, found without symobs; φ at a matrix is known as `phi_at`
     names     generators replaced on sight: nothing, or the coordinates of a rational point
+    known_at  what letters must be worth where some names are replaced, if a case may introduce them anew
     samples   parameter points allowed by the declared signs, for what no equation states
     """
 
@@ -114,11 +130,14 @@ class Reader:
         known: Mapping[str, Value],
         samples: Callable[[], Iterable[Mapping[str, Any]]],
         names: Mapping[str, Any] | None = None,
+        known_at: Callable[[Mapping[str, Any]], Mapping[str, Value]] | None = None,
     ) -> None:
         self.derivation = derivation
         self.known = known
+        self.known_at = known_at
         self._samples = samples
         self.assumed: list[Any] = []
+        self.narrowed: list[tuple[Any, str]] = []
         self.symbol = sympy.Symbol(derivation.variable)
         self.names: dict[str, Any] = dict(names or {})
         self.letters: dict[str, Value] = {}
@@ -134,7 +153,12 @@ class Reader:
 
     def samples(self) -> Iterator[Mapping[str, Any]]:
         """Yield the sample points where everything assumed so far holds."""
-        return (point for point in self._samples() if all(value.subs(point) != 0 for value in self.assumed))
+        needed = [*((value, "!=") for value in self.assumed), *self.narrowed]
+        return (
+            point
+            for point in self._samples()
+            if all(compare(value.subs(point), operator) for value, operator in needed)
+        )
 
     # -- steps ---------------------------------------------------------------------------------------------------------
 
@@ -182,7 +206,11 @@ class Reader:
         if not substitution and isinstance(when, Relation) and when.operators == ("=",):
             self.at_eigenvalues(when, steps)
             return
-        outside, letters = self.names, self.letters
+        if not substitution and isinstance(when, Relation):
+            self.where(when, steps)
+            return
+        outside, letters, known = self.names, self.letters, self.known
+        self.known = known if self.known_at is None else self.known_at({**outside, **substitution})
         replaced = {sympy.Symbol(name): value for name, value in substitution.items()}
         self.names = {**outside, **substitution}
         self.letters = {}
@@ -198,7 +226,18 @@ class Reader:
                 self.fact(relation)
         for step in steps:
             self.step(step)
-        self.names, self.letters = outside, letters
+        self.names, self.letters, self.known = outside, letters, known
+
+    def where(self, when: Relation, steps: tuple[Step, ...]) -> None:
+        """Read on at the sample points where an inequality or inequation holds."""
+        left, right = (scalar(self.value(member)) for member in when.members)
+        outside = self.letters, self.narrowed
+        self.letters, self.narrowed = dict(self.letters), [*self.narrowed, (left - right, when.operators[0])]
+        assert any(True for _ in self.samples()), when
+        self.tally.compared += 1
+        for step in steps:
+            self.step(step)
+        self.letters, self.narrowed = outside
 
     def at_eigenvalues(self, when: Relation, steps: tuple[Step, ...]) -> None:
         """Read on at every root of the equation in λ."""
@@ -235,7 +274,7 @@ class Reader:
                 if isinstance(values[0], dict):
                     self.signals[name] = rest[0]
                 else:
-                    self.letters[name] = values[0]
+                    self.letters[name] = values[-1] if values[0].has(sympy.Integral) else values[0]
             case _:
                 raise AssertionError(relation)
 
@@ -335,7 +374,21 @@ class Reader:
         if shape(left) != shape(right):
             left, right = scalar(left), scalar(right)
         difference = left - right
-        return all(map(is_zero, difference)) if shape(difference) else is_zero(difference)
+        return all(map(self.is_zero, difference)) if shape(difference) else self.is_zero(difference)
+
+    def is_zero(self, expression: Any) -> bool:
+        """Whether an expression is 0: exactly, or with functions in it by 50 digits at points the signs allow."""
+        if not expression.has(sympy.Function, sympy.Integral, sympy.sqrt(sympy.Wild("w"))):
+            return is_zero(expression)
+        names = sorted(expression.free_symbols, key=str)
+        with mpmath.workdps(50):
+            return all(abs(numeric(expression, at)) < mpmath.mpf(10) ** -25 for at in self.numbers(names))
+
+    def numbers(self, names: list[Any]) -> Iterator[dict[Any, Any]]:
+        """Yield three points: those of the samples, anything for a time."""
+        for index, point in enumerate(islice(self.samples(), 3)):
+            drawn = (point.get(name, sympy.Rational(sum(map(ord, str(name))) + index, 97)) for name in names)
+            yield {name: mpmath.mpf(number.p) / number.q for name, number in zip(names, drawn, strict=True)}
 
     # -- formulas ------------------------------------------------------------------------------------------------------
 
@@ -368,8 +421,14 @@ class Reader:
                 return self.function(function, self.value(argument))
             case Block(rows):
                 return stacked([[self.value(entry) for entry in row] for row in rows])
-            case Derivative(operand):
-                return self.rate(self.value(operand))
+            case Derivative(operand, name):
+                value = self.value(operand)
+                return self.rate(value) if isinstance(value, dict) else value.diff(sympy.Symbol(name))
+            case At(operand, name, instant):
+                return self.value(operand).subs(sympy.Symbol(name), sympy_scalar(instant, self.names))
+            case Integral(integrand, _, name, lower, upper):
+                limits = (sympy.Symbol(name), *(sympy_scalar(end, self.names) for end in (lower, upper)))
+                return integral(self.value(integrand), limits)
         raise AssertionError(formula)
 
     def literal(self, value: Scalar | Matrix) -> Value:
@@ -390,7 +449,39 @@ class Reader:
         return polynomial_at(polynomial, self.symbol, value)
 
     def rate(self, signal: dict[str, Value]) -> Value:
-        return reduce(plus, (times(part, self.value(self.rates[name])) for name, part in signal.items()))
+        slopes = {name: part.diff(sympy.Symbol("t")) for name, part in signal.items()}
+        whole = reduce(plus, (times(part, self.value(self.rates[name])) for name, part in signal.items()))
+        return whole if all(slope.is_zero_matrix for slope in slopes.values()) else plus(whole, slopes)
+
+
+def numeric(expression: Any, point: Mapping[Any, Any]) -> Any:
+    """Return the number an expression is at a point, integrals by quadrature."""
+    if expression.is_Symbol:
+        return point[expression]
+    if expression.is_Rational:
+        return mpmath.mpf(int(expression.p)) / int(expression.q)
+    if isinstance(expression, sympy.Integral):
+        ((name, lower, upper),) = expression.limits
+        ends = [numeric(end, point) for end in (lower, upper)]
+        return mpmath.quad(lambda x: numeric(expression.function, {**point, name: x}), ends)
+    if expression in CONSTANTS:
+        return CONSTANTS[expression]
+    parts = [numeric(part, point) for part in expression.args]
+    kind = expression.func.__name__
+    if kind in {"Add", "Mul"}:
+        return (mpmath.fsum if kind == "Add" else mpmath.fprod)(parts)
+    return getattr(mpmath, {"Pow": "power"}.get(kind, kind))(*parts)
+
+
+CONSTANTS = {sympy.I: mpmath.j, sympy.E: mpmath.e}
+
+
+def integral(value: Value, limits: tuple[Any, ...]) -> Value:
+    """Return an integral, exactly for polynomials, else as one that quadrature evaluates."""
+    if shape(value):
+        return value.applyfunc(lambda entry: integral(entry, limits))
+    value = sympy.expand(value)
+    return sympy.integrate(value, limits) if value.is_polynomial(limits[0]) else sympy.Integral(value, limits)
 
 
 def shape(value: Value) -> tuple[int, int] | None:

@@ -44,14 +44,12 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.method import Result
-from symobs.phrases import PHRASES
 from tests.steps import (
     A_IS,
     C_IS,
     CHI,
     COMPANION,
     ESTIMATE,
-    OWN_PHRASES,
     START,
     A,
     B,
@@ -80,10 +78,7 @@ if TYPE_CHECKING:
     from symobs.certificate import Claim
 
 
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in OWN_PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
+pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 # -- what is introduced ------------------------------------------------------------------------------------------------

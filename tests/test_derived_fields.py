@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from itertools import islice
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +12,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.exact import Factored, Matrix, Root, Scalar
+from symobs.exact.functions import symbols_in
 from symobs.expression import parse_scalar
+from symobs.formula import Literal
 from symobs.problem import read
+from tests.claims import Setting, conditions_hold
+from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import parts_of
 from tests.plain import (
     eliminated,
@@ -27,8 +32,8 @@ from tests.plain import (
     transposed,
     value_at,
 )
-from tests.plain_fractions import determinant, identity, inverse, times
-from tests.problems_by_hand import IN_TIME
+from tests.plain_fractions import World, determinant, identity, inverse, times
+from tests.series import CONTEXT, Series, digits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -39,13 +44,14 @@ if TYPE_CHECKING:
     from tests.plain import Point, Polynomial, Rows
 
 FOLDER = Path(__file__).parents[1] / "worked_examples"
-EXAMPLES = sorted(path for path in FOLDER.glob("*.toml") if path.stem not in IN_TIME)
-PARTS: list[tuple[str, Result]] = [
+EVERY: list[tuple[str, Result]] = [
     (f"{path.stem}: {where}", part)
-    for path in EXAMPLES
+    for path in sorted(FOLDER.glob("*.toml"))
     for result in read(path.read_text(encoding="utf-8")).solve()
     for where, part in parts_of(result)
 ]
+PARTS = [(name, part) for name, part in EVERY if not part.in_time]
+MOVING = [pytest.param(part, id=name) for name, part in EVERY if part.in_time]
 MODES = {"observability": "unobservable_modes", "controllability": "uncontrollable_modes"}
 #: Points where a region is compared with the roots, and those where everything else is.
 MANY, FEW = 400, 3
@@ -245,6 +251,52 @@ def test_factors_multiply_to_the_polynomial(part: Result) -> None:
     for point in points(part, FEW):
         product = prod(value_at(factor, point) ** power for factor, power in part.fields["factors"])
         assert product == value_at(part.fields["polynomial"], point)
+
+
+# -- functions of time -------------------------------------------------------------------------------------------------
+
+
+def points_in_time(part: Result) -> Iterator[Point]:
+    """Yield small values of the parameters, the times and horizons, where the conditions hold and roots are real."""
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    names = {"t", "T", *part.plant.field.names}.union(*map(symbols_in, values)) - {part.plant.variable}
+    signs = {**part.plant.symbols.signs, "T": "positive"}
+    for seed in range(40 * FEW):
+        draw = seeded((seed, part.task))
+        point = {name: random_fraction(draw, signs.get(name, "real")) / 16 for name in sorted(names)}
+        taken = ((value_at(delta, point) > 0) == (sign == "positive") for delta, sign in part.answer["taken"].items())
+        if all(taken) and conditions_hold(part.holds_where, point):
+            yield point
+
+
+@pytest.mark.parametrize("part", MOVING)
+def test_fields_in_time_are_what_numbers_of_many_digits_give(part: Result) -> None:
+    found = list(islice(points_in_time(part), FEW))
+    assert len(found) == FEW
+    for point in found:
+        FUNCTIONS_OF_TIME[part.task](part, Setting.of(part.plant, {}, point))
+
+
+@pytest.mark.parametrize("part", [p for p in MOVING if "covariance" in str(p.id)])
+def test_a_variance_is_least_at_its_best_horizon(part: Any) -> None:
+    """T**4 == 140*r/q: the derivative by T vanishes there, and is negative before and positive behind."""
+    covariance, point = part.fields["covariance"], next(points_in_time(part))
+    for index, text in enumerate(part.fields["best_horizon"]):
+        if text is None:
+            continue
+        power, right = re.fullmatch(r"T\*\*(\d+) == (.*)", text).groups()  # type: ignore[union-attr]
+        best = CONTEXT.root(digits(value_at(parse_scalar(right), point)), int(power))
+
+        def slope(end: Any, index: int = index) -> Any:
+            world = World(0, "s", {}, meanings={**point, "T": Series.make([end])})
+            return world.derivative(Literal(covariance[index, index]), "T")
+
+        assert slope(best) == 0
+        assert slope(best * 9 / 10).parts[0] < 0 < slope(best * 10 / 9).parts[0]
+
+
+def test_a_best_horizon_is_among_the_examples() -> None:
+    assert any(text for p in MOVING for text in p.values[0].fields.get("best_horizon", ()))  # type: ignore[union-attr]
 
 
 # -- stability ---------------------------------------------------------------------------------------------------------

@@ -42,7 +42,6 @@ from tests.steps import (
     C_IS,
     CHI,
     COMPANION,
-    OWN_PHRASES,
     START,
     A,
     C,
@@ -63,10 +62,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in OWN_PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
+pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 # -- facts in sentences ------------------------------------------------------------------------------------------------

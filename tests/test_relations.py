@@ -109,5 +109,13 @@ def test_an_eigenvalue_may_be_complex() -> None:
     eigenvalue = Scalar.symbol(EIGENVALUE)
     assert not never_together_zero([a], (eigenvalue**2 + 1,), {})
     assert not holds(said(a, "!=", Scalar.of(0)), eigenvalue**2 + 1)
+    assert not holds(said(Scalar.of(1), "=", Scalar.of(2)), eigenvalue**2 + 1)
+    assert not holds(said(a, "!=", a), eigenvalue**2 + 1)
+    assert not holds(
+        Relation((Apply("rank", Literal(Matrix.of([[a]]))), Literal(Scalar.of(1))), ("=",)), a**2 + 1 - b
+    ), "b - 1 = a**2 may be 0"
+    rank = Apply("rank", Literal(Matrix.of([[eigenvalue, -1], [1, eigenvalue]])))  # singular at both roots ±i
+    assert holds(Relation((rank, Literal(Scalar.of(1))), ("=",)), eigenvalue**2 + 1)
+    assert not holds(Relation((rank, Literal(Scalar.of(2))), ("=",)), eigenvalue**2 + 1)
     assert holds(said(eigenvalue, "!=", Scalar.of(1)), eigenvalue**2 + 1)
     assert never_together_zero([a], (a**2 + 1,), {}), "a parameter is real"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
@@ -15,12 +16,13 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs import problem
-from symobs.errors import CertificateRejected, InputError, ShapeMismatch
-from symobs.exact import Scalar
+from symobs.derivation import Case, Section
+from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
+from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import derivative, function, identities, square_root, substitute, tidy
 from symobs.exact.quasi import Key, Quasi, quasi_of
 from symobs.face import to_sympy
-from tests.problems_by_hand import IN_TIME
+from tests.problems_in_time import PROBLEMS_IN_TIME
 
 FOLDER = Path(__file__).parents[1] / "worked_examples"
 POINT = {"T": "7/5", "omega": "3/2", "b": "4/5", "x10": "3", "x20": "-2", "q": "5/7", "r": "2/3", "a": "6/5"}
@@ -60,7 +62,7 @@ def gramian_of(A: Any, C: Any, end: Any) -> Any:
     return integral(lambda time: (C * expm(A, time)).T * (C * expm(A, time)), end, A.rows, A.rows)
 
 
-@pytest.mark.parametrize("name", sorted(IN_TIME))
+@pytest.mark.parametrize("name", sorted(PROBLEMS_IN_TIME))
 def test_worked_examples_against_quadrature(name: str) -> None:
     found = problem.read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
     for result in found.solve():
@@ -157,13 +159,22 @@ def test_gramians_of_random_pairs(rows: list[list[int]], row: list[int]) -> None
     assert W == W.T
     seen = sympy.Matrix([row]) * symobs.matrix_exponential(symobs.StateSpace(rows)).matrix
     rate = W.diff(T) - (seen.T * seen).subs(t, T)
-    assert all(abs(sympy.N(e.subs(T, sympy.Rational(5, 7)), 30)) < 1e-20 for e in rate)
+    A, C = sympy.Matrix(rows), sympy.Matrix([row])
+    lyapunov = A.T * W + W * A + C.T * C - W.diff(T)
+    assert all(vanishes(e) for e in (*rate, *lyapunov))
     assert W.subs(T, 0).applyfunc(sympy.simplify) == sympy.zeros(2, 2)
     O = sympy.Matrix([row, list(sympy.Matrix([row]) * sympy.Matrix(rows))])
     assert len(result.kernel) == 2 - O.rank()
     for vector in result.kernel:
         assert (O * sympy.Matrix(vector)).is_zero_matrix
+        assert all(map(vanishes, W * sympy.Matrix(vector)))
+    assert vanishes(W.det()) == (O.rank() < 2), "nothing else is in the kernel of W"
+    assert W.applyfunc(lambda e: sympy.Integer(not vanishes(e))).is_zero_matrix == (O.rank() == 0)
     assert result.finite_sum == O.T * O
+
+
+def vanishes(value: Any) -> bool:
+    return bool(abs(sympy.N(value.subs(T, sympy.Rational(5, 7)), 40)) < 1e-20)
 
 
 # -- branches ----------------------------------------------------------------------------------------------------------
@@ -208,6 +219,70 @@ def test_declared_signs_decide_the_branch() -> None:
         symobs.StateSpace("[0 1; -omega^2 -b]", symbols={"omega": "positive", "b": "positive"})
     )
     assert (down.verdict, len(down.case_tree)) == ("conditional", 2)
+
+
+def test_a_discriminant_that_cannot_be_negative_is_not_called_negative() -> None:
+    for text, symbols in (("b", {"b": "nonnegative"}), ("b^2 + c^2", None)):
+        result = symobs.matrix_exponential(symobs.StateSpace(f"[0 1; {text} 0]", symbols=symbols))
+        (condition,) = result.holds_where
+        assert (str(condition.expression), condition.operator) == (text.replace("^", "**"), ">")
+        assert result.matrix.has(sympy.cosh)
+        assert [case.when[0].operator for case in result.case_tree] == ["=="]
+        assert result.derivation.check() is not None
+
+
+def test_roots_are_of_what_is_known_not_to_be_negative() -> None:
+    """The branch of one sign is not the answer, nor its page the page, of the other."""
+    result = symobs.matrix_exponential(symobs.StateSpace("[0 1; a 0]"))
+    (delta,) = result.answer["chosen"]
+    assert result.answer["chosen"] == {delta: "negative"}
+    for chosen in ({delta: "positive"}, {}):
+        with pytest.raises(CertificateRejected):
+            result.with_answer("chosen", chosen)
+    under, over = (case for case in _cases(result.derivation.steps) if case.when.operators != ("=",))
+    for case, operator in ((under, ">"), (over, "<")):
+        swapped = replace(case, when=replace(case.when, operators=(operator,)))
+        with pytest.raises(DerivationRejected):
+            replace(result.derivation, steps=_with(result.derivation.steps, case, swapped)).check()
+
+
+def _cases(steps: Any) -> list[Any]:
+    found = [step for step in steps if isinstance(step, Case)]
+    return found + [case for step in steps if isinstance(step, Section) for case in _cases(step.steps)]
+
+
+def _with(steps: Any, old: Any, new: Any) -> Any:
+    return tuple(
+        replace(step, steps=_with(step.steps, old, new)) if isinstance(step, Section) else new if step is old else step
+        for step in steps
+    )
+
+
+def test_every_case_names_all_the_signs_it_stands_on() -> None:
+    result = symobs.matrix_exponential(symobs.StateSpace("[0 1 0 0; a 0 0 0; 0 0 0 1; 0 0 b 0]"))
+    said = {tuple(map(str, case.when)) for case in result.case_tree}
+    assert said == {("a > 0",), ("a < 0", "b > 0"), ("a == 0",), ("b == 0",)}
+    point = {"t": "1/2", "a": "-2/3", "b": "3/5"}
+    (case,) = (case for case in result.case_tree if len(case.when) == 2)
+    A = mpmath.matrix([[0, 1, 0, 0], [mpmath.mpf(-2) / 3, 0, 0, 0], [0, 0, 0, 1], [0, 0, mpmath.mpf(3) / 5, 0]])
+    assert close(numeric(case.result.fields["matrix"], point), expm(A, mpmath.mpf(1) / 2))
+    assert result.derivation.check() is not None
+
+
+def test_what_stands_on_the_rank_or_on_decay_is_not_said_without_them() -> None:
+    grows = symobs.gramian(symobs.StateSpace("[1]", C="[1]"), horizon="inf")
+    assert (grows.verdict, grows.matrix) == ("no", None)
+    solved = {"matrix": Matrix.of([[Scalar.rational(-1, 2)]]), "determinant": Scalar.rational(-1, 2)}
+    with pytest.raises(CertificateRejected, match="decay"):
+        replace(grows, answer={**grows.answer, **solved})
+    decays = symobs.gramian(symobs.StateSpace("[-1]", C="[1]"), horizon="inf")
+    for name in ("matrix", "determinant"):
+        with pytest.raises(CertificateRejected, match="missing"):
+            decays.with_answer(name, None)
+    finite = symobs.gramian(symobs.StateSpace("[-1 0; 0 1]", C="[0 1]"), horizon="T")
+    other = {**finite.answer["rank"], "matrix": Matrix.identity(2), "rank": 2}
+    with pytest.raises(CertificateRejected):
+        finite.with_answer("rank", other)
 
 
 def test_equal_rates_are_a_case() -> None:

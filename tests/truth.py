@@ -37,9 +37,7 @@ def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scal
 
 def is_true(derivation: Derivation) -> bool:
     """Tell whether every equation of a derivation holds at random points."""
-    return all(
-        content == 0 for reading in readings(derivation) for kind, content in reading if kind in {"=", "zero", "shown"}
-    )
+    return all(content == 0 for reading in readings(derivation) for kind, content in reading if kind in {"=", "zero"})
 
 
 def still_true(changed: Derivation, original: Derivation) -> bool:
@@ -78,21 +76,26 @@ def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str])
         return True
     if kind in _HOLDS:
         return _compares(kind, new, signs)
-    if kind == "condition" or kind.startswith("property"):
-        return _proportional(new, old)
+    if kind.startswith(("condition", "property")):
+        ratio = _ratio(new, old)
+        return ratio is not None and (kind not in {"condition <", "condition >"} or ratio > 0)
     return False
 
 
-def _proportional(new: list[Any], old: list[Any]) -> bool:
+def _ratio(new: list[Any], old: list[Any]) -> Any:
+    """Return by what the first are multiples of the second, the same at all points; None where they are not."""
     values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
-    return all(a != 0 and b != 0 for a, b in values) and len({a / b for a, b in values}) == 1
+    if any(a == 0 or b == 0 for a, b in values):
+        return None
+    ratios = [a / b for a, b in values]
+    return None if any(ratio != ratios[0] for ratio in ratios) else ratios[0]
 
 
 def _compares(operator: str, compared: list[Compared], signs: Mapping[str, str]) -> bool:
     """Prove an inequality: between constants, or from declared signs where no letter stands in it."""
-    differences = {single(content.difference) for content in compared}
-    if len(differences) == 1:
-        return bool(_HOLDS[operator](sympy.Rational(*differences.pop().as_integer_ratio())))
+    difference, *others = (single(content.difference) for content in compared)
+    if all(other == difference for other in others):
+        return bool(_HOLDS[operator](sympy.Rational(*difference.as_integer_ratio())))
     try:
         left, right = (_symbolic(member, signs) for member in compared[0].members)
     except KeyError:
@@ -136,7 +139,7 @@ def _terms(polynomial: Scalar, signs: Mapping[str, str]) -> Any:
 def _has_property(kind: str, place: int, changed: Derivation, original: Derivation, new: list[Any]) -> bool:
     """Decide a property anew: stability is kept when the variable is scaled, polynomials are told by interpolation."""
     if kind in {"property stable", "property unstable", "property strictly_proper"}:
-        return _proportional(new, [reading[place][1] for reading in readings(original, scale=2)])
+        return _ratio(new, [reading[place][1] for reading in readings(original, scale=2)]) is not None
     if kind not in {"property polynomial", "property not_polynomial"}:
         return False
     values = [(Fraction(k), readings(changed, [0], k)[0][place][1]) for k in range(1, _FITTED + _TESTED + 1)]

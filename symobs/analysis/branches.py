@@ -8,22 +8,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
-from symobs.conditions import Condition, sign_of, vanishing_factors
+from symobs.conditions import Condition, opposite, sign_of, vanishing_factors
 from symobs.derivation import Case as CaseStep
+from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.exponential import OpenBranch
-from symobs.exact.functions import identities, known, substitute, symbols_in
+from symobs.exact.functions import all_roots, identities, known, substitute, symbols_in
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
 from symobs.method import Case, Result
 from symobs.page import Page, relation, sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symobs.derivation import Step
     from symobs.system import StateSpace
@@ -31,12 +32,16 @@ if TYPE_CHECKING:
 #: δ → its sign: `taken` by the caller, or chosen because the signs leave it open.
 Signs = dict[Scalar, str]
 _MOST_BRANCHES = 4
+#: What is said of a mode whose discriminant is negative or positive.
+_BRANCHES = {"<": "branch_under", ">": "branch_over"}
 
 
 class Branched(Result):
     """A result whose answer holds `taken` and `chosen`, the signs of discriminants it stands on."""
 
     in_time: ClassVar[bool] = True
+    #: The answer that every result has, unless it is undecided or negative.
+    main: ClassVar[str] = "matrix"
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
@@ -50,6 +55,16 @@ class Branched(Result):
     def tell(self, page: Page) -> None:
         """Write the steps of this branch."""
         raise NotImplementedError
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that there is an answer or a question that is open, and that every root in the answer is real."""
+        if self.answer.get(self.main) is None and self.answer.get("question") is None and self.verdict != "no":
+            reject(f"the {self.main} of {self.task} is missing")
+        signs = {**self.answer["taken"], **self.answer["chosen"]}
+        above = tuple(delta if sign == "positive" else -delta for delta, sign in signs.items())
+        e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, above=above)
+        for root in sorted(all_roots(*self.matrices), key=lambda root: root.name):
+            yield Claim(relation(root.argument, ">=", 0), e, f"{root.name} is real")
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
@@ -72,7 +87,7 @@ class Branched(Result):
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, the signs that were chosen, and the denominators of the answer."""
         listed = {condition.expression for condition in self.domain}
-        chosen = [Condition("claim", _plain(delta), "<") for delta in self.answer["chosen"]]
+        chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         beyond = {f for delta in self.answer["chosen"] for f, _ in delta.numerator.factors()[1]}
         beyond |= {f for delta in self.answer["taken"] for f, _ in delta.numerator.factors()[1]}
         rest = [Condition("claim", f) for f in self.denominators if f not in listed and f not in beyond]
@@ -86,13 +101,14 @@ class Branched(Result):
         signs = self.plant.symbols.signs
         zeros: list[Scalar] = [*self.further_zeros]
         zeros += [c.expression for c in self.holds_where if c.kind == "claim" and c.operator == "!="]
-        for delta in self.answer["chosen"]:
-            if sign_of(delta, signs) not in {"nonpositive", "negative"}:
-                above = {**taken, delta: "positive"}
-                when = (Condition("claim", _plain(delta), ">"),)
-                found.append(Case(when, {}, self.again(self.plant, above)))
+        before: tuple[Condition, ...] = ()
+        for delta, sign in self.answer["chosen"].items():
+            if sign_of(delta, signs) not in {"nonpositive", "nonnegative"}:
+                other = opposite(sign)
+                when = (*before, _stated(delta, other))
+                found.append(Case(when, {}, self.again(self.plant, {**taken, delta: other})))
             zeros.append(delta)
-            taken[delta] = "negative"
+            taken[delta], before = sign, (*before, _stated(delta, sign))
         zeros = list(dict.fromkeys(zeros))
         return (*found, *strata(self.plant, zeros, self._on_stratum))
 
@@ -117,16 +133,18 @@ class Branched(Result):
 
     def tell_branches(self, page: Page) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
-        if not self.case_tree:
+        chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
+        if not self.case_tree and not chosen:
             self.tell(page)
             return
         inner = _inside(page, self.plant, {})
         self.tell(inner)
-        chosen = [_plain(delta) for delta in self.answer["chosen"]]
         zeros = dict.fromkeys(case.when[0].expression for case in self.case_tree if case.when[0].operator == "==")
-        say = sentence("branch_under", {}) if chosen else None
-        when = relation(chosen[0], "<", 0) if chosen else relation(product_of(zeros), "!=", 0)
-        page.steps.append(CaseStep(when, (), tuple(inner.steps), say))
+        steps = tuple(inner.steps)
+        if chosen:
+            page.steps += _narrowed(steps, chosen)
+        else:
+            page.steps.append(CaseStep(relation(product_of(zeros), "!=", 0), (), steps))
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 
@@ -136,14 +154,22 @@ def _case(page: Page, case: Case, doubled: Signs) -> Step:
     if not isinstance(case.result, Branched):
         return undecided(page, case)
     condition = case.when[0]
-    operator = "=" if condition.operator == "==" else condition.operator
-    is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
-    say = {"=": "branch_equal" if is_double else "", ">": "branch_over"}[operator]
     inner = _inside(page, case.result.plant, case.substitution)
     case.result.tell_branches(inner)
-    because = sentence(say, {}) if say else None
-    when = relation(condition.expression, operator, 0)
-    return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), because)
+    steps = tuple(inner.steps)
+    if condition.operator != "==":
+        return _narrowed(steps, case.when)[0]
+    is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
+    because = sentence("branch_equal", {}) if is_double else None
+    return CaseStep(relation(condition.expression, "=", 0), tuple(case.substitution.items()), steps, because)
+
+
+def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple[Step, ...]:
+    """Return the steps under inequalities of discriminants, each within the one before."""
+    for condition in reversed(conditions):
+        when = relation(condition.expression, condition.operator, 0)
+        steps = (CaseStep(when, (), steps, sentence(_BRANCHES[condition.operator], {})),)
+    return steps
 
 
 def _inside(page: Page, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Page:
@@ -152,6 +178,16 @@ def _inside(page: Page, plant: StateSpace, substitution: Mapping[str, Scalar]) -
     inner.start, inner.forms = page.start, page.forms
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
     return inner
+
+
+def _stated(delta: Scalar, sign: str) -> Condition:
+    """Return the condition that a discriminant has a sign."""
+    return Condition("claim", _plain(delta), "<" if sign == "negative" else ">")
+
+
+def reject(message: str) -> NoReturn:
+    """Refuse an answer that no claim could state."""
+    raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
 
 
 def rate_of(term: Term) -> Term:
@@ -213,7 +249,7 @@ def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:
         if name in e.values:
             value = e.values[name]
             start = Matrix.zeros(*value.shape) if isinstance(value, Matrix) else Scalar.of(0)
-            yield Claim(relation(letter(name, e).apply("at_0"), start), e, f"{name} is 0 at t = 0")
+            yield Claim(relation(letter(name, e).at("t", 0), start), e, f"{name} is 0 at t = 0")
 
 
 def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix]) -> Environment:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
     """Write one branch: noise, Gramian, the two integrals, the parts, the sum."""
     answer = result.answer
-    if answer.get("verdict") == "no":
+    if result.verdict == "no":
         tell_unobservable(result, page)
         return
     if answer.get("question") is not None:
@@ -101,5 +101,5 @@ def _tell_horizons(result: InitialStateCovariance, page: Page) -> None:
             "best_horizon",
             number=str(index + 1),
             variance=relation(variance, variance.value),
-            rate=relation(variance.apply("by_T"), front * bracket),
+            rate=relation(variance.derivative_by("T"), front * bracket),
         )

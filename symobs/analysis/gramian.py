@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
+from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, reject, time_environment
 from symobs.analysis.gramian_page import write_gramian
 from symobs.analysis.horizons import INFINITE, infinite_gramian, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
-from symobs.analysis.observability import rank_answer
+from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import InputError
@@ -26,16 +26,20 @@ from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.stability import Stability, stability
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.formula import Environment
     from symobs.specification import Horizon, Name
 
 KINDS_OF = ("observability", "controllability")
 #: Determinants of entries with more terms than this together are left out.
 _MOST_TERMS = 60
+#: Up to this order there is always one.
+_ALWAYS_WITH_DETERMINANT = 2
 
 
 def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
@@ -57,7 +61,7 @@ class Gramian(Branched):
         found = rank_answer(A, C)
         O = found["matrix"]
         shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
-        shared |= {"finite_sum": (O.T @ O).normal(), "kernel": found["kernel"]}
+        shared |= {"finite_sum": (O.T @ O).normal()}
         if asked["horizon"] == INFINITE:
             return cls(plant, method_name, {**shared, **infinite_gramian(plant, A, C, found)})
         if plant.is_discrete:
@@ -91,12 +95,21 @@ class Gramian(Branched):
     @property
     def verdict(self) -> str:
         """`no` where an integral over all time does not exist."""
-        return self.answer.get("verdict") or super().verdict
+        return "no" if self.decay.verdict == "no" else super().verdict
+
+    @cached_property
+    def decay(self) -> Stability:
+        """Whether what the output sees decays, on which an integral over all time stands."""
+        if "seen" not in self.answer:
+            return Stability("yes")
+        plant = self.plant
+        return stability(self.answer["seen"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """Also the conditions for an integral over all time to exist."""
-        beyond = [Condition("existence", value, ">") for value in self.answer.get("exists_where", ())]
+        exists = self.decay.positive if self.answer["matrix"] is not None else ()
+        beyond = [Condition("existence", value, ">") for value in exists]
         return (*super().holds_where, *beyond)
 
     @property
@@ -114,32 +127,31 @@ class Gramian(Branched):
         return vanishing_factors(self.existence, self.plant.symbols.signs)
 
     def claims(self) -> Iterator[Claim]:
-        """Yield the integral, symmetry, determinant, finite sum and kernel."""
+        """Yield the integral, symmetry, determinant, finite sum, rank and kernel."""
+        yield from super().claims()
         A, C = pair_of(self.plant, self.answer["of"])
         found, W = self.answer["rank"], self.answer["matrix"]
-        values: dict[str, Any] = {"A": A, "C": C, "O": found["matrix"], "M": self.answer["finite_sum"]}
+        e = rank_environment(self.plant, (A, C), found)
+        yield from rank_claims(found, e)
+        yield from minor_claim(found, e)
+        values: dict[str, Any] = {"A": A, "C": C, "M": self.answer["finite_sum"]}
         plain = time_environment(self.plant, values)
         a, c, m = letter("A", plain), letter("C", plain), letter("M", plain)
         total = c.T @ c
         for k in range(1, self.plant.order):
             total = total + (a.T) ** k @ c.T @ c @ a**k
         yield Claim(relation(m, total), plain, "finite_sum = sum of (A.T)**k*C.T*C*A**k, k < n")
-        kernel: Matrix = self.answer["kernel"]
-        count = kernel.shape[1]
-        yield Claim(relation(count + found["rank"], self.plant.order), plain, "the kernel has the dimension n - rank")
-        if found["rank"]:
-            minor = Term(Literal(found["matrix"].select(found["rows"], found["columns"])), plain)
-            yield Claim(
-                relation(minor.apply("det"), "!==", 0), plain, "a minor of O of the order of the rank is not zero"
-            )
-        if count:
-            zero = Matrix.zeros(self.plant.order, count)
+        kernel: Matrix = found["kernel"]
+        if kernel.shape[1]:
+            zero = Matrix.zeros(*kernel.shape)
             yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain, "finite_sum*N = 0")
-            free = Term(Literal(kernel.select(found["free"], range(count))), plain)
-            yield Claim(relation(free.apply("det"), "!==", 0), plain, "the columns of N are independent")
+        if self.answer["horizon"] == INFINITE:
+            yield from self._about_decay(e)
         if W is None:
             return
-        values |= {"W": W, **({"N": kernel} if count else {})}
+        values |= {"W": W, **({"N": kernel} if kernel.shape[1] else {})}
+        if self.answer["determinant"] is None and self.plant.order <= _ALWAYS_WITH_DETERMINANT:
+            reject("the determinant of a small Gramian is missing")
         if self.answer["determinant"] is not None:
             values["determinant"] = self.answer["determinant"]
         if "exponential" in self.answer:
@@ -148,13 +160,25 @@ class Gramian(Branched):
         e = time_environment(self.plant, {**values, **_at_horizon(values, self.answer["horizon"])})
         yield from self._about_gramian(e)
 
+    def _about_decay(self, e: Environment) -> Iterator[Claim]:
+        """Yield that what is seen is the plant without its hidden part; where it surely grows there is no integral."""
+        count, seen = self.answer["rank"]["restricted"].shape[0], Term(Literal(self.answer["seen"]), e)
+
+        def polynomial(name: str, order: int) -> Term:
+            return (letter("s", e) @ identity(order, e) - letter(name, e)).apply("det")
+
+        product = polynomial("X", count) * seen if count else seen
+        yield Claim(relation(polynomial("A", self.plant.order), product), e, "det(s*I - A) = seen*det(s*I - X)")
+        if self.answer["matrix"] is not None and self.decay.verdict not in {"yes", "conditional"}:
+            reject("an integral over all time of what does not decay is none")
+
     def _about_gramian(self, e: Any) -> Iterator[Claim]:
         W, A, C = letter("W", e), letter("A", e), letter("C", e)
         horizon = self.answer["horizon"]
         if "exponential" in self.answer:
             Phi = letter("exp_At", e)
             yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-            yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+            yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
             integrand = Phi.T @ C.T @ C @ Phi
             yield from from_zero(["primitive"], e)
             whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
@@ -172,12 +196,12 @@ class Gramian(Branched):
         if self.answer["determinant"] is not None:
             yield Claim(relation(W.apply("det"), letter("determinant", e)), e, "det W")
         if "N" in e.values:
-            yield Claim(relation(W @ letter("N", e), Matrix.zeros(*self.answer["kernel"].shape)), e, "W*N = 0")
+            yield Claim(relation(W @ letter("N", e), Matrix.zeros(*e.values["N"].shape)), e, "W*N = 0")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """Matrix, determinant, finite sum, rank and kernel."""
-        kernel: Matrix = self.answer["kernel"]
+        kernel: Matrix = self.answer["rank"]["kernel"]
         vectors = [list(kernel.select(range(kernel.shape[0]), [j]).entries) for j in range(kernel.shape[1])]
         asked = self.answer.get("question")
         found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
@@ -207,7 +231,7 @@ def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
 
 def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
     """Return det W as a sum of functions, None where it would be long."""
-    if len(W) > 2 and sum(len(entry.terms) for row in W for entry in row) > _MOST_TERMS:
+    if len(W) > _ALWAYS_WITH_DETERMINANT and sum(len(entry.terms) for row in W for entry in row) > _MOST_TERMS:
         return None
     return determinant(W).value_at(horizon)
 

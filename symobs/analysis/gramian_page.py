@@ -46,7 +46,7 @@ def write_gramian(result: Gramian, page: Page) -> None:
         if result.answer["chosen"]:
             _tell_lyapunov(result, page)
         result.tell_branches(page)
-    if result.answer["matrix"] is not None or result.answer.get("verdict") == "no":
+    if result.answer["matrix"] is not None or result.decay.verdict == "no":
         with page.section("finite_sum"):
             _tell_finite_sum(result, page)
 
@@ -129,14 +129,14 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
     answer = result.answer
     seen = define_seen(result, page)
-    if answer.get("verdict") == "no":
+    if result.decay.verdict == "no":
         page.conclude("gramian_diverges", predicate("unstable", seen))
         return
     page.set("W", answer["matrix"])
     W = page["W"]
     moved = _transposed(A) @ W @ A - W if result.plant.is_discrete else _transposed(A) @ W + W @ A
     equation = relation(moved, -_square(C))
-    where = answer.get("exists_where", ())
+    where = result.decay.positive
     if where:
         found = [as_inequality(value, result.plant.symbols.signs) for value in where]
         listed = tuple(relation(left, operator, right) for left, operator, right in found)
@@ -149,7 +149,7 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
 
 def define_seen(result: Gramian, page: Page) -> Term:
     """Return χ, or its part that the output sees: the quotient by the polynomial of the hidden modes."""
-    kernel: Matrix = result.answer["kernel"]
+    kernel: Matrix = result.answer["rank"]["kernel"]
     tell_polynomial(page)
     if not kernel.shape[1] or result.answer["of"] == "controllability":
         return page["chi"]
@@ -168,7 +168,7 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
     for k in range(1, result.plant.order):
         total = total + _transposed(A) ** k @ _square(C) @ A**k
     M = page.define("M", total, say="finite_sum_is")
-    kernel: Matrix = result.answer["kernel"]
+    kernel: Matrix = result.answer["rank"]["kernel"]
     if not kernel.shape[1]:
         determinant = relation(M.apply("det"), M.value.determinant())
         suffix = "_controllability" if result.answer["of"] == "controllability" else ""

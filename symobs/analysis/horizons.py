@@ -50,7 +50,7 @@ def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:
 
 
 def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the Gramian over all time where what the output sees decays, else the verdict."""
+    """Return the polynomial of what the output sees, and the Gramian over all time where that decays."""
     variable, hidden = plant.variable, test["restricted"]
     seen = A.characteristic_polynomial(variable)
     if hidden.shape[0]:
@@ -58,15 +58,14 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
     nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
     if found.verdict == "no":
-        return {**nothing, "verdict": "no"}
+        return nothing
     order = A.shape[0]
     if order > (_MOST_WITH_PARAMETERS if (A.names | C.names) else _MOST_STATES):
         return {**nothing, "question": f"Lyapunov's equation for {order} states"}
     W = lyapunov(A, C, discrete=plant.is_discrete)
     if W is None:
         return {**nothing, "question": "Lyapunov's equation has no unique solution"}
-    exists = {"exists_where": found.positive} if found.verdict == "conditional" else {}
-    return {"matrix": W, "determinant": W.determinant(), "seen": seen, **exists}
+    return {"matrix": W, "determinant": W.determinant(), "seen": seen}
 
 
 def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:

@@ -15,8 +15,8 @@ from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.initial_state_page import tell_initial_state
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
 from symobs.analysis.measurements import read_functions
-from symobs.analysis.observability import rank_answer
 from symobs.analysis.pages import given
+from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.certificate import Claim
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
@@ -62,6 +62,7 @@ class InitialState(Branched):
     """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
 
     task: ClassVar[str] = "initial_state"
+    main: ClassVar[str] = "x0"
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -137,28 +138,24 @@ class InitialState(Branched):
 
     def claims(self) -> Iterator[Claim]:
         """Yield the motion from rest, the output explained, the moment equations, and what excludes others."""
+        yield from super().claims()
         test = self.answer["rank"]
         if self.answer.get("question") is None:
             e = time_environment(self.plant, self._values())
             yield from self._about_motion(e)
             yield from self._about_state(e)
-        e = time_environment(self.plant, {})
-        minor = Term(Literal(test["matrix"].select(test["rows"], test["columns"])), e)
-        if test["rank"]:
-            yield Claim(relation(minor.apply("det"), "!==", 0), e, "a minor of O of the order of the rank is not zero")
-        N: Matrix = test["kernel"]
-        if N.shape[1]:
-            zero = Matrix.zeros(test["matrix"].shape[0], N.shape[1])
-            yield Claim(relation(Term(Literal(test["matrix"]), e) @ Term(Literal(N), e), zero), e, "O*N = 0")
+        e = rank_environment(self.plant, (self.plant.matrices.A, self.plant.matrices.C), test)
+        yield from rank_claims(test, e)
+        yield from minor_claim(test, e)
 
     def _about_motion(self, e: Environment) -> Iterator[Claim]:
         A, Phi, free = letter("A", e), letter("exp_At", e), letter("y_t", e)
         yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
         if "x_f" in e.values:
             x_f, u = letter("x_f", e), letter("u_t", e)
             yield Claim(relation(rate_of(x_f), A @ x_f + letter("B", e) @ u), e, "x_f' = A*x_f + B*u")
-            yield Claim(relation(x_f.apply("at_0"), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
+            yield Claim(relation(x_f.at("t", 0), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
             free = free - letter("C", e) @ x_f
             if self.plant.matrices.has_feedthrough:
                 free = free - letter("D", e) @ u
@@ -174,7 +171,7 @@ class InitialState(Branched):
             return
         at_zero = []
         for _ in range(self.plant.order):
-            at_zero.append(free.apply("at_0"))
+            at_zero.append(free.at("t", 0))
             free = rate_of(free)
         start, O = block([[part] for part in at_zero]), letter("O", e)
         if "candidate" in e.values:

@@ -14,8 +14,8 @@ from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_e
 from symobs.analysis.covariance_page import tell_covariance
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
-from symobs.analysis.observability import rank_answer
 from symobs.analysis.pages import given
+from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.analysis.stationary import stationary
 from symobs.certificate import Claim
 from symobs.conditions import Condition, sign_of, vanishing_factors
@@ -24,7 +24,6 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.exponential import Exponential, NoClosedForm
 from symobs.exact.functions import identities, roots_in, substitute
 from symobs.exact.quasi import Quasi, Table, determinant, integral, matrix_at, product, quasi_of, table_of, transposed
-from symobs.formula import Environment, Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
@@ -34,6 +33,7 @@ from symobs.system import read_matrix
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.formula import Environment
     from symobs.specification import Horizon, Intensity, Name
     from symobs.system import StateSpace
 
@@ -49,6 +49,7 @@ class InitialStateCovariance(Branched):
     """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
 
     task: ClassVar[str] = "initial_state_covariance"
+    main: ClassVar[str] = "covariance"
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -58,7 +59,7 @@ class InitialStateCovariance(Branched):
         data = {name: asked[name] for name in ("Q", "R", "horizon")}
         shared = {**data, "rank": test, "taken": taken, "chosen": {}, "covariance": None}
         if test["rank"] < plant.order:
-            return cls(plant, method_name, {**shared, "verdict": "no"})
+            return cls(plant, method_name, shared)
         if plant.order > _MOST_STATES:
             question = f"the inverse of a Gramian of more than {_MOST_STATES} states"
             return cls(plant, method_name, {**shared, "question": question, "factor": None})
@@ -85,7 +86,7 @@ class InitialStateCovariance(Branched):
     @property
     def verdict(self) -> str:
         """`no` where the pair is not observable."""
-        return self.answer.get("verdict") or super().verdict
+        return "no" if self.answer["rank"]["rank"] < self.plant.order else super().verdict
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
@@ -105,13 +106,11 @@ class InitialStateCovariance(Branched):
 
     def claims(self) -> Iterator[Claim]:
         """Yield the integrals, the two parts between Gramians, and their sum."""
+        yield from super().claims()
         found = self.answer["rank"]
-        plain = time_environment(self.plant, {})
-        if found["rank"]:
-            minor = Term(Literal(found["matrix"].select(found["rows"], found["columns"])), plain)
-            yield Claim(
-                relation(minor.apply("det"), "!==", 0), plain, "a minor of O of the order of the rank is not zero"
-            )
+        e = rank_environment(self.plant, (self.plant.matrices.A, self.plant.matrices.C), found)
+        yield from rank_claims(found, e)
+        yield from minor_claim(found, e)
         if self.answer["covariance"] is None:
             return
         yield from self._about_parts(time_environment(self.plant, self.letters()))
@@ -131,7 +130,7 @@ class InitialStateCovariance(Branched):
         Phi, A, C, W, R = (letter(name, e) for name in ("exp_At", "A", "C", "W", "R"))
         horizon = self.answer["horizon"]
         yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
         yield from from_zero(["W_t", "R_t", "Q_t"], e)
         whole = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
         yield Claim(relation(W, Term(whole, e)), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t)")

@@ -57,7 +57,7 @@ def _tell_forced(result: InitialState, page: Page) -> Term:
     if result.plant.matrices.has_feedthrough:
         moved = moved - page["D"] @ page["u_t"]
     equation = relation(rate_of(x_f), A @ x_f + page["B"] @ page["u_t"])
-    start = relation(x_f.apply("at_0"), Matrix.zeros(result.plant.order, 1))
+    start = relation(x_f.at("t", 0), Matrix.zeros(result.plant.order, 1))
     page.conclude_silently(start)
     return page.define("y_0", moved, _entry(answer["free"]), say="output_solution", closing=False, equation=equation)
 
@@ -102,7 +102,7 @@ def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
         return
     page.set("O", answer["rank"]["matrix"])
     w, start = page.set("v", answer["row"].T), page.set("r_0", answer["start"])
-    at_zero = block([[rate.apply("at_0")] for rate in rates])
+    at_zero = block([[rate.at("t", 0)] for rate in rates])
     zero = relation(w.T @ page["O"], Matrix.zeros(1, result.plant.order))
     page.equal(relation(start, at_zero, answer["start"]), say="initial_start")
     rest = relation(page["v"].T @ start, (page["v"].T @ start).shown, "!==", 0)

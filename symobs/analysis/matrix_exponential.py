@@ -80,12 +80,13 @@ class MatrixExponential(Branched):
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation and the start."""
+        yield from super().claims()
         if self.answer["matrix"] is None:
             return
         e = time_environment(self.plant, {"A": self.plant.matrices.A, "exp_At": self.answer["matrix"]})
         Phi = letter("exp_At", e)
         yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.apply("at_0"), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -111,7 +112,7 @@ class MatrixExponential(Branched):
         Phi = page["exp_At"]
         if not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
             page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
-        start = relation(Phi.apply("at_0"), page.identity(self.plant.order))
+        start = relation(Phi.at("t", 0), page.identity(self.plant.order))
         page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 
 

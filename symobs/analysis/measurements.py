@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.errors import InputError, ShapeMismatch
-from symobs.exact.functions import symbols_in
+from symobs.errors import InputError
 from symobs.exact.quasi import Table, table_of
-from symobs.expression import parse_matrix
-from symobs.system import is_sympy
+from symobs.specification import read_signal
 
 if TYPE_CHECKING:
     from symobs.exact import Matrix
@@ -23,18 +21,7 @@ def read_functions(value: object, plant: StateSpace, name: str, count: int) -> t
     if value is None:
         message = f"the {name} is missing"
         raise InputError(message, where=where, repair=f'give it as a function of t, {name} = "1 - exp(-t)"')
-    known = plant.symbols.seen(value, "t")
-    listed = [str(v) if is_sympy(v) else v for v in value] if isinstance(value, (list, tuple)) else value
-    text = str(listed) if is_sympy(listed) else listed
-    rows = [v if isinstance(v, (list, tuple)) else [v] for v in text] if isinstance(text, (list, tuple)) else text
-    if not isinstance(rows, (str, list)):
-        rows = [[rows]]
-    found = parse_matrix(rows, known.names, variable="t", where=where, functions=True)
-    if found.shape[1] == count and found.shape[0] == 1:
-        found = found.T
-    if found.shape != (count, 1):
-        message = f"{found.shape[0]}×{found.shape[1]} functions are given, {count} are needed"
-        raise ShapeMismatch(message, where=where, repair=f"give one function of t for each component, {count} in all")
+    found = read_signal(value, plant, name, count, functions=True)
     try:
         sums = table_of(found)
     except ValueError as error:
@@ -43,8 +30,3 @@ def read_functions(value: object, plant: StateSpace, name: str, count: int) -> t
     if sum(len(entry.terms) for row in sums for entry in row) > _MOST_TERMS:
         raise InputError("the functions have too many terms", where=where, repair=f"keep to {_MOST_TERMS} terms")
     return found, sums
-
-
-def moves(matrix: Matrix) -> bool:
-    """Whether a matrix depends on the time."""
-    return "t" in symbols_in(matrix)

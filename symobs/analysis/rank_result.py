@@ -43,7 +43,7 @@ from symobs.method import Case, Result
 from symobs.page import relation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.system import StateSpace
 
@@ -72,6 +72,38 @@ def rank_answer(A: Matrix, C: Matrix) -> dict[str, Any]:
     return answer_with(O, len(columns), with_restriction(N, A), (rows, columns))
 
 
+def rank_environment(plant: StateSpace, pair: tuple[Matrix, Matrix], found: Mapping[str, Any]) -> Environment:
+    """Return the environment of the claims about a test of observability."""
+    (A, C), O = pair, found["matrix"]
+    above = O.select(range(O.shape[0] - C.shape[0]), range(O.shape[1]))
+    values = {"A": A, "C": C, "O": O, "N": found["kernel"], "X": found["restricted"]}
+    values["upper"] = Matrix.block([[C], [above @ A]])
+    return Environment(variable=plant.variable, values=values, signs=plant.symbols.signs)
+
+
+def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | None = None) -> Iterator[Claim]:
+    """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
+    O, N, X = found["matrix"], found["kernel"], found["restricted"]
+    order = O.shape[1]
+    yield Claim(relation(letter("O", e), letter("upper", e)), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
+    witnesses = len(found["rows"]), len(found["columns"])
+    yield Claim(relation(found["rank"], *witnesses), e, "the minor has the order of the rank")
+    beside = N.shape[1], len(found["free"]), *X.shape
+    yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
+    if N.shape[1]:
+        e, count = here or e, range(N.shape[1])
+        yield Claim(relation(letter("O", e) @ letter("N", e), Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
+        yield Claim(relation(_det(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
+        yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
+
+
+def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
+    """Yield the rank from below, in general: a minor of its order is not zero."""
+    if found["rank"]:
+        minor = found["matrix"].select(found["rows"], found["columns"])
+        yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class RankResult(Result):
     """The test matrix M of a pair, its rank r, and a basis N of its kernel.
@@ -95,35 +127,13 @@ class RankResult(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield structure, rank from below, kernel and rank from above, invariance."""
-        A, C = self.pair(self.plant)
-        O, N, X, outputs = (*(self.answer[name] for name in ("matrix", "kernel", "restricted")), C.shape[0])
-        every, states = range(O.shape[0]), range(self.plant.order)
-        values = {
-            "A": A,
-            "C": C,
-            "O": O,
-            "N": N,
-            "X": X,
-            "upper": Matrix.block([[C], [O.select(every[:-outputs], states) @ A]]),
-        }
-        e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
-        yield Claim(relation(letter("O", e), letter("upper", e)), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
-        found, hidden = self.answer["rank"], self.plant.order - self.answer["rank"]
-        witnesses = len(self.answer["rows"]), len(self.answer["columns"])
-        yield Claim(relation(found, *witnesses), e, "the minor has the order of the rank")
-        beside = N.shape[1], len(self.answer["free"]), *X.shape
-        yield Claim(relation(hidden, *beside), e, "the kernel has the dimension n - rank")
-        if self.piece is not None:
-            e = replace(e, relations=self.piece.relations(c.expression for c in self.domain))
-            yield from self._at_every_point(self.piece, e)
-        elif found:
-            minor = O.select(self.answer["rows"], self.answer["columns"])
-            yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {self.answer['rank']} is not zero")
-        if N.shape[1]:
-            count = range(N.shape[1])
-            yield Claim(relation(letter("O", e) @ letter("N", e), Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
-            yield Claim(relation(_det(N.select(self.answer["free"], count), e), "!==", 0), e, "rank N = n - rank M")
-            yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
+        e = here = rank_environment(self.plant, self.pair(self.plant), self.answer)
+        if self.piece is None:
+            yield from minor_claim(self.answer, e)
+        else:
+            here = replace(e, relations=self.piece.relations(c.expression for c in self.domain))
+            yield from self._at_every_point(self.piece, here)
+        yield from rank_claims(self.answer, e, here)
 
     def _at_every_point(self, piece: Piece, e: Environment) -> Iterator[Claim]:
         """Yield that rank and kernel are right wherever the conditions of the piece hold, not only in general."""

@@ -7,19 +7,21 @@ exactly n − r independent initial states give the output 0.  The test at a fro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.intervals import END, instant_where_not_zero, reject_poles, reject_sizes_and_names
+from symobs.analysis.branches import reject
+from symobs.analysis.intervals import instant_where_not_zero, reject_poles, reject_sizes_and_names
 from symobs.analysis.strata import strata
 from symobs.analysis.time_varying_page import write
-from symobs.analysis.transition import START, TERMS_UP_TO, TIME, antiderivative_since, transition
+from symobs.analysis.time_varying_solution import Asked, closed_form
+from symobs.analysis.transition import START, TERMS_UP_TO, TIME
 from symobs.certificate import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
 from symobs.errors import BudgetExceeded
-from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, kernel
-from symobs.formula import At, Environment, Literal
+from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
+from symobs.formula import Environment, Integral, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task_in_time
 from symobs.page import relation
@@ -31,31 +33,6 @@ if TYPE_CHECKING:
     from symobs.page import Page
     from symobs.specification import IntervalText, Name, SignalText
     from symobs.system import StateSpace
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What is asked beside the plant: the interval, and the output and input from which x₀ is to be found."""
-
-    interval: tuple[Scalar, Scalar] | None = None
-    output: Matrix | None = None
-    input: Matrix | None = None
-
-    @property
-    def start(self) -> Scalar:
-        """The initial instant; t₀ where no interval is given."""
-        return self.interval[0] if self.interval else Scalar.symbol(START)
-
-    @property
-    def end(self) -> Scalar:
-        """The last instant; t₁ where no interval is given."""
-        return self.interval[1] if self.interval else Scalar.symbol(END)
-
-    def substitute(self, values: Mapping[str, Scalar]) -> Asked:
-        """Return the same with parameters replaced."""
-        interval = (self.start.substitute(values), self.end.substitute(values)) if self.interval else None
-        output = None if self.output is None else self.output.substitute(values)
-        return Asked(interval, output, None if self.input is None else self.input.substitute(values))
 
 
 def stack_of(A: Matrix, C: Matrix) -> tuple[Matrix, ...]:
@@ -106,7 +83,7 @@ class TimeVaryingObservability(Result):
             "free": free,
         }
         answer["point"] = instant_where_not_zero(plant, asked_for.interval, O.select(answer["rows"], columns))
-        return cls(plant, method_name, answer | _closed_form(plant, asked_for), asked_for)
+        return cls(plant, method_name, answer | closed_form(plant, asked_for), asked_for)
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
@@ -146,14 +123,14 @@ class TimeVaryingObservability(Result):
         yield Claim(
             relation(found, len(answer["rows"]), len(answer["columns"])), e, "the minor has the order of the rank"
         )
-        yield Claim(
-            relation(hidden, V.shape[1], len(answer["free"])), e, "the hidden states have the dimension n - rank"
-        )
+        sizes = V.shape[1], len(answer["free"]), *answer["restricted"].shape
+        yield Claim(relation(hidden, *sizes), e, "the hidden states have the dimension n - rank")
         if found:
             minor = _det(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
-                instant = Term(At(minor.formula, TIME, answer["point"]), e)
+                yield from self._inside_claims(e)
+                instant = minor.at(TIME, answer["point"])
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
             A, C, states, X = (letter(name, e) for name in ("A", "C", "V", "X"))
@@ -161,13 +138,24 @@ class TimeVaryingObservability(Result):
             yield Claim(relation(A @ states - states.derivative, states @ X), e, "A*V - V' = V*X")
             yield Claim(relation(_det(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank")
 
+    def _inside_claims(self, e: Environment) -> Iterator[Claim]:
+        """Yield that the instant which shows the rank is one of the interval."""
+        asked, point = self.asked_for, Term(Literal(self.answer["point"]), e)
+        yield Claim(relation(point.derivative, 0), e, "the instant is one")
+        if asked.interval is not None:
+            e = replace(e, above=(asked.end - asked.start,))
+            yield Claim(relation(point, ">=", asked.start), e, "the instant is not before the interval")
+            yield Claim(relation(point, "<=", asked.end), e, "the instant is not after the interval")
+
     def _transition_claims(self, e: Environment) -> Iterator[Claim]:
         answer, order, asked = self.answer, self.plant.order, self.asked_for
         Phi = letter("Phi", e)
         yield Claim(relation(Phi.derivative, letter("A", e) @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
-        yield Claim(relation(_at(Phi, TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
-        seen = letter("C", e) @ _at(Phi, START, asked.start)
+        yield Claim(relation(Phi.at(TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
+        seen = letter("C", e) @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
+        if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
+            reject("the states that are never seen are missing")
         if answer["kernel"] is not None:
             yield Claim(relation(answer["kernel"].shape[1], hidden), e, "there are n - rank vectors v")
         if answer["kernel"] is not None and hidden:
@@ -178,8 +166,8 @@ class TimeVaryingObservability(Result):
         if answer["gramian_in_time"] is not None:
             G = letter("G", e)
             yield Claim(relation(G.derivative, seen.T @ seen), e, "G' = Phi.T*C.T*C*Phi")
-            yield Claim(relation(_at(G, TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
-            yield Claim(relation(answer["gramian"], _at(G, TIME, asked.end)), e, "the Gramian is G(end)")
+            yield Claim(relation(G.at(TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
+            yield Claim(relation(answer["gramian"], G.at(TIME, asked.end)), e, "the Gramian is G(end)")
 
     def _state_claims(self, e: Environment) -> Iterator[Claim]:
         m, start = self.plant.matrices, self.asked_for.start
@@ -187,13 +175,31 @@ class TimeVaryingObservability(Result):
         if "u" in e.values:
             rate = rate + letter("B", e) @ letter("u", e)
         yield Claim(relation(f.derivative, rate), e, "f' = A*f + B*u")
-        yield Claim(relation(_at(f, TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
-        if self.answer["x0"] is not None:
-            state = _at(letter("Phi", e), START, start) @ letter("x_0", e) + f
+        yield Claim(relation(f.at(TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
+        if self.answer["x0"] is None:
+            yield from self._refusal_claims(e)
+        else:
+            state = letter("Phi", e).at(START, start) @ letter("x_0", e) + f
             seen = letter("C", e) @ state
             seen = seen + letter("D", e) @ letter("u", e) if "u" in e.values and m.has_feedthrough else seen
             yield Claim(relation(letter("x_0", e).derivative, Matrix.zeros(self.plant.order, 1)), e, "x0 is constant")
             yield Claim(relation(seen, letter("y", e)), e, "C*(Phi*x0 + f) + D*u = y")
+
+    def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
+        """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""
+        answer, asked, W = self.answer, self.asked_for, self.answer["gramian"]
+        if answer["candidate"] is None:
+            return
+        seen = letter("C", e) @ letter("Phi", e).at(START, asked.start)
+        xi = letter("y", e) - letter("C", e) @ letter("f", e)
+        xi = xi - letter("D", e) @ letter("u", e) if "u" in e.values else xi
+        state = Term(Literal(answer["candidate"]), e)
+        limits = (TIME, asked.start, asked.end)
+        whole = Term(Integral((seen.T @ xi).formula, Literal(answer["moment"]), *limits), e)
+        yield Claim(relation(Term(Literal(W), e).apply("det"), "!==", 0), e, "det W is not 0")
+        yield Claim(relation(Term(Literal(W), e) @ state, whole), e, "W*x = integral of Phi.T*C.T*(y - C*f - D*u)")
+        yield Claim(relation(state.derivative, Matrix.zeros(self.plant.order, 1)), e, "x is constant")
+        yield Claim(relation(xi, "!==", seen @ state), e, "the output of x is not the one measured")
 
     # -- what follows ------------------------------------------------------------------------------------------------
 
@@ -266,6 +272,12 @@ class TimeVaryingObservability(Result):
             found["x0"] = None if answer["x0"] is None else [*answer["x0"].entries]
         return found
 
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """Also the ends of the interval."""
+        ends = self.asked_for.interval
+        return {**super().data, **({"t_start": ends[0], "t_end": ends[1]} if ends else {})}
+
     def write(self, page: Page) -> None:
         """Write the page in the order of the theory: Φ, the Gramian, the stack, the initial state."""
         write(page, self)
@@ -275,66 +287,17 @@ def _det(matrix: Matrix, environment: Environment) -> Term:
     return Term(Literal(matrix), environment).apply("det")
 
 
-def _at(term: Term, name: str, instant: Scalar) -> Term:
-    return Term(At(term.formula, name, instant), term.environment)
-
-
 def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(order)], len(vectors))
 
 
-def _closed_form(plant: StateSpace, asked: Asked) -> dict[str, Any]:
-    """Return Φ with what follows from it, None for each that has no closed form here."""
-    names = ("transition_matrix", "kernel", "gramian", "gramian_in_time", "forced", "x0")
-    answer: dict[str, Any] = dict.fromkeys(names)
-    found = transition(plant.matrices.A)
-    if found is None:
-        return answer
-    answer["transition_matrix"] = found.matrix
+def _has_value(Phi: Matrix, start: Scalar) -> bool:
+    """Whether Φ has a value at the start: it has none where A has a pole there."""
     try:
-        Phi = found.matrix.substitute({START: asked.start})
-        seen = (plant.matrices.C @ Phi).normal()
-        answer["kernel"] = _constant_kernel(seen)
-        answer["gramian_in_time"] = G = antiderivative_since((seen.T @ seen).normal(), asked.start)
-        answer["gramian"] = None if G is None else G.substitute({TIME: asked.end})
-    except ZeroDivisionError:  # the interval begins or ends where A has a pole
-        return answer
-    if asked.output is not None:
-        answer |= _initial_state(plant, asked, Phi, seen, answer["gramian"])
-    return answer
-
-
-def _constant_kernel(seen: Matrix) -> Matrix:
-    """Return a basis of the constant v with C Φ v = 0: the coefficients of all powers of t vanish."""
-    numerator = seen * seen.common_denominator()
-    rows: list[list[Scalar]] = []
-    for row in numerator.rows:
-        height = max(entry.degree(TIME) for entry in row) + 1
-        table = [[*([Scalar.of(0)] * height), *entry.coefficients(TIME)][-height:] for entry in row]
-        rows += [list(line) for line in zip(*table, strict=True)]
-    return kernel(Matrix.of(rows, seen.shape[1]))
-
-
-def _initial_state(
-    plant: StateSpace, asked: Asked, Phi: Matrix, seen: Matrix, gramian: Matrix | None
-) -> dict[str, Matrix | None]:
-    """Return the forced part f of the state and x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ with ξ = y − C f − D u; x₀ None where y has none."""
-    m, n = plant.matrices, plant.order
-    forced: Matrix | None = Matrix.zeros(n, 1)
-    xi = asked.output
-    assert xi is not None  # noqa: S101 - asked by the caller
-    if asked.input is not None:
-        driven = antiderivative_since((Phi.inverse() @ m.B @ asked.input).normal(), asked.start)
-        forced = None if driven is None else (Phi @ driven).normal()
-        xi = None if forced is None else (xi - m.C @ forced - m.D @ asked.input).normal()
-    if xi is None or gramian is None or gramian.determinant().is_zero:
-        return {"forced": forced, "x0": None}
-    moment = antiderivative_since((seen.T @ xi).normal(), asked.start)
-    if moment is None:
-        return {"forced": forced, "x0": None}
-    x0 = gramian.solve(moment.substitute({TIME: asked.end})).normal()
-    fits = (seen @ x0 - xi).is_zero
-    return {"forced": forced, "x0": x0 if fits else None}
+        Phi.substitute({START: start})
+    except ZeroDivisionError:
+        return False
+    return True
 
 
 @method(

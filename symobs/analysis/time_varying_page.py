@@ -10,7 +10,7 @@ from symobs.conditions import never_zero
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal
 from symobs.exact import Matrix, Scalar, antiderivative, rank
-from symobs.formula import At, Integral, Literal
+from symobs.formula import Integral, Literal, Shown
 from symobs.formula.term import Term, block
 from symobs.page import relation, sentence
 
@@ -28,7 +28,8 @@ def write(page: Page, result: TimeVaryingObservability) -> None:
     asked = result.asked_for
     given(page)
     if asked.interval is not None:
-        page.conclude("on_interval", start=asked.start, end=asked.end)
+        ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
+        page.conclude("on_interval", **{name: Shown(end.formula, Literal(end.value)) for name, end in ends.items()})
     with page.section("transition"):
         _transition(page, result)
     if result.answer["transition_matrix"] is not None:
@@ -40,11 +41,6 @@ def write(page: Page, result: TimeVaryingObservability) -> None:
     if asked.output is not None:
         with page.section("reconstruction"):
             _initial_state(page, result)
-
-
-def at(term: Term, name: str, instant: Scalar) -> Term:
-    """Return a term at another instant, as it stands where it is the same."""
-    return term if Scalar.symbol(name) == instant else Term(At(term.formula, name, instant), term.environment)
 
 
 def integral(page: Page, integrand: Term, name: str, lower: Scalar, upper: Scalar, primitive: Matrix) -> Term:
@@ -80,7 +76,7 @@ def _transition(page: Page, result: TimeVaryingObservability) -> None:
     else:
         _series(page, found.terms)
     rate = relation(page["Phi"].derivative, A @ page["Phi"])
-    start = relation(at(page["Phi"], TIME, Scalar.symbol(START)), page.identity(order))
+    start = relation(page["Phi"].at(TIME, Scalar.symbol(START)), page.identity(order))
     page.verified("transition_checked", rate=rate, start=start)
 
 
@@ -88,9 +84,9 @@ def _integral_of_A(page: Page, factor: Term | None, value: Matrix) -> Term:
     """Return ∫ A(σ) X(σ) dσ from t₀ to t, whose value is known."""
     name = _dummy(page)
     new = Scalar.symbol(name)
-    integrand = at(page["A"], TIME, new)
+    integrand = page["A"].at(TIME, new)
     if factor is not None:
-        integrand = integrand @ at(factor, TIME, new)
+        integrand = integrand @ factor.at(TIME, new)
     primitive = value.substitute({TIME: new})
     return integral(page, integrand, name, Scalar.symbol(START), Scalar.symbol(TIME), primitive)
 
@@ -128,7 +124,7 @@ def _series(page: Page, terms: tuple[Matrix, ...]) -> None:
 
 def _seen(page: Page, result: TimeVaryingObservability) -> Term:
     """Return C Φ(t, start)."""
-    return page["C"] @ at(page["Phi"], START, result.asked_for.start)
+    return page["C"] @ page["Phi"].at(START, result.asked_for.start)
 
 
 def _gramian(page: Page, result: TimeVaryingObservability) -> None:
@@ -137,7 +133,7 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
     if answer["gramian"] is None:
         page.remark("gramian_not_rational")
     else:
-        Phi = at(page["Phi"], START, asked.start)
+        Phi = page["Phi"].at(START, asked.start)
         integrand = Phi.T @ page["C"].T @ page["C"] @ Phi
         W = integral(page, integrand, TIME, asked.start, asked.end, answer["gramian_in_time"])
         page.define("W", W, say="gramian", answer=True)
@@ -187,7 +183,7 @@ def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
     if conditions:
         page.assume("stack_yes_if", *conditions)
     elif determinant is not None and answer["point"] is not None:
-        instant = at(page["O"], TIME, answer["point"]).apply("det")
+        instant = page["O"].at(TIME, answer["point"]).apply("det")
         value = determinant.substitute({TIME: answer["point"]})
         key = "stack_yes_at" if result.asked_for.interval is None else "stack_yes_on"
         page.conclude(key, instant=relation(instant, value, "!=", 0))
@@ -195,7 +191,7 @@ def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
         page.conclude("stack_yes", rank=found)
     drop = _instant_of_drop(result)
     if drop is not None:
-        at_drop = at(page["O"], TIME, drop)
+        at_drop = page["O"].at(TIME, drop)
         page.remark("stack_drops", rank=relation(at_drop.apply("rank"), rank(at_drop.value)))
     page.steps += [_case(page, case) for case in result.case_tree]
 
@@ -251,7 +247,7 @@ def _frozen(page: Page, result: TimeVaryingObservability) -> None:
         return
     for instant in map(Scalar.of, (0, 1, -1)) if found == order else ():
         try:
-            there = _frozen_test(at(A, TIME, instant), at(C, TIME, instant), order)
+            there = _frozen_test(A.at(TIME, instant), C.at(TIME, instant), order)
             value = rank(there.value)
         except ZeroDivisionError:
             continue
@@ -301,20 +297,36 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
         xi = page["y_t"] - page["C"] @ page["x_u"]
         page.define("xi", xi - page["D"] @ page["u_t"] if m.has_feedthrough else xi, say="xi_forced")
     if answer["x0"] is None:
-        page.conclude("x0_none" if answer["rank"] == page.plant.order else "x0_not_unique")
+        if answer["rank"] < page.plant.order:
+            page.conclude("x0_not_unique")
+        elif answer["candidate"] is None:
+            page.remark("x0_open")
+        else:
+            _refuse(page, result)
         return
     seen = _seen(page, result)
     moment = antiderivative_since((seen.T @ page["xi"]).value.normal(), asked.start)
     assert moment is not None  # noqa: S101 - x₀ was found by it
-    Phi = at(page["Phi"], START, asked.start)
+    Phi = page["Phi"].at(START, asked.start)
     whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, moment)
     page.define("x_0", page["W"].inverse @ whole, say="x0_formula", answer=True)
-    free = at(page["Phi"], START, asked.start) @ page["x_0"]
+    free = page["Phi"].at(START, asked.start) @ page["x_0"]
     page.define("x_t", free if asked.input is None else free + page["x_u"], say="state_history")
     output = page["C"] @ page["x_t"]
     if asked.input is not None and m.has_feedthrough:
         output = output + page["D"] @ page["u_t"]
     page.verified("x0_checked", output=relation(output, page["y_t"]))
+
+
+def _refuse(page: Page, result: TimeVaryingObservability) -> None:
+    """Give the only state that could explain the output, and what its own output leaves."""
+    asked, answer = result.asked_for, result.answer
+    Phi = page["Phi"].at(START, asked.start)
+    whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, answer["moment"])
+    page.define("x_0", page["W"].inverse @ whole, say="x0_candidate")
+    rest = page["xi"] - _seen(page, result) @ page["x_0"]
+    shown = rest.value[0, 0] if isinstance(rest.value, Matrix) and rest.value.shape == (1, 1) else rest.value
+    page.conclude("x0_none", rest=relation(rest, shown, "!==", shown * 0))
 
 
 def _signal(page: Page, value: Matrix) -> Term:
@@ -327,8 +339,8 @@ def _forced(page: Page, result: TimeVaryingObservability) -> None:
     start, forced = result.asked_for.start, result.answer["forced"]
     name = _dummy(page)
     new, t = Scalar.symbol(name), Scalar.symbol(TIME)
-    moved = at(page["Phi"], START, new)
-    integrand = moved @ at(page["B"], TIME, new) @ at(page["u_t"], TIME, new)
+    moved = page["Phi"].at(START, new)
+    integrand = moved @ page["B"].at(TIME, new) @ page["u_t"].at(TIME, new)
     primitive = antiderivative(integrand.value, name)
     if primitive is None:
         page.define("x_u", page.value(forced), say="forced_state")
@@ -342,5 +354,5 @@ def _forced(page: Page, result: TimeVaryingObservability) -> None:
         )
     rate = relation(page["x_u"].derivative, page["A"] @ page["x_u"] + page["B"] @ page["u_t"])
     page.verified(
-        "forced_checked", rate=rate, start=relation(at(page["x_u"], TIME, start), Matrix.zeros(page.plant.order, 1))
+        "forced_checked", rate=rate, start=relation(page["x_u"].at(TIME, start), Matrix.zeros(page.plant.order, 1))
     )

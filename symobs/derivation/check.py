@@ -47,6 +47,7 @@ from symobs.formula import (
     children,
     evaluate,
     letters,
+    roots_written,
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
@@ -291,9 +292,12 @@ def _new_name(name: str, environment: Environment) -> None:
 
 
 def _established(formula: Formula, environment: Environment) -> None:
+    """Reject letters that are not established, and roots of what may be negative: they would not be real."""
     for name in letters(formula):
         if not environment.knows(name):
             _reject(f"{name} is used before it is established")
+    for root in roots_written(formula):
+        _fact(Relation((Literal(root.argument), Literal(Scalar.of(0))), (">=",)), environment, discrete=False)
 
 
 def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], environment: Environment) -> Environment:
@@ -305,9 +309,12 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
     each value put in follows from them.
     """
     if not substitution and isinstance(when, Relation) and when.operators in {("<",), (">",), ("!=",)}:
-        for member in when.members:
-            _established(member, environment)
-        return environment  # it narrows, and nothing is put in: all stays true
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+        if when.operators == ("!=",):
+            return environment  # it narrows, and nothing is put in: all stays true
+        return replace(
+            environment, above=(*environment.above, left - right if when.operators == (">",) else right - left)
+        )
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         inside = replace(environment, relations=(*environment.relations, left - right), assumed=())
@@ -324,7 +331,8 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
     for name, known in environment.values.items():
         with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
             replaced[name] = _there(known, substitution, lost)
-    inside = replace(environment, values=replaced, coefficients=named, assumed=())
+    above = tuple(value.substitute(substitution) for value in environment.above)
+    inside = replace(environment, values=replaced, coefficients=named, assumed=(), above=above)
     if isinstance(when, Together):
         return replace(inside, relations=_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)

@@ -130,6 +130,13 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
     return sorted(found, key=lambda f: (f.argument.size, f.name))
 
 
+def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
+    """Return the square roots that occur in values, also in the arguments of functions."""
+    found = {f for value in values for name in value.names if (f := known(name)) is not None}
+    inner = all_roots(*(f.argument for f in found)) if found else frozenset()
+    return frozenset(f for f in found if f.kind == "sqrt") | inner
+
+
 def tidy(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
@@ -273,9 +280,9 @@ def identities(
     exp is a product of powers of base exponentials, cosh and sinh are sums of two of them, cos and sin of a multiple or
     a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1 and root² − radicand.
     """
+    values = tuple(values)
     found = {f for value in values for name in value.names if (f := known(name)) is not None}
-    roots = {f for f in found if f.kind == "sqrt"}
-    roots |= {inner for f in found for name in f.argument.names if (inner := known(name)) is not None}
+    roots = all_roots(*values)
     moving = sorted((f for f in found if f.kind != "sqrt"), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
     for f in moving:

@@ -27,7 +27,9 @@ from symobs.formula.nodes import (
     Transpose,
     children,
     contains,
+    derived_by,
     letters,
+    roots_written,
     with_children,
 )
 from symobs.formula.restricted import Restricted
@@ -64,8 +66,10 @@ __all__ = [
     "agree",
     "children",
     "contains",
+    "derived_by",
     "differ",
     "evaluate",
     "letters",
+    "roots_written",
     "with_children",
 ]

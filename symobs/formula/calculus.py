@@ -23,12 +23,12 @@ def since_start(integrand: Formula, primitive: Formula, upper: Scalar) -> Integr
     return Integral(integrand, primitive, TIME, Scalar.of(0), upper)
 
 
-def rate(value: Any, *, constant: bool) -> Any:
-    """Return d/dt of a value, entry by entry; only where time is the variable may it be a constant's."""
-    if not constant and TIME not in symbols_in(exact(value)):
+def rate(value: Any, name: str, *, constant: bool) -> Any:
+    """Return d/d(name) of a value, entry by entry; only where time is the variable may it be a constant's."""
+    if not constant and name not in symbols_in(exact(value)):
         message = "a constant of a plant that does not vary has no derivative"
         raise TypeError(message)
-    return derivative(exact(value), TIME)
+    return derivative(exact(value), name)
 
 
 def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
-from symobs.exact.functions import derivative, substitute
 from symobs.exact.modular import block, scaled
 from symobs.formula import calculus
 from symobs.formula.nodes import (
@@ -50,6 +49,7 @@ class Environment:
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
+    above       polynomials in the parameters that a stated inequality keeps above 0
     """
 
     variable: str = "s"
@@ -61,6 +61,7 @@ class Environment:
     signs: Mapping[str, str] = field(default_factory=dict)
     assumed: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
+    above: tuple[Scalar, ...] = ()
 
     def knows(self, name: str) -> bool:
         """Whether a letter is established."""
@@ -160,10 +161,6 @@ class Exact:
             return value.determinant()
         if function == "adj":
             return value.adjugate()
-        if function == "at_0":
-            return substitute(value, {"t": Scalar.of(0)})
-        if function == "by_T":
-            return derivative(value, "T")
         return Scalar.of(rank(value))
 
     def block(self, rows: list[list[Any]]) -> Matrix:
@@ -268,11 +265,11 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             return arithmetic.apply(function, value)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
-        case Derivative(operand):
+        case Derivative(operand, name):
             value = evaluate(operand, environment, arithmetic)
             if isinstance(value, Signal):
                 return _derivative(value, environment, arithmetic)
-            return calculus.rate(value, constant=environment.variable == calculus.TIME)
+            return calculus.rate(value, name, constant=environment.variable == calculus.TIME)
         case At(operand, name, instant):
             return calculus.at(evaluate(operand, environment, arithmetic), name, instant, arithmetic)
         case Integral(integrand, primitive, name, lower, upper):
@@ -371,7 +368,7 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
         rate = evaluate(environment.dynamics[name], environment, arithmetic)
         image = times(coefficient, rate, arithmetic)
         if isinstance(arithmetic, Exact) and calculus.TIME in coefficient.names:
-            slope = Signal(signal.size, {name: calculus.rate(coefficient, constant=True)})
+            slope = Signal(signal.size, {name: calculus.rate(coefficient, calculus.TIME, constant=True)})
             image = add(image, slope, arithmetic)
         total = image if total is None else add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient

@@ -9,8 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs.exact.functions import all_roots
+
 if TYPE_CHECKING:
     from symobs.exact import Matrix, Root, Scalar
+    from symobs.exact.functions import Function
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +98,10 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Derivative:
-    """d/dt of a signal or of a function of time; the shift x(k+1) of a signal in discrete time."""
+    """d/dt of a signal or of a function of time, d/d(name) of a value; the shift x(k+1) of a signal in discrete time."""
 
     operand: Formula
+    name: str = "t"
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,8 +227,8 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
             return Negative(parts[0])
         case Transpose():
             return Transpose(parts[0])
-        case Derivative():
-            return Derivative(parts[0])
+        case Derivative(_, name):
+            return Derivative(parts[0], name)
         case At(_, name, instant):
             return At(parts[0], name, instant)
         case Integral(_, _, name, lower, upper):
@@ -243,6 +247,18 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
 def contains(formula: Formula, kinds: tuple[type, ...]) -> bool:
     """Tell whether a formula has a node of one of these kinds."""
     return isinstance(formula, kinds) or any(contains(part, kinds) for part in children(formula))
+
+
+def derived_by(formula: Formula) -> frozenset[str]:
+    """Return the names by which a formula takes derivatives."""
+    own = {formula.name} if isinstance(formula, Derivative) else set()
+    return frozenset(own).union(*(derived_by(part) for part in children(formula)))
+
+
+def roots_written(formula: Formula) -> frozenset[Function]:
+    """Return the square roots in the values that a formula writes out, those in arguments of functions too."""
+    own = all_roots(formula.value) if isinstance(formula, Literal) else ()
+    return frozenset(own).union(*(roots_written(part) for part in children(formula)))
 
 
 def letters(formula: Formula) -> frozenset[str]:

@@ -76,8 +76,8 @@ def plain(formula: Formula, variable: str) -> str:
             return f"{function}({plain(argument, variable)})"
         case Block(rows):
             return "[" + "; ".join(", ".join(plain(entry, variable) for entry in row) for row in rows) + "]"
-        case Derivative(operand):
-            return f"d/dt {inner(operand)}"
+        case Derivative(operand, name):
+            return f"d/d{name} {inner(operand)}"
         case At(operand, name, instant):
             return f"{inner(operand)}({name} = {instant})"
         case Integral(integrand, _, name, lower, upper):

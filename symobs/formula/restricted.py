@@ -36,7 +36,7 @@ class Restricted(Exact):
         return found
 
     def apply(self, function: str, value: Matrix) -> Any:
-        """Return det or adj of a matrix, the value at t = 0, and its rank in the field of one irreducible relation."""
+        """Return det or adj of a matrix, and its rank in the field of one irreducible relation."""
         if function != "rank":
             return super().apply(function, value)
         generators = self.ideal.generators

@@ -13,6 +13,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula.evaluate import Environment, Exact, evaluate
 from symobs.formula.nodes import (
     Apply,
+    At,
     Block,
     Derivative,
     Formula,
@@ -90,6 +91,15 @@ class Term:
     def derivative(self) -> Term:
         """d/dt, or the shift."""
         return self._with(Derivative(self.formula))
+
+    def derivative_by(self, name: str) -> Term:
+        """Return d/d(name)."""
+        return self._with(Derivative(self.formula, name))
+
+    def at(self, name: str, instant: Scalar | int) -> Term:
+        """Return the value with a generator (a time) replaced, as it stands where it is the same."""
+        where = Scalar.of(instant) if isinstance(instant, int) else instant
+        return self if Scalar.symbol(name) == where else self._with(At(self.formula, name, where))
 
     def apply(self, function: str) -> Term:
         """Return function(self): det, adj, rank, or a polynomial's letter with `_at`."""

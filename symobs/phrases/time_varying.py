@@ -62,7 +62,8 @@ PHRASES: dict[str, str] = {
     "x0_formula": "and the initial state is",
     "state_history": "The state at all times follows by variation of constants,",
     "x0_checked": "{output}: this is the given output.",
-    "x0_none": "No initial state has this output: none makes $C Phi x_0$ equal to it.",
+    "x0_candidate": "If a state explains the output at all times, then only",
+    "x0_none": "No initial state has this output, for that one leaves {rest}.",
     "x0_open": "An initial state in closed form is not given here.",
     "x0_not_unique": "The initial state cannot be found from it, since the hidden states add nothing to an output.",
 }
@@ -76,5 +77,3 @@ RESTS_ON: dict[str, str] = {
     "gramian": "time_varying_gramian",
     "peano_baker": "peano_baker",
 }
-
-NAMING = ("on_interval",)

@@ -15,7 +15,7 @@ from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
 from symobs.problem.keys import PLANT, TOP
 from symobs.problem.tables import Decimal
-from symobs.specification import read_poles
+from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time
 
@@ -305,9 +305,10 @@ def _read_alone(
                     parse_polynomial(value, variable, symbols.names, where=where)
                 case "IntervalText":
                     read_poles(value, symbols, where)
-                case "GainText" | "MatrixText" | "SignalText" as kind:
-                    known = symbols.with_time() if kind == "SignalText" else symbols
-                    _read_cells(value, known, where, others)
-                    read_matrix(value, known, where)
+                case "GainText" | "MatrixText":
+                    _read_cells(value, symbols, where, others)
+                    read_matrix(value, symbols, where)
+                case "SignalText" | "TimeFunctions" as kind:
+                    parse_signal(value, symbols, where, functions=kind == "TimeFunctions")
     others.found += unreadable(expect, symbols.names, variable)
     errors.add_elsewhere(others)

@@ -117,9 +117,9 @@ class Breaker(Generic[B]):
                 name = self.printer.applied(function, self.printer.identity())
                 first, *body = self._argument(argument, room - name.width)
                 return [replace(first, box=self.printer.applied(function, first.box)), *body]
-            case Derivative(operand):
+            case Derivative(operand, name):
                 first, *body = self._operand(operand, Level.FRACTION, room - 2)
-                return [replace(first, box=self.printer.rate(first.box)), *body]
+                return [replace(first, box=self.printer.rate(first.box, name)), *body]
         return [Piece(self.printer.typeset(formula))]
 
     def _written(self, formula: Formula) -> Formula:

@@ -99,8 +99,8 @@ class Glyphs(ABC, Generic[B]):
         """A table in brackets."""
 
     @abstractmethod
-    def rate(self, box: B) -> B:
-        """d/dt of something other than a letter."""
+    def rate(self, box: B, name: str = "t") -> B:
+        """d/dt, or d/d(name), of something other than a letter."""
 
     # -- of functions of time ---------------------------------------------------------------------------------------
 
@@ -117,8 +117,8 @@ class Glyphs(ABC, Generic[B]):
         """A letter given by its LaTeX."""
 
     @abstractmethod
-    def at_start(self, box: B) -> B:
-        """The value of a function at t = 0."""
+    def evaluated(self, box: B, equations: Sequence[B]) -> B:
+        """The value of a function where its times are those of the equations."""
 
     @abstractmethod
     def integral(self, limits: tuple[B, B], integrand: B, name: B) -> B:

@@ -207,9 +207,9 @@ class LatexPrinter(Printer[LatexBox]):
             width += widths.COLUMN_GAP
         return LatexBox(width, Level.ATOM, source, max(2, len(rows)))
 
-    def rate(self, box: LatexBox) -> LatexBox:
+    def rate(self, box: LatexBox, name: str = "t") -> LatexBox:
         """d/dt before a stack."""
-        return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{dt}}{box.source}", max(1, box.height))
+        return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{d{name}}}{box.source}", max(1, box.height))
 
     # -- functions of time ----------------------------------------------------------------------------------------
 
@@ -228,9 +228,11 @@ class LatexPrinter(Printer[LatexBox]):
         """The letter."""
         return LatexBox(widths.source_width(form), Level.ATOM, form)
 
-    def at_start(self, box: LatexBox) -> LatexBox:
+    def evaluated(self, box: LatexBox, equations: Sequence[LatexBox]) -> LatexBox:
         r"""`\left. … \right|_{t=0}`."""
-        return LatexBox(box.width + 1.8, Level.POWER, rf"\left.{box.source}\right|_{{t=0}}", max(1, box.height))
+        where = ",".join(equation.source for equation in equations)
+        width = box.width + 0.2 + widths.SCRIPT * sum(equation.width for equation in equations)
+        return LatexBox(width, Level.POWER, rf"\left.{box.source}\right|_{{{where}}}", max(1, box.height))
 
     def integral(self, limits: tuple[LatexBox, LatexBox], integrand: LatexBox, name: LatexBox) -> LatexBox:
         r"""`\int_0^{2T} … \,dt`."""

@@ -32,7 +32,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import TIMED, is_of_time
+from symobs.notation import TIMED, is_of_time, shows_time
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -100,8 +100,8 @@ class Printer(Glyphs[B]):
                 return self.application(function, argument)
             case Block(rows):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
-            case Derivative(operand):
-                return self.derivative(operand)
+            case Derivative(operand, name):
+                return self.derivative(operand, name)
             case At(operand, name, instant):
                 return self.at_instant(operand, {name: instant})
             case Integral(integrand, _, name, lower, upper):
@@ -188,16 +188,16 @@ class Printer(Glyphs[B]):
 
     def application(self, function: str, argument: Formula) -> B:
         """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
-        if function == "at_0":
-            return self.at_start(self.at_least(Level.POWER, self.typeset(argument)))
         is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
             inner = self.grouped(inner)
         return self.applied(function, inner)
 
-    def derivative(self, operand: Formula) -> B:
+    def derivative(self, operand: Formula, name: str) -> B:
         """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if name != "t":
+            return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)), name)
         if isinstance(operand, Letter) and is_of_time(operand.name):
             return self.rate(self.letter(operand.name, ""))
         if self.discrete:
@@ -213,20 +213,20 @@ class Printer(Glyphs[B]):
         return self.leaf(Scalar.symbol(name))
 
     def at_instant(self, operand: Formula, instants: dict[str, Scalar]) -> B:
-        """B(σ), Φ(t₁, t₀); what is no letter is followed by (t = t₁)."""
+        """B(σ), Φ(t₁, t₀); what is no letter, or one that shows its time, has t = t₁ behind a bar."""
         match operand:
             case At(inner, name, instant):
                 return self.at_instant(inner, {name: instant, **instants})
             case Letter(name) if name in TIMED:
                 shown = [self.scalar(instants.get(time, Scalar.symbol(time))) for time in TIMED[name]]
                 return self.called(self.letter(f"{name}_", ""), shown)
-            case Letter(name):
+            case Letter(name) if not shows_time(name):
                 return self.called(self.letter(name, ""), [self.scalar(instant) for instant in instants.values()])
         equations = [
             self.joined([self.symbol(name), self.comparison("="), self.scalar(instant)], Level.SUM)
             for name, instant in instants.items()
         ]
-        return self.called(self.at_least(Level.ATOM, self.typeset(operand)), equations)
+        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), equations)
 
     def called(self, function: B, arguments: Sequence[B]) -> B:
         """A function before its arguments in parentheses."""

@@ -181,9 +181,9 @@ class TextPrinter(Printer[TextBox]):
         body = TextBox(sum(widths) + 2 * len(widths) - 2, Level.ATOM, tuple(lines), (len(lines) - 1) // 2)
         return self._fenced(body, "[", "]", Level.ATOM)
 
-    def rate(self, box: TextBox) -> TextBox:
+    def rate(self, box: TextBox, name: str = "t") -> TextBox:
         """d/dt before a stack."""
-        return self.joined([text_box("d/dt "), box], Level.PRODUCT)
+        return self.joined([text_box(f"d/d{name} "), box], Level.PRODUCT)
 
     # -- functions of time ----------------------------------------------------------------------------------------
 
@@ -199,9 +199,10 @@ class TextPrinter(Printer[TextBox]):
         """The letter: a Greek one by its glyph."""
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
 
-    def at_start(self, box: TextBox) -> TextBox:
+    def evaluated(self, box: TextBox, equations: Sequence[TextBox]) -> TextBox:
         """X|t=0."""
-        return self.joined([box, text_box("|t=0")], Level.POWER)
+        where = ",".join(equation.line.replace(" ", "") for equation in equations)
+        return self.joined([box, text_box(f"|{where}")], Level.POWER)
 
     def integral(self, limits: tuple[TextBox, TextBox], integrand: TextBox, name: TextBox) -> TextBox:
         """∫(0..T) … dt."""
