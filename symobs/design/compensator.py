@@ -160,22 +160,38 @@ def compensator(
     singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
     Source: S0, section 4.3, (4.23)-(4.29), and section 4.6.
     """
-    plant = plant.knowing(control_poles, control_polynomial, observer_poles, observer_polynomial)
-    plant.require("B", "C", task="compensator")
-
-    def wanted(loop: str, poles: object, polynomial: object, degree: int) -> DesiredPolynomial | None:
-        names = (f"{loop}_poles", f"{loop}_polynomial")
-        return desired_polynomial(plant, poles, polynomial, names=names, degree=degree)
-
-    minimal = "minimal" in (observer, method.removesuffix("_order"))
-    estimated = plant.order - (plant.outputs if minimal else 0)
-    _, chosen, control, estimate = together(
-        lambda: _require_kind(observer, plant, method),
-        lambda: choose("compensator", method, _METHODS.get(observer, "separation")),
-        lambda: wanted("control", control_poles, control_polynomial, plant.order),
-        lambda: wanted("observer", observer_poles, observer_polynomial, estimated),
+    control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
+    found = observer_based(
+        plant, task="compensator", control=control, estimate=estimate, observer=observer, method_name=method
     )
-    found: Result = chosen.solve(plant, control, estimate).asked(method)
+    return found.asked(method)
+
+
+def observer_based(
+    plant: StateSpace,
+    *,
+    task: str,
+    control: tuple[object, object],
+    estimate: tuple[object, object],
+    observer: str,
+    method_name: str = "auto",
+) -> OutputFeedback:
+    """Return the compensator for what a task was given as poles or polynomial of each loop."""
+    plant = plant.knowing(*control, *estimate)
+    plant.require("B", "C", task=task)
+
+    def wanted(loop: str, given: tuple[object, object], degree: int) -> DesiredPolynomial | None:
+        return desired_polynomial(plant, *given, names=(f"{loop}_poles", f"{loop}_polynomial"), degree=degree)
+
+    minimal = "minimal" in (observer, method_name.removesuffix("_order"))
+    estimated = plant.order - (plant.outputs if minimal else 0)
+    _, chosen, control_wish, observer_wish = together(
+        lambda: _require_kind(observer, plant, method_name),
+        lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
+        lambda: wanted("control", control, plant.order),
+        lambda: wanted("observer", estimate, estimated),
+    )
+    found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found
 
 

@@ -1,0 +1,224 @@
+"""Feedforward for unit DC gain: u = −K x̂ + F v with y = v at rest; the observer's modes do not appear from v to y."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.analysis.strata import strata
+from symobs.certificate import Certificate, Claim
+from symobs.design.compensator import observer_based
+from symobs.design.gain import letters_of
+from symobs.design.output_feedback import OutputFeedback, Realisation
+from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Matrix, Scalar, kernel
+from symobs.formula import Environment
+from symobs.formula.term import block, identity, letter
+from symobs.method import Case, Result, choose, method, task
+from symobs.page import Page, relation
+from symobs.specification import Name, Poles, PolynomialText
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.conditions import Condition
+    from symobs.system import StateSpace
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FeedforwardDesign(Result):
+    """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
+
+    `loop` is the compensator whose gains are used, with its own claims; `w` is None, or a row with w G = 0 for the gain
+    G at rest from the input, so that no F can make G F = I.
+    """
+
+    loop: OutputFeedback
+
+    task: ClassVar[str] = "feedforward"
+
+    @classmethod
+    def of(cls, loop: OutputFeedback, method_name: str) -> Self:
+        """Return the feedforward of a loop; raises `InputError` where a control pole leaves no state of rest."""
+        plant = loop.plant
+        answer: dict[str, Any] = {"F": None, "transfer_function": None, "w": None}
+        if loop.answer["K"] is not None and loop.answer["L"] is not None:
+            G = gain_at_rest(loop)
+            left = kernel(G.T)
+            if left.shape[1]:
+                answer["w"] = left.select(range(left.shape[0]), [0]).T
+            else:
+                F = (G.inverse() if plant.inputs == plant.outputs else G.T @ (G @ G.T).inverse()).normal()
+                T = response(loop, F).function(plant.variable)
+                single = F.shape == (1, 1)
+                answer |= {"F": F[0, 0] if single else F, "transfer_function": T[0, 0] if single else T}
+        return cls(plant, method_name, answer, loop)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
+        K, F, w = self.loop.answer["K"], self.answer["F"], self.answer["w"]
+        have = K is not None and self.loop.answer["L"] is not None
+        if have != ((F is None) != (w is None)) or (F is None) != (self.answer["transfer_function"] is None):
+            message = "there is a feedforward exactly where both gains exist and the gain at rest has full rank"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if not have:
+            return
+        m = self.plant.matrices
+        values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
+        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.coupling}
+        e = Environment(variable=self.plant.variable, values=values)
+        A, B, C, D = (letter(name, e) for name in "ABCD")
+        K_ = letter("K", e)
+        order, one = self.plant.order, identity(self.plant.order, e)
+        rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
+        at_rest = (C - D @ K_) @ rest @ B + D
+        if w is not None:
+            yield Claim(relation(letter("w", e) @ at_rest, Matrix.zeros(1, self.plant.inputs)), e, "w*G = 0")
+            yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
+            return
+        F_, T, s = letter("F", e), letter("T_v", e), letter("s", e)
+        yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
+        yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
+        errors = self.loop.error_coordinates.shape[0] - order
+        zero = e.having(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
+        A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
+        seen = block([[C - D @ K_, D @ K_e]])
+        driven = block([[B @ F_], [nothing]])
+        whole = seen @ (letter("s", zero) @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
+        yield Claim(relation(letter("T_v", zero), whole), zero, "the whole loop with its error responds alike")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the loop and of F."""
+        return (*self.loop.all_certificates, *self.certificates)
+
+    @cached_property
+    def coupling(self) -> Matrix:
+        """What multiplies the error in u = −K x + K_e e + F v: K, or K₂ with an observer of minimal order."""
+        order = self.plant.order
+        shown = self.loop.error_coordinates
+        if shown.shape[0] == 2 * order:
+            return self.loop.answer["K"]
+        return self.loop.split[1]  # type: ignore[attr-defined, no-any-return]
+
+    @cached_property
+    def gain_at_rest(self) -> Matrix:
+        """G = (C − DK)(−A + BK)⁻¹B + D."""
+        return gain_at_rest(self.loop)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where either gain, or F, does not exist."""
+        return "no" if self.answer["F"] is None else super().verdict
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """What must not vanish besides: det G, or det GGᵀ where there are more inputs than outputs."""
+        if self.answer["F"] is None:
+            return ()
+        G = self.gain_at_rest
+        return ((G if self.plant.inputs == self.plant.outputs else G @ G.T).determinant(),)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the gains and of F."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        gains = [*self.loop.feedback.holds_where, *self.loop.estimator.holds_where]
+        return (*own, *(condition for condition in gains if condition.expression not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, and those where the gain at rest loses its rank."""
+
+        def on(plant: StateSpace, values: dict[str, Scalar]) -> Self:
+            return type(self).of(self.loop.on(plant, values), self.method)
+
+        gains = [case for design in (self.loop.feedback, self.loop.estimator) for case in design.case_tree]
+        there = [
+            case if case.result is None else Case(case.when, case.substitution, on(case.result.plant, dict(case.substitution)))
+            for case in gains
+        ]
+        return (*there, *strata(self.plant, [value.numerator for value in self.existence], on))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract, the gains and the loop's polynomial."""
+        loop = self.loop
+        found = {name: self.answer[name] for name in ("F", "transfer_function")}
+        found |= {"K": loop.answer["K"], "L": loop.answer["L"]}
+        if self.answer["F"] is None:
+            modes = loop.feedback.unmoved_modes + loop.estimator.unmoved_modes
+            return found | {"fixed_modes": modes}
+        return found | {"polynomial": loop.loop_polynomial, "closed_loop_matrix": loop.error_coordinates}
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The new input, and what the loop's page starts with."""
+        return {"v_r": self.plant.outputs, **self.loop.free_signals}
+
+    def write(self, page: Page) -> None:
+        """Write the page."""
+        from symobs.design.feedforward_page import write_feedforward  # noqa: PLC0415 - the page stands on this type
+
+        write_feedforward(page, self)
+
+
+def gain_at_rest(loop: OutputFeedback) -> Matrix:
+    """Return (C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
+    m, K = loop.plant.matrices, loop.answer["K"]
+    closed = m.B @ K - m.A
+    if loop.plant.is_discrete:
+        closed = closed + Matrix.identity(loop.plant.order)
+    try:
+        states = closed.solve(m.B)
+    except ZeroDivisionError:
+        place = 1 if loop.plant.is_discrete else 0
+        message = f"{place} is among the control poles, so the loop has no state of rest"
+        raise InputError(message, where="specification.control_poles", repair=f"leave {place} out") from None
+    return ((m.C - m.D @ K) @ states + m.D).normal()
+
+
+def response(loop: OutputFeedback, F: Matrix) -> Realisation:
+    """Return v → y: A − BK, BF, C − DK, DF."""
+    m, K = loop.plant.matrices, loop.answer["K"]
+    return Realisation((m.A - m.B @ K).normal(), (m.B @ F).normal(), (m.C - m.D @ K).normal(), (m.D @ F).normal())
+
+
+@method("feedforward/static", source="S3, section G and (12)")
+def static(loop: OutputFeedback) -> FeedforwardDesign:
+    """F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
+    return FeedforwardDesign.of(loop, "static")
+
+
+@task
+def feedforward(
+    plant: StateSpace,
+    *,
+    control_poles: Poles = None,
+    control_polynomial: PolynomialText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    observer: Name = "full",
+    method: Name = "auto",
+) -> Result:
+    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
+
+    plant                                   n states, m inputs, p ≤ m outputs, D allowed
+    control_poles or control_polynomial     the n poles of A − BK, 0 (in discrete time 1) not among them
+    observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of the observer
+    observer                                `full` or `minimal`
+    Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
+    times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (at 1) the verdict is
+    `no`.  Raises `InputError` for wrong poles or shapes.
+    Source: S3, section G and (12).
+    """
+    loop = observer_based(
+        plant,
+        task="feedforward",
+        control=(control_poles, control_polynomial),
+        estimate=(observer_poles, observer_polynomial),
+        observer=observer,
+    )
+    return choose("feedforward", method, "static").solve(loop).asked(method)
