@@ -112,6 +112,7 @@ class Page:
             signals={"x": None, "x_hat": None, "u": None} | dict.fromkeys(others),
             sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)} | others,
             signs=plant.symbols.signs,
+            relations=plant.relations,
         )
         self.environment = self.start
         self.steps: list[Step] = []
@@ -120,8 +121,8 @@ class Page:
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these functions of time: how they depend on each other is known from the start."""
         meanings, vanishing = identities(values)
-        self.start = replace(self.start, coefficients=meanings, relations=vanishing)
-        self.environment = replace(self.environment, coefficients=meanings, relations=vanishing)
+        self.start = replace(self.start, coefficients=meanings).under(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
         for root in _roots_of_sums(values):

@@ -43,11 +43,17 @@ class Work:
 
 @dataclass(frozen=True)
 class Region:
-    """The parameters that are considered: real, with declared signs, and none of `nonzero` (irreducible) vanishes."""
+    """The parameters that are considered: real, with declared signs, on a locus, and none of `nonzero` vanishes."""
 
     signs: Mapping[str, str]
     nonzero: frozenset[Scalar] = frozenset()
     work: Work = field(default_factory=Work, compare=False)
+    ideal: Ideal | None = None
+
+    @cached_property
+    def whole(self) -> Locus:
+        """All of them, as a locus."""
+        return EVERYWHERE if self.ideal is None else Locus.of(self.ideal)
 
     def vanishing(self, value: Scalar) -> tuple[Scalar, ...]:
         """Return the distinct irreducible factors of a numerator that can be 0 here."""
@@ -97,7 +103,7 @@ def _simplicity(value: Scalar) -> tuple[int, int, str]:
 def loci(equations: Iterable[Scalar], region: Region) -> tuple[Locus, ...]:
     """Return the common zeros of polynomials in a region as loci, none of which is seen to lie in another."""
     budget = iter(range(_BRANCHES))
-    return maximal(_branches(tuple(equations), region, budget))
+    return maximal(_branches((*equations, *region.whole.equations), region, budget))
 
 
 def maximal(found: Iterable[Locus]) -> tuple[Locus, ...]:

@@ -176,6 +176,11 @@ def conditions_of(case: Case) -> Relation | Together:
     return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
 
 
+def stratum_of(case: Case) -> Relation | Together:
+    """Return what a case says of the parameters: a single equation as p = 0."""
+    return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
+
+
 def _as_written(condition: Condition) -> Relation:
     value, operator = condition.expression, condition.operator.replace("==", "=")
     terms = value.terms()

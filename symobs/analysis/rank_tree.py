@@ -13,17 +13,14 @@ from collections import deque
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symobs.analysis.loci import EVERYWHERE, Locus, loci, maximal
+from symobs.analysis.loci import Locus, loci, maximal
 from symobs.conditions import FACTORED_UP_TO
-from symobs.exact import Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, echelon, independent_rows, modulo
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from symobs.analysis.loci import Region
-
-#: What is 1 over a polynomial that does not vanish; no parameter's name begins so.
-WITNESS = "_w"
 
 #: A minor: its rows and its columns.
 Minor = tuple[tuple[int, ...], tuple[int, ...]]
@@ -86,8 +83,8 @@ class _Search:
 
     def eliminated(self, locus: Locus) -> tuple[int, Minor, Scalar]:
         """Return the rank on a locus, a minor of that order and its value, 0 where that vanishes on the locus."""
-        if not locus.equations:
-            return len(self.generic[0]), self.generic, self.matrix.select(*self.generic).determinant().numerator
+        if locus == self.region.whole:
+            return len(self.generic[0]), self.generic, self._minor(self.generic)
         if self.left <= 0:
             raise _Exhausted
         self.left -= 1
@@ -98,8 +95,12 @@ class _Search:
             rows = independent_rows(self.matrix.select(range(self.matrix.shape[0]), columns), ideal)
         except TooLarge as error:
             raise _Exhausted from error
-        value = self.matrix.select(rows, columns).determinant().numerator
-        return len(columns), (rows, columns), Scalar.of(0) if value in ideal else value
+        return len(columns), (rows, columns), self._minor((rows, columns), ideal)
+
+    def _minor(self, minor: Minor, ideal: Ideal | None = None) -> Scalar:
+        """Return the numerator of a minor, 0 where it lies in an ideal."""
+        value = self.matrix.select(*minor).determinant().numerator
+        return Scalar.of(0) if ideal is not None and value in ideal else value
 
     def drops(self, locus: Locus) -> tuple[int, list[Minor], list[Locus]]:
         """Return the rank on a locus, minors of that order, and the loci where all of them vanish."""
@@ -133,9 +134,8 @@ class _Search:
 
     def _sharpened(self, locus: Locus, minor: Minor) -> Locus | None:
         """Return the same locus with an entry of a minor among its equations that vanishes on it unseen."""
-        free = Scalar.symbol(WITNESS)
         for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
-            if locus.ideal is None or value in locus.ideal or not locus.ideal.having(1 - free * value).is_whole:
+            if locus.ideal is None or value in locus.ideal or not locus.ideal.having(apart_from_zero(value)).is_whole:
                 continue
             found = loci((*locus.equations, value), self.region)
             if len(found) == 1 and found[0].ideal is not None:
@@ -151,7 +151,7 @@ def rank_tree(matrix: Matrix, A: Matrix, region: Region, minor: Minor, kernel: K
     search = _Search(matrix, region, minor)
     nodes: dict[Locus, Node] = {}
     undecided: list[Locus] = []
-    waiting = deque([EVERYWHERE])
+    waiting = deque([region.whole])
     while waiting:
         locus = waiting.popleft()
         if locus in nodes:
@@ -163,7 +163,7 @@ def rank_tree(matrix: Matrix, A: Matrix, region: Region, minor: Minor, kernel: K
             continue
         undecided += [each for each in nodes[locus].below if each.ideal is None]
         waiting += [each for each in nodes[locus].below if each.ideal is not None]
-    generic = replace(nodes.pop(EVERYWHERE), kernel=kernel)
+    generic = replace(nodes.pop(region.whole), kernel=kernel)
     kept = []
     for rank in sorted({node.rank for node in nodes.values()}, reverse=True):
         kept += [nodes[each] for each in maximal(each for each, node in nodes.items() if node.rank == rank)]
@@ -249,17 +249,7 @@ def with_restriction(N: Matrix, A: Matrix, ideal: Ideal | None = None) -> Kernel
     if not count or len(free) < len(count):
         return Kernel(N, Matrix.zeros(len(count), len(count)), free)
     X = N.select(free, count).solve((A @ N).select(free, count)).normal()
-    if ideal is not None:
-        X = Matrix.of([[_reduced(entry, ideal) for entry in row] for row in X.rows], len(count))
-    return Kernel(N, X, free)
-
-
-def _reduced(value: Scalar, ideal: Ideal) -> Scalar:
-    """Return a rational function with numerator and denominator in normal form, kept where that is shorter."""
-    above, below, one = ideal.reduced_column([value.numerator, value.denominator, Scalar.of(1)])
-    if below.is_zero or one.is_zero:
-        return value
-    return above / below if above.size + below.size <= value.size else value
+    return Kernel(N, modulo(X, ideal), free)
 
 
 def primitive(entries: Iterable[Scalar]) -> list[Scalar]:

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from symobs.analysis.strata import carried
 from symobs.certificate import Certificate, Claim, check
 from symobs.conditions import sign_of
 from symobs.design.gain import GainDesign, letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected, InputError, together
-from symobs.exact import Factored, Matrix, Scalar, controller, factored, transfer
+from symobs.exact import Factored, Matrix, Scalar, controller, factored, modulo, transfer
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -52,7 +53,7 @@ class CompensatorDesign(Result):
         F = None
         if K is not None and L is not None:
             numerator, denominator = own_transfer(feedback, estimator)
-            F = numerator / denominator
+            F = plant.simplified(numerator / denominator)
         return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
 
     def with_answer(self, name: str, value: object) -> Self:
@@ -112,20 +113,10 @@ class CompensatorDesign(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
-        found = []
-        for design in (self.feedback, self.estimator):
-            for case in design.case_tree:
-                if case.result is None:
-                    found.append(case)
-                    continue
-                other = self._on(case)
-                found.append(Case(case.when, case.substitution, other))
-        return tuple(found)
+        return carried(self.plant, (*self.feedback.case_tree, *self.estimator.case_tree), self._on)
 
-    def _on(self, case: Case) -> CompensatorDesign:
+    def _on(self, plant: StateSpace, values: dict[str, Scalar]) -> CompensatorDesign:
         """Return the compensator on a stratum."""
-        assert case.result is not None  # noqa: S101 - the caller's branch
-        plant, values = case.result.plant, dict(case.substitution)
         control, observer = self.feedback.desired, self.estimator.desired
         assert control is not None and observer is not None  # noqa: S101, PT018 - cases belong to desired polynomials
         feedback = StateFeedbackDesign.of(plant, control.substitute(values), self.method)
@@ -160,7 +151,7 @@ class CompensatorDesign(Result):
         form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e))
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
         return form
 
     @cached_property
@@ -265,6 +256,9 @@ def compensator_matrix(plant: StateSpace, K: Matrix, L: Matrix) -> Matrix:
 def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tuple[Scalar, Scalar]:
     """Return the compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
     m, K, L = feedback.plant.matrices, feedback.answer["K"], estimator.answer["L"]
+    if feedback.plant.equations:  # the gains place the poles on the stratum only
+        own = modulo(compensator_matrix(feedback.plant, K, L), feedback.plant.ideal)
+        return transfer(own, L, K, Scalar.of(0), feedback.plant.variable)
     closed = feedback.answer["polynomial"] * estimator.answer["polynomial"]
     return controller(m.A, m.B, m.C, m.D[0, 0], K, L, closed, feedback.plant.variable)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from symobs.analysis.observability import Observability
 from symobs.analysis.pages import given
 from symobs.design.assignment import Pair
 from symobs.design.canonical import canonical_gain
@@ -28,6 +29,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.analysis.rank_result import RankResult
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.system import StateSpace
@@ -39,11 +41,12 @@ class ObserverDesign(GainDesign):
 
     task: ClassVar[str] = "observer"
     letter: ClassVar[str] = "L"
+    rank_test: ClassVar[type[RankResult]] = Observability
 
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (A, C)."""
-        return Pair(plant.matrices.A, plant.matrices.C, plant.variable)
+        return Pair(plant.matrices.A, plant.matrices.C, plant.variable, plant.equations)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:

@@ -184,7 +184,7 @@ class ReducedOrderObserver(Result):
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
             T = self.answer["T"].substitute(values)
-            usable = not T.determinant().is_zero
+            usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
         return strata(self.plant, (determinant, *self.inner.existence), solve)
@@ -209,7 +209,9 @@ class ReducedOrderObserver(Result):
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
     """Return the plant of x₂ alone, seen through A₁₂."""
-    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols)
+    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols).restricted(
+        plant.equations, plant.nonzero
+    )
 
 
 @method("reduced_order_observer/partition", source="S0, (4.32)-(4.41); Luenberger 1971")

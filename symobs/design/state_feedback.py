@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from symobs.analysis.observability import Controllability
 from symobs.analysis.pages import given
 from symobs.design.assignment import Pair
 from symobs.design.canonical import canonical_gain
@@ -28,6 +29,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.analysis.rank_result import RankResult
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.page import Page
@@ -40,11 +42,12 @@ class StateFeedbackDesign(GainDesign):
 
     task: ClassVar[str] = "state_feedback"
     letter: ClassVar[str] = "K"
+    rank_test: ClassVar[type[RankResult]] = Controllability
 
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (Aᵀ, Bᵀ)."""
-        return Pair(plant.matrices.A.T, plant.matrices.B.T, plant.variable)
+        return Pair(plant.matrices.A.T, plant.matrices.B.T, plant.variable, plant.equations)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:
