@@ -137,10 +137,6 @@ entry = st.integers(-3, 3)
 @given(st.integers(1, 3).flatmap(lambda n: st.lists(st.lists(entry, min_size=n, max_size=n), min_size=n, max_size=n)))
 def test_exponentials_of_random_matrices(rows: list[list[int]]) -> None:
     result = symobs.matrix_exponential(symobs.StateSpace(rows))
-    if result.verdict == "undecided":
-        factors = sympy.factor_list(sympy.Matrix(rows).charpoly().as_expr())[1]
-        assert max(sympy.degree(factor) for factor, _ in factors) > 2
-        return
     found = numeric(result.fields["matrix"], {"t": "3/4"})
     assert close(found, expm(mpmath.matrix(rows), mpmath.mpf(3) / 4))
     assert not result.matrix.has(sympy.I)
@@ -221,7 +217,7 @@ def test_equal_rates_are_a_case() -> None:
 
 def test_what_has_no_closed_form_says_so() -> None:
     plant = symobs.StateSpace("[0 1 0; 0 0 1; -1 -1 0]", C="[1 0 0]")
-    for result in (symobs.matrix_exponential(plant), symobs.gramian(plant), symobs.initial_state(plant, output="1")):
+    for result in (symobs.gramian(plant), symobs.initial_state(plant, output="1")):
         assert result.verdict == "undecided"
         assert "s**3 + s + 1" in result.question
         assert result.derivation.check() is not None
@@ -352,13 +348,13 @@ PLANTS = (
     "[1 2; 3 0]",
     "[0 1 0; 0 0 1; -2 -4 -3]",
     "[0 1 0 0; -2 0 1 0; 0 0 0 1; 1 0 -2 0]",
-    "[0 1 0 0; 0 -1 -1 0; 0 0 0 1; 0 1 2 0]",
+    "[0 1 0 0; 0 0 -1 0; 0 0 0 1; 0 0 11 0]",
 )
 
 
 def test_lengths_against_sympy() -> None:
     """Print the LaTeX lengths of ten exponentials beside SymPy's; ours are never more than half as long again."""
-    for text in PLANTS[:8]:
+    for text in PLANTS:
         result = symobs.matrix_exponential(symobs.StateSpace(text))
         ours = len(sympy.latex(result.matrix))
         theirs = len(sympy.latex(sympy.Matrix(result.plant.A * t).exp()))

@@ -37,6 +37,23 @@ class Function:
         """The generator's name."""
         return f"{self.kind}({self.argument})"
 
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The plain symbols inside."""
+        return symbols_in(self.argument)
+
+    def rate(self, time: str) -> Scalar:
+        """Return d/dt, by the chain rule."""
+        if self.kind == "sqrt":
+            return ZERO
+        sign, kind = _RATES[self.kind]
+        return derivative(self.argument, time) * generator(kind, self.argument) * sign
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the function with symbols of its argument replaced."""
+        argument = substitute(self.argument, values)
+        return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
+
 
 _KNOWN: dict[str, Function] = {}
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
@@ -49,7 +66,11 @@ def known(name: str) -> Function | None:
 
 def generator(kind: str, argument: Scalar) -> Scalar:
     """Return the generator of this name as a scalar."""
-    function = Function(kind, argument)
+    return registered(Function(kind, argument))
+
+
+def registered(function: Function) -> Scalar:
+    """Return a function as a generator, known by its name from now on."""
     _KNOWN[function.name] = function
     return Scalar.symbol(function.name)
 
@@ -204,10 +225,7 @@ def _rate(name: str, time: str) -> Scalar:
     if name == time:
         return ONE
     found = known(name)
-    if found is None or found.kind == "sqrt":
-        return ZERO
-    sign, kind = _RATES[found.kind]
-    return derivative(found.argument, time) * generator(kind, found.argument) * sign
+    return ZERO if found is None else found.rate(time)
 
 
 @overload
@@ -223,10 +241,8 @@ def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar |
     images = {name: values[name] for name in value.names if name in values}
     for name in value.names:
         found = known(name)
-        if found is None or not symbols_in(found.argument) & values.keys():
-            continue
-        argument = substitute(found.argument, values)
-        images[name] = square_root(argument) if found.kind == "sqrt" else function(found.kind, argument)
+        if found is not None and found.symbols & values.keys():
+            images[name] = found.moved(values)
     return value.substitute(images) if images else value
 
 
@@ -235,14 +251,14 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
     names: set[str] = set()
     for name in value.names:
         found = known(name)
-        names |= symbols_in(found.argument) if found is not None else {name}
+        names |= found.symbols if found is not None else {name}
     return frozenset(names)
 
 
 def symbols_named(name: str) -> frozenset[str]:
     """Return the plain symbols of a generator: its own name, or those of its argument."""
     found = known(name)
-    return symbols_in(found.argument) if found is not None else frozenset((name,))
+    return found.symbols if found is not None else frozenset((name,))
 
 
 # -- how generators depend on each other -----------------------------------------------------------------------------
@@ -276,7 +292,7 @@ def identities(
     found = {f for value in values for name in value.names if (f := known(name)) is not None}
     roots = {f for f in found if f.kind == "sqrt"}
     roots |= {inner for f in found for name in f.argument.names if (inner := known(name)) is not None}
-    moving = sorted((f for f in found if f.kind != "sqrt"), key=lambda f: f.name)
+    moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument).items():

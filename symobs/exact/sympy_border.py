@@ -9,8 +9,10 @@ import sympy  # noqa: TID253 - this module is imported only where SymPy objects 
 
 from symobs.errors import InexactInput, InputError
 from symobs.exact import functions
+from symobs.exact.algebraic import EIGENVALUE
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
+from symobs.exact.root_sum import RootSum
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -41,6 +43,13 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
     found = functions.known(name)
     if found is None:
         return objects.setdefault(name, sympy.Symbol(name))
+    if isinstance(found, RootSum):
+        root = sympy.Symbol(found.bound)
+        named = {EIGENVALUE: Scalar.symbol(found.bound)}
+        q, summand = (
+            scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
+        )
+        return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
     return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
 
 

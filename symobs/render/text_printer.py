@@ -195,6 +195,10 @@ class TextPrinter(Printer[TextBox]):
         """√3, √(ω² - b²)."""
         return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
 
+    def summed(self, over: TextBox, term: TextBox) -> TextBox:
+        """Σ[λ³ + λ + 1 = 0] …."""
+        return self.joined([text_box("Σ["), over, text_box("] "), term], Level.PRODUCT)
+
     def named(self, form: str) -> TextBox:
         """The letter: a Greek one by its glyph."""
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
