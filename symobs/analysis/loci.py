@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _BRANCHES = 100
 _TERMS = 1_000
 #: The most terms of all the systems together that are worked on in one region.
-_WORK = 8_000
+_WORK = 30_000
 #: The most terms of a sum of squares, before it is multiplied out.
 _SQUARED = 2_000
 
@@ -58,6 +58,10 @@ class Region:
     def vanishing(self, value: Scalar) -> tuple[Scalar, ...]:
         """Return the distinct irreducible factors of a numerator that can be 0 here."""
         return tuple(f for f in vanishing_factors([value], self.signs) if f not in self.nonzero)
+
+    def simplest_first(self, values: Iterable[Scalar]) -> list[Scalar]:
+        """Sort polynomials so that those with few factors, which others contain, come first."""
+        return sorted(values, key=lambda value: (len(self.vanishing(value)), value.size))
 
 
 @dataclass(frozen=True)
@@ -132,6 +136,8 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         factors = region.vanishing(equation)
         if len(factors) == 1:
             simple.append(factors[0])
+            continue
+        if any(factor in simple for factor in factors):
             continue
         for factor in factors:
             if next(budget, None) is None:

@@ -18,7 +18,7 @@ from symobs.conditions import FACTORED_UP_TO
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, echelon, independent_rows, modulo
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from symobs.analysis.loci import Region
 
@@ -28,6 +28,9 @@ Minor = tuple[tuple[int, ...], tuple[int, ...]]
 #: The most eliminations of one tree, and terms of a test matrix whose rank is asked for on a locus.
 _ELIMINATIONS = 150
 _TERMS = 3_000
+
+#: The most minors of the same rows that are looked at together, and terms of one of them.
+_BESIDE, _TERMS_BESIDE = 20, 200
 
 #: Beyond this many terms a matrix is not eliminated but its rank read off at a point.
 ELIMINATED_UP_TO = 300
@@ -105,11 +108,17 @@ class _Search:
     def drops(self, locus: Locus) -> tuple[int, list[Minor], list[Locus]]:
         """Return the rank on a locus, minors of that order, and the loci where all of them vanish."""
         rank, minor, value = self.eliminated(locus)
-        minors, found = [minor], []
+        minors, values = [minor], [value]
+        found: list[Locus] = []
         if value.is_zero:  # entries that are not seen to vanish, though products of them do
             sharper = self._sharpened(locus, minor)
             return self.drops(sharper) if sharper is not None else (rank, minors, [Locus(locus.equations)])
-        for part in loci((*locus.equations, value), self.region):
+        if locus.equations and not self.region.vanishing(value):
+            return rank, minors, found
+        for other, beside in self._beside(locus, minor):
+            minors.append(other)
+            values.append(beside)
+        for part in loci((*locus.equations, *self.region.simplest_first(values)), self.region):
             if part.ideal is None:
                 found.append(part)
                 continue
@@ -124,6 +133,17 @@ class _Search:
             except _Exhausted:
                 found.append(Locus(part.equations))
         return rank, minors, found
+
+    def _beside(self, locus: Locus, minor: Minor) -> Iterator[tuple[Minor, Scalar]]:
+        """Yield the other minors of the same rows on a locus, where they are few: the rank drops where all vanish."""
+        rows, columns = minor
+        every = range(self.matrix.shape[1])
+        if not locus.equations or not rows or math.comb(len(every), len(rows)) > _BESIDE:
+            return
+        for chosen in itertools.combinations(every, len(rows)):
+            value = self._minor((rows, chosen), locus.ideal)
+            if chosen != columns and not value.is_zero and value.size <= _TERMS_BESIDE:
+                yield (rows, chosen), value
 
     def node(self, locus: Locus) -> Node:
         """Return the node of a locus, with the loci of smaller rank below it."""
@@ -218,9 +238,14 @@ def _best_kernel(
     """Return a kernel that holds on as much of a node's locus as possible, and where it does not."""
     best: tuple[Kernel, tuple[Locus, ...]] | None = None
     count = matrix.shape[1]
+    seen: set[tuple[Scalar, frozenset[Matrix]]] = set()
     for shift in range(count):
         order = tuple((index + shift) % count for index in range(count))
         kernel = kernel_on(matrix, A, node.locus.ideal if node.locus.equations else None, order)
+        columns = frozenset(kernel.basis.select(range(count), [j]) for j in range(kernel.basis.shape[1]))
+        if (kernel.restricted.common_denominator(), columns) in seen:
+            continue
+        seen.add((kernel.restricted.common_denominator(), columns))
         failing = _failing(kernel, node.locus, below, region)
         if best is None or len(failing) < len(best[1]):
             best = kernel, failing
@@ -282,7 +307,7 @@ def _failing(kernel: Kernel, locus: Locus, below: list[Locus], region: Region) -
     for values in ([value for value in independent if not value.is_zero], [meaningful]):
         if any(value.is_constant for value in values):
             continue
-        parts = loci((*locus.equations, *values), region)
+        parts = loci((*locus.equations, *region.simplest_first(values)), region)
         failing += [part for part in parts if not any(part.lies_in(other) for other in below) and part != locus]
     return maximal(failing)
 
