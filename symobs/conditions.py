@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
+from symobs.exact.functions import PI
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -82,7 +83,7 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     for coefficient, powers in polynomial.each_term():
         sign = "positive" if coefficient > 0 else "negative"
         for name, exponent in powers:
-            sign = _product_sign(sign, _power_sign(signs.get(name, "real"), exponent))
+            sign = _product_sign(sign, _power_sign(signs.get(name, "positive" if name == PI else "real"), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break

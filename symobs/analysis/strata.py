@@ -14,6 +14,7 @@ from symobs.analysis.rank_tree import Node
 from symobs.conditions import Condition, never_zero, vanishing_factors
 from symobs.errors import CertificateRejected
 from symobs.exact import TooLarge
+from symobs.exact.functions import NotWritten
 from symobs.method import Case
 
 if TYPE_CHECKING:
@@ -89,6 +90,8 @@ def _case(
         yield Case(when, values or {}, solve(there, values or {}))
     except ZeroDivisionError:
         return
+    except NotWritten:
+        yield Case(when, values or {}, None)
     except (CertificateRejected, TooLarge):
         if values is not None and not plant.equations:
             raise

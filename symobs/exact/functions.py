@@ -23,6 +23,15 @@ if TYPE_CHECKING:
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
+#: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
+PI = "pi"
+#: cos(π r) for r = 0, 1/6, 1/4, 1/3, 1/2: (rational factor, radicand).
+_COSINES = {Fraction(0): (Fraction(1), 1), Fraction(1, 6): (Fraction(1, 2), 3), Fraction(1, 4): (Fraction(1, 2), 2)}
+_COSINES |= {Fraction(1, 3): (Fraction(1, 2), 1), Fraction(1, 2): (Fraction(0), 1)}
+
+
+class NotWritten(ArithmeticError):
+    """A value that is not written with square roots here."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +88,24 @@ def function(kind: str, argument: Scalar) -> Scalar:
     """Return kind(argument); arguments of even and odd functions are given a positive leading coefficient."""
     if argument.is_zero:
         return ONE if kind in {"exp", "cos", "cosh"} else ZERO
+    if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
+        turns = (argument / Scalar.symbol(PI)).fraction()
+        return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
     if kind == "exp" or not leads_with_minus(argument):
         return generator(kind, argument)
     value = generator(kind, -argument)
     return -value if kind in {"sin", "sinh"} else value
+
+
+def _cosine(turns: Fraction) -> Scalar:
+    """Return cos(π r).  Raises `NotWritten` where the table does not have it."""
+    turns = abs((turns + 1) % 2 - 1)
+    sign, turns = (-1, 1 - turns) if turns > Fraction(1, 2) else (1, turns)
+    if turns not in _COSINES:
+        message = f"cos({turns}*pi) is not written with square roots here"
+        raise NotWritten(message)
+    front, radicand = _COSINES[turns]
+    return square_root(Scalar.of(radicand)) * front * sign
 
 
 def leads_with_minus(value: Scalar) -> bool:

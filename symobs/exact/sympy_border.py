@@ -42,7 +42,7 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
     """Return the Symbol of a name, or the function it is the name of."""
     found = functions.known(name)
     if found is None:
-        return objects.setdefault(name, sympy.Symbol(name))
+        return sympy.pi if name == functions.PI else objects.setdefault(name, sympy.Symbol(name))
     if isinstance(found, RootSum):
         root = sympy.Symbol(found.bound)
         named = {EIGENVALUE: Scalar.symbol(found.bound)}
