@@ -204,8 +204,20 @@ def symbol_latex(name: str, declared: str | None = None) -> str:
     return f"{head}_{{{below}}}" if below else head
 
 
-def symbol_text(name: str) -> str:
+_SANS_SERIF = {chr(ord("A") + k): chr(0x1D5A0 + k) for k in range(26)} | {
+    chr(ord("a") + k): chr(0x1D5BA + k) for k in range(26)
+}
+
+
+def sans_serif(name: str) -> str:
+    r"""Return the LaTeX of a parameter that shares its name with a letter: `L` → `\mathsf{L}`."""
+    return rf"\mathsf{{{name}}}"
+
+
+def symbol_text(name: str, declared: str | None = None) -> str:
     """Return a parameter's name on a terminal: `omega` → ω, `h1` → h₁; other names stay as they are."""
+    if declared == sans_serif(name):
+        return "".join(_SANS_SERIF.get(character, character) for character in name)
     stem, digits, rest = _split(name)
     if rest or (len(stem) > 1 and stem not in _GREEK_LETTERS):
         return name

@@ -36,6 +36,7 @@ from symobs.formula import (
     Together,
 )
 from symobs.formula.term import Term
+from symobs.notation import sans_serif
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -129,9 +130,15 @@ class Page:
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def derivation(self) -> Derivation:
-        """Return what was written."""
-        symbols = {**self.plant.symbols.latex, **self.forms}
-        return Derivation(tuple(self.steps), self.start, symbols, self.plant.is_discrete)
+        """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
+        letters = {*self.environment.values, *self.environment.signals}
+        shared = sorted(letters.intersection(self.plant.field.names) - self.plant.symbols.latex.keys())
+        symbols = {**{name: sans_serif(name) for name in shared}, **self.plant.symbols.latex, **self.forms}
+        told = [Note(sentence("without_serifs", {"parameter": Scalar.symbol(name)})) for name in shared]
+        first, *rest = self.steps
+        if isinstance(first, Section):
+            first = replace(first, steps=(*first.steps, *told))
+        return Derivation((first, *rest), self.start, symbols, self.plant.is_discrete)
 
     # -- terms --------------------------------------------------------------------------------------------------------
 

@@ -15,6 +15,7 @@ PHRASES: dict[str, str] = {
     "closed_loop": "Closed loop.",
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
+    "without_serifs": "Set without serifs, {parameter} is a parameter of the data, not the matrix or signal of that letter.",
     "declared": "Throughout, {signs}.",
     "desired_poles": "The poles asked for are {poles}.",
     "desired_polynomial": "The polynomial asked for is {polynomial}.",
@@ -23,3 +24,5 @@ PHRASES: dict[str, str] = {
     "observer_poles": "The observer poles are to be {poles}.",
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
 }
+
+NAMING = ("without_serifs",)

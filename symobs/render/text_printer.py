@@ -94,7 +94,7 @@ class TextPrinter(Printer[TextBox]):
         if value.is_constant:
             return text_box(decimal(value.fraction().numerator))
         (name,) = value.names
-        return text_box(symbol_text(name))
+        return text_box(symbol_text(name, self.symbols.get(name)))
 
     def identity(self) -> TextBox:
         """I."""
