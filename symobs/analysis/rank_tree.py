@@ -31,6 +31,8 @@ _TERMS = 3_000
 
 #: The most minors of the same rows that are looked at together, and terms of one of them.
 _BESIDE, _TERMS_BESIDE = 20, 200
+#: A minor of up to this many terms is followed alone.
+_SHORT = 12
 
 #: Beyond this many terms a matrix is not eliminated but its rank read off at a point.
 ELIMINATED_UP_TO = 300
@@ -115,7 +117,7 @@ class _Search:
             return self.drops(sharper) if sharper is not None else (rank, minors, [Locus(locus.equations)])
         if locus.equations and not self.region.vanishing(value):
             return rank, minors, found
-        for other, beside in self._beside(locus, minor):
+        for other, beside in self._beside(locus, minor) if value.size > _SHORT else ():
             minors.append(other)
             values.append(beside)
         for part in loci((*locus.equations, *self.region.simplest_first(values)), self.region):
