@@ -209,3 +209,17 @@ def test_real_parameters_meet_a_sum_of_squares_at_one_point() -> None:
     (case,) = found.cases
     assert {str(r) for r in case.when} == {"Eq(a, 0)", "Eq(b, 0)"}
     assert case.result.minimal_order == 0
+
+
+def test_functions_of_time_where_several_parameters_vanish() -> None:
+    """det 𝒪 = −(a² − a b + b²) is 0 for real a and b at a = b = 0 only; the page holds with such a case."""
+    plant = symobs.StateSpace("[0 1; -1 -1]", None, "[a b]")
+    found: Any = symobs.gramian(plant)
+    assert {str(r) for case in found.cases for r in case.when} == {"Eq(a, 0)", "Eq(b, 0)"}
+    assert found.to("text")
+
+
+def test_without_an_output_there_is_no_reduced_order_observer_to_ask_for() -> None:
+    found: Any = symobs.reduced_order_observer(symobs.StateSpace("[0 1; -2 -3]", None, "[a 0]"), poles="-1")
+    assert [case.result for case in found.cases] == [None]
+    assert found.to("text")

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from symobs.analysis.loci import Locus
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, sign_of, vanishing_factors
@@ -123,15 +124,20 @@ class Branched(Result):
         inner = _inside(page, self.plant, {})
         self.tell(inner)
         chosen = [_plain(delta) for delta in self.answer["chosen"]]
-        zeros = dict.fromkeys(case.when[0].expression for case in self.case_tree if case.when[0].operator == "==")
+        zeros = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
         say = sentence("branch_under", {}) if chosen else None
         when = relation(chosen[0], "<", 0) if chosen else relation(product_of(zeros), "!=", 0)
         page.steps.append(CaseStep(when, (), tuple(inner.steps), say))
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 
+def _distance(case: Case) -> Scalar:
+    """Return what is 0 exactly where the equations of a case hold."""
+    return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
+
+
 def _case(page: Page, case: Case, doubled: Signs) -> Step:
-    from symobs.analysis.pages import undecided  # noqa: PLC0415
+    from symobs.analysis.pages import stratum_of, undecided  # noqa: PLC0415
 
     if not isinstance(case.result, Branched):
         return undecided(page, case)
@@ -142,7 +148,7 @@ def _case(page: Page, case: Case, doubled: Signs) -> Step:
     inner = _inside(page, case.result.plant, case.substitution)
     case.result.tell_branches(inner)
     because = sentence(say, {}) if say else None
-    when = relation(condition.expression, operator, 0)
+    when = stratum_of(case) if operator == "=" else relation(condition.expression, operator, 0)
     return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), because)
 
 

@@ -14,7 +14,8 @@ from symobs.certificate import Certificate, Claim
 from symobs.design.gain import letters_of, require_single
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Matrix, Scalar, unit_rows
+from symobs.exact import Matrix, Scalar, echelon, unit_rows
+from symobs.exact.functions import NotWritten
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -184,6 +185,9 @@ class ReducedOrderObserver(Result):
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
             T = self.answer["T"].substitute(values)
+            if not echelon(plant.matrices.C, plant.ideal)[0]:
+                message = "nothing is measured here"
+                raise NotWritten(message)
             usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
