@@ -214,9 +214,9 @@ def check(claim: Claim) -> Certificate:
     return Certificate(str(claim), how, "0" if error == 0 else f"{error:.1e}")
 
 
-def check_all(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
-    """Check every claim."""
-    return tuple(check(claim) for claim in claims)
+def check_all(claims: Iterable[Claim], relations: tuple[Scalar, ...] = ()) -> tuple[Certificate, ...]:
+    """Check every claim, where `relations` hold too."""
+    return tuple(check(Claim(c.relation, c.environment.under(relations), c.says)) for c in claims)
 
 
 def verify(relation: Relation, environment: Environment) -> tuple[str, float]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
+from symobs.exact.functions import PI
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -23,6 +24,7 @@ SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"
 #: A polynomial with more terms than this is not factored: it counts as one factor.
 FACTORED_UP_TO = 1_500
 
+_NEVER_ZERO = {"positive", "negative", "nonzero"}
 _OPPOSITE = {
     "positive": "negative",
     "negative": "positive",
@@ -78,10 +80,10 @@ def _power_sign(sign: str, exponent: int) -> str:
 
 def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     total = "zero"
-    for coefficient, powers in polynomial.terms():
+    for coefficient, powers in polynomial.each_term():
         sign = "positive" if coefficient > 0 else "negative"
         for name, exponent in powers:
-            sign = _product_sign(sign, _power_sign(signs.get(name, "real"), exponent))
+            sign = _product_sign(sign, _power_sign(signs.get(name, "positive" if name == PI else "real"), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break
@@ -116,7 +118,7 @@ def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar])
 
 def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
     """Tell whether the declared signs alone exclude that the value is 0."""
-    return sign_of(value, signs) in {"positive", "negative", "nonzero"}
+    return sign_of(value, signs) in _NEVER_ZERO
 
 
 def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
@@ -126,13 +128,13 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
     """
     found: dict[Scalar, None] = {}
     for value in values:
-        if value.is_constant or never_zero(value, signs):
+        if value.is_constant or _sum_of_terms(value.numerator, signs) in _NEVER_ZERO:
             continue
         if value.numerator.size > FACTORED_UP_TO:
             found[value.numerator] = None
             continue
         for factor, _ in value.numerator.factors()[1]:
-            if not never_zero(factor, signs):
+            if _sum_of_terms(factor, signs) not in _NEVER_ZERO:
                 found[factor] = None
     return tuple(found)
 

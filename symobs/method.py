@@ -66,7 +66,7 @@ class Result:
         """Check every claim; raises `CertificateRejected`."""
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
         try:
-            object.__setattr__(self, "certificates", check_all(self.claims()))
+            object.__setattr__(self, "certificates", check_all(self.claims(), self.plant.relations))
         except SENSELESS as error:
             message = f"the answer of {self.task} is no answer: {error}"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
@@ -177,7 +177,7 @@ class Result:
             return to_sympy(self.holds_where, objects)
         if name == "cases":
             return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
-        if name.startswith("_") or name not in self.fields:
+        if name.startswith("_") or name == "fields" or name not in self.fields:
             message = f"{type(self).__name__} has no attribute {name!r}"
             raise AttributeError(message)
         return to_sympy(self.fields[name], objects)

@@ -105,6 +105,11 @@ LETTERS: dict[str, LetterForm] = {
     "K_2": LetterForm("K_2", "K₂", "feedback from the states that are not measured"),
     "K_y": LetterForm(r"K_{\mathrm y}", "K_y", "feedback from the output"),
     "W_u": LetterForm("W", "W", "what solves the control law for the input"),
+    "F_v": LetterForm("F", "F", "feedforward"),
+    "v_r": LetterForm("v", "v", "reference input"),
+    "G_0": LetterForm("G_0", "G₀", "gain at rest"),
+    "w_0": LetterForm("w", "w", "row that annuls the gain at rest"),
+    "T_v": LetterForm("T({v})", "T({v})", "response to the reference input"),
     "B_c": LetterForm(r"B_{\mathrm c}", "B_c", "input matrix of the compensator"),
     **{f"xi_{k}": LetterForm(rf"\xi_{k}", f"ξ{'₀₁₂₃₄₅₆₇₈₉'[k]}", "null vector of a pole") for k in range(1, 10)},
     "Psi": LetterForm(r"\Psi", "Ψ", "upper parts of the null vectors"),
@@ -239,8 +244,20 @@ def symbol_latex(name: str, declared: str | None = None) -> str:
     return f"{head}_{{{below}}}" if below else head
 
 
-def symbol_text(name: str) -> str:
+_SANS_SERIF = {chr(ord("A") + k): chr(0x1D5A0 + k) for k in range(26)} | {
+    chr(ord("a") + k): chr(0x1D5BA + k) for k in range(26)
+}
+
+
+def sans_serif(name: str) -> str:
+    r"""Return the LaTeX of a parameter that shares its name with a letter: `L` → `\mathsf{L}`."""
+    return rf"\mathsf{{{name}}}"
+
+
+def symbol_text(name: str, declared: str | None = None) -> str:
     """Return a parameter's name on a terminal: `omega` → ω, `h1` → h₁; other names stay as they are."""
+    if declared == sans_serif(name):
+        return "".join(_SANS_SERIF.get(character, character) for character in name)
     stem, digits, rest = _split(name)
     if rest or (len(stem) > 1 and stem not in _GREEK_LETTERS):
         return name
@@ -301,6 +318,7 @@ THEOREMS: dict[str, Theorem] = {
     "error": Theorem("error equation", "S0, (4.19)"),
     "reduced_order": Theorem("reduced-order observer", "S0, (4.37)-(4.41)"),
     "reduced_pair": Theorem("observability of the unmeasured part", "S0, Lemma 4.1"),
+    "feedforward": Theorem("feedforward for unit gain at rest", "S3, section G and (12)"),
     "minimal_order": Theorem("compensator with a minimal-order observer", "S0, section 4.6"),
     "separation": Theorem("separation principle", "S0, (4.23)-(4.24)"),
     "compensator": Theorem("compensator in transfer form", "S0, (4.25)"),

@@ -36,6 +36,7 @@ from symobs.formula import (
     Together,
 )
 from symobs.formula.term import Term
+from symobs.notation import sans_serif
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -112,6 +113,7 @@ class Page:
             signals={"x": None, "x_hat": None, "u": None} | dict.fromkeys(others),
             sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)} | others,
             signs=plant.symbols.signs,
+            relations=plant.relations,
         )
         self.environment = self.start
         self.steps: list[Step] = []
@@ -120,17 +122,23 @@ class Page:
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these functions of time: how they depend on each other is known from the start."""
         meanings, vanishing = identities(values)
-        self.start = replace(self.start, coefficients=meanings, relations=vanishing)
-        self.environment = replace(self.environment, coefficients=meanings, relations=vanishing)
+        self.start = replace(self.start, coefficients=meanings).under(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
         for root in _roots_of_sums(values):
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def derivation(self) -> Derivation:
-        """Return what was written."""
-        symbols = {**self.plant.symbols.latex, **self.forms}
-        return Derivation(tuple(self.steps), self.start, symbols, self.plant.is_discrete)
+        """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
+        letters = {*self.environment.values, *self.environment.signals}
+        shared = sorted(letters.intersection(self.plant.field.names) - self.plant.symbols.latex.keys())
+        symbols = {**{name: sans_serif(name) for name in shared}, **self.plant.symbols.latex, **self.forms}
+        told = [Note(sentence("without_serifs", {"parameter": Scalar.symbol(name)})) for name in shared]
+        first, *rest = self.steps
+        if isinstance(first, Section):
+            first = replace(first, steps=(*first.steps, *told))
+        return Derivation((first, *rest), self.start, symbols, self.plant.is_discrete)
 
     # -- terms --------------------------------------------------------------------------------------------------------
 

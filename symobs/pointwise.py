@@ -23,28 +23,45 @@ def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], s
     """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
 
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
-    parameters imply is added to it: a² + b² = 0 only where a = b = 0.
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0.  The
+    relations are reduced by what follows from the values alone, which keeps long ones short.
     """
     values, relations = list(values), tuple(relations)
     if any(EIGENVALUE in value.names for value in (*values, *relations)):  # it may be complex: signs say nothing of it
         return Ideal.of((*relations, *values)).is_whole
-    known = [math.prod(vanishing_factors([value], signs), start=Scalar.of(1)) for value in values if value]
-    ideal = Ideal.of((*relations, *known))
+    known = _implied([_stripped(value, signs) for value in values if value], signs)
+    if known is None:
+        return True
+    return _implied([*(known.remainder(relation) for relation in relations), *known.generators], signs) is None
+
+
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str]) -> Ideal | None:
+    """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
+
+    None where that is nowhere.
+    """
+    ideal = Ideal.of(equations)
     while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
-        news = [c for g in ideal.generators for c in real_consequences(g, signs) if c not in ideal]
+        implied = (c for g in ideal.generators for c in (_stripped(g, signs), *real_consequences(g, signs)))
+        news = [value for value in implied if value not in ideal]
         if not news:
-            return False
+            return ideal
         ideal = ideal.having(*news)
-    return True
+    return None
+
+
+def _stripped(value: Scalar, signs: Mapping[str, str]) -> Scalar:
+    """Return the product of the distinct factors of a value that can vanish."""
+    return math.prod(vanishing_factors([value], signs), start=Scalar.of(1))
 
 
 class Pointwise(Restricted):
     """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
 
     def __init__(self, environment: Environment) -> None:
-        """Keep relations and signs."""
+        """Keep the signs."""
         super().__init__(environment)
-        self.relations, self.signs = environment.relations, environment.signs
+        self.signs = environment.signs
 
     def apply(self, function: str, value: Matrix) -> Any:
         """Return det, adj, or the rank: r where r×r minors never vanish together and a kernel of dimension n − r is seen.

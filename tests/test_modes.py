@@ -199,6 +199,15 @@ def test_eigenvalues_without_closed_form_are_named_and_told_apart() -> None:
     assert str(modes[1]["matrix"][0][0]) == "-CRootOf(s**3 - s - 1, 0)"
 
 
+def test_roots_that_sympy_gives_as_multiples_of_others_are_told_apart() -> None:
+    """The roots of s⁴ + 2 s³ + 4 s² − 8 s + 16 are twice those of s⁴ + s³ + s² − s + 1, two on either side."""
+    modes = symobs.pbh(symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 1; -16 8 -4 -2]", None, "[1 0 0 0]")).fields["modes"]
+    found = [mode["stable"] for mode in modes]
+    roots = [sympy.CRootOf(s**4 + 2 * s**3 + 4 * s**2 - 8 * s + 16, k) for k in range(4)]
+    assert found == [bool(sympy.re(root.evalf()) < 0) for root in roots]
+    assert found.count(True) == 2
+
+
 @pytest.mark.parametrize(
     ("A", "stable"),
     [

@@ -431,16 +431,44 @@ def test_what_cannot_be_written_down_is_undecided() -> None:
     assert "too long to be written down" in " ".join(found.to("text").split())
 
 
-def test_a_chain_with_three_outputs_mixed_stops_with_an_exact_condition() -> None:
-    plant = symobs.StateSpace(CHAIN, None, "[c1 0 c2 0 c3 0]", symbols=THREE | real("c1 c2 c3"))
-    found: Any = symobs.observability(plant)
+def test_a_chain_with_three_outputs_mixed_is_decided_everywhere() -> None:
+    """With c orthogonal to one mode v of the chain that mode is hidden, with cᵢ = mᵢ vᵢ the two others are.
+
+    v and the stiffness k1 follow from a rational eigenvalue μ by the rows of the chain from below.
+    """
+    signs = THREE | real("c1 c2 c3")
+    found: Any = symobs.observability(symobs.StateSpace(CHAIN, None, "[c1 0 c2 0 c3 0]", symbols=signs))
     assert found.verdict == "conditional"
+    assert sorted(case.result.rank for case in found.cases) == [0, 2, 4, 4]
     (condition,) = found.holds_where
     generator = seeded("chain")
-    for _ in range(20):
-        point = {n: random_fraction(generator, sign) for n, sign in (THREE | real("c1 c2 c3")).items()}
-        at = Setting.of(plant, {}, point)
-        assert (rank_of(observability_rows(at.A, at.C)) == 6) == (value_at(condition.expression, point) != 0)
+    met: list[int] = []
+    while len(met) < 60:
+        p = {n: random_fraction(generator, sign) for n, sign in signs.items()}
+        mu, kind = -random_fraction(generator, "positive"), len(met) % 4
+        v2 = 1 + mu * p["m3"] / p["kb"]
+        v1 = (mu * p["m2"] * v2 + (p["ka"] + p["kb"]) * v2 - p["kb"]) / p["ka"]
+        if not v1 or not p["c1"]:
+            continue
+        p["k1"] = p["ka"] * v2 / v1 - mu * p["m1"] - p["ka"]
+        if p["k1"] <= 0:
+            continue
+        if kind == 1:
+            p["c3"] = -p["c1"] * v1 - p["c2"] * v2
+        elif kind:
+            p |= (
+                {"c1": p["m1"] * v1, "c2": p["m2"] * v2, "c3": p["m3"]}
+                if kind == 2
+                else dict.fromkeys(("c1", "c2", "c3"), Fraction(0))
+            )
+        at = Setting.of(found.plant, {}, p)
+        rank = rank_of(observability_rows(at.A, at.C))
+        (part,) = applicable(found, p)
+        rank_holds(part, at)
+        assert part.fields["rank"] == rank
+        assert (rank == 6) == (value_at(condition.expression, p) != 0)
+        met.append(rank)
+    assert set(met) == {0, 2, 4, 6}
 
 
 # -- loci -----------------------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
+from symobs.analysis.loci import Locus
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, opposite, sign_of, vanishing_factors
@@ -139,7 +140,7 @@ class Branched(Result):
             return
         inner = _inside(page, self.plant, {})
         self.tell(inner)
-        zeros = dict.fromkeys(case.when[0].expression for case in self.case_tree if case.when[0].operator == "==")
+        zeros = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
         steps = tuple(inner.steps)
         if chosen:
             page.steps += _narrowed(steps, chosen)
@@ -148,8 +149,13 @@ class Branched(Result):
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 
+def _distance(case: Case) -> Scalar:
+    """Return what is 0 exactly where the equations of a case hold."""
+    return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
+
+
 def _case(page: Page, case: Case, doubled: Signs) -> Step:
-    from symobs.analysis.pages import undecided  # noqa: PLC0415
+    from symobs.analysis.pages import stratum_of, undecided  # noqa: PLC0415
 
     if not isinstance(case.result, Branched):
         return undecided(page, case)
@@ -161,7 +167,7 @@ def _case(page: Page, case: Case, doubled: Signs) -> Step:
         return _narrowed(steps, case.when)[0]
     is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
     because = sentence("branch_equal", {}) if is_double else None
-    return CaseStep(relation(condition.expression, "=", 0), tuple(case.substitution.items()), steps, because)
+    return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, because)
 
 
 def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple[Step, ...]:

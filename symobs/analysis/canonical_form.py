@@ -16,7 +16,7 @@ from symobs.analysis.modal import modal_basis, modal_matrix
 from symobs.analysis.modes import TESTS
 from symobs.analysis.observability import power_rows
 from symobs.analysis.pages import formula_of_factored, given, square_test
-from symobs.analysis.strata import strata
+from symobs.analysis.strata import carried, strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import InputError
@@ -132,8 +132,13 @@ class CanonicalForm(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The form where the generic coordinates are dependent."""
-        factors = [c.expression for c in self.holds_where if c.kind == "existence"]
-        return strata(self.plant, factors, lambda plant, _: solve(plant, self.kind, self.method))
+
+        def anew(plant: StateSpace, _: dict[str, Scalar]) -> CanonicalForm:
+            return solve(plant, self.kind, self.method)
+
+        if self.test is not None:
+            return carried(self.plant, self.test.case_tree, anew)
+        return strata(self.plant, [c.expression for c in self.holds_where if c.kind == "existence"], anew)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -208,7 +213,7 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
         hankel = hankel_of(chi.coefficients(variable)[1:])
         A, C = (m.A.T, m.B.T) if kind == "controllable" else (m.A, m.C)
         rows = power_rows(A, C)
-        S = (rows.T @ hankel).normal() if rows.determinant() else None
+        S = (rows.T @ hankel).normal() if plant.simplified(rows.determinant()) else None
     answer: dict[str, Any] = dict.fromkeys(("T", "inverse", *"ABCD"))
     if S is not None:
         T = S.inverse().normal()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.observability import power_rows
-from symobs.analysis.pages import undecided
+from symobs.analysis.pages import stratum_of, undecided
 from symobs.derivation import Case as CaseStep
-from symobs.exact import Matrix, Scalar, echelon, independent_rows, kernel, transfer
-from symobs.page import Page, relation
+from symobs.exact import Ideal, Matrix, Scalar, echelon, independent_rows, kernel, modulo, transfer
+from symobs.page import Page
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 BLOCKS = ("co", "c_no", "nc_o", "nc_no")
 
 
-def basis(A: Matrix, B: Matrix, C: Matrix) -> tuple[Matrix, tuple[int, ...]]:
+def basis(A: Matrix, B: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[Matrix, tuple[int, ...]]:
     """Return S, whose columns are bases of the four parts in the order of `BLOCKS`, and their dimensions."""
     order = A.shape[0]
-    reach = power_rows(A.T, B.T).T
-    R = reach.select(range(order), echelon(reach)[0])
-    O = power_rows(A, C)
-    hidden = kernel(O)
-    both = (R @ kernel(O @ R)).normal() if R.shape[1] else Matrix.zeros(order, 0)
-    both = _primitive(both)
-    seen = _extension(both, _unit_first(R))
-    rest_hidden = _extension(_beside(both, seen), hidden)
-    others = _extension(_beside(both, seen, rest_hidden), Matrix.identity(order))
+    reach = modulo(power_rows(A.T, B.T).T, ideal)
+    R = reach.select(range(order), echelon(reach, ideal)[0])
+    O = modulo(power_rows(A, C), ideal)
+    hidden = kernel(O, ideal)
+    both = (R @ kernel(O @ R, ideal)).normal() if R.shape[1] else Matrix.zeros(order, 0)
+    both = _primitive(modulo(both, ideal))
+    seen = _extension(both, _unit_first(R, ideal), ideal)
+    rest_hidden = _extension(_beside(both, seen), hidden, ideal)
+    others = _extension(_beside(both, seen, rest_hidden), Matrix.identity(order), ideal)
     parts = (seen, both, others, rest_hidden)
     return _beside(*parts).normal(), tuple(part.shape[1] for part in parts)
 
@@ -40,13 +40,13 @@ def _beside(*parts: Matrix) -> Matrix:
     return Matrix.block([list(parts)])
 
 
-def _unit_first(R: Matrix) -> Matrix:
+def _unit_first(R: Matrix, ideal: Ideal | None) -> Matrix:
     """Return other generators of the image of R, unit vectors of it first."""
     order = R.shape[0]
     units = []
     for i in range(order):
         unit = Matrix.unit(order, i)
-        if R.shape[1] and len(echelon(_beside(R, unit))[0]) == R.shape[1]:
+        if R.shape[1] and len(echelon(_beside(R, unit), ideal)[0]) == R.shape[1]:
             units.append(unit)
     return _beside(*units, R) if units else R
 
@@ -59,18 +59,18 @@ def _primitive(vectors: Matrix) -> Matrix:
     return _beside(*((column * column.common_denominator()).normal() for column in columns))
 
 
-def _extension(given: Matrix, candidates: Matrix) -> Matrix:
+def _extension(given: Matrix, candidates: Matrix, ideal: Ideal | None) -> Matrix:
     """Return the candidates that extend given independent columns to a basis of what all of them span."""
     count, rows = given.shape[1], range(given.shape[0])
-    pivots, _ = echelon(_beside(given, candidates))
+    pivots, _ = echelon(_beside(given, candidates), ideal)
     return candidates.select(rows, [j - count for j in pivots if j >= count])
 
 
-def minor_of(matrix: Matrix, rank: int) -> Matrix | None:
+def minor_of(matrix: Matrix, rank: int, ideal: Ideal | None = None) -> Matrix | None:
     """Return a square submatrix of full rank, which must have as many columns as the rank; None where that is 0."""
     if not rank:
         return None
-    return matrix.select(independent_rows(matrix), range(rank))
+    return matrix.select(independent_rows(matrix, ideal), range(rank))
 
 
 def transfer_matrix(A: Matrix, B: Matrix, C: Matrix, D: Matrix, variable: str) -> Matrix:
@@ -107,5 +107,5 @@ def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
         inner.environment = page.environment.having(values=matrices)
         getattr(found, write)(inner)
         inner.steps += case_steps(inner, found, write)
-        when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
-        yield CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+        anew = tuple(set_anew(page, inner))
+        yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

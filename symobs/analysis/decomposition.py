@@ -18,7 +18,7 @@ from symobs.analysis.pages import factored_form, given
 from symobs.analysis.strata import strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, modulo
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -96,14 +96,14 @@ class Decomposition(Result):
         """A minor of the order of co and c_no of their controllability matrix."""
         there = self.part(0, 1)
         A, B = self.answer["A"].select(there, there), self.answer["B"].select(there, range(self.plant.inputs))
-        return minor_of(power_rows(A.T, B.T), len(there))
+        return minor_of(power_rows(A.T, B.T), len(there), self.plant.ideal)
 
     @cached_property
     def _seeing(self) -> Matrix | None:
         """A minor of the order of co and nc_o of their observability matrix."""
         there = self.part(0, 2)
         A, C = self.answer["A"].select(there, there), self.answer["C"].select(range(self.plant.outputs), there)
-        return minor_of(power_rows(A, C), len(there))
+        return minor_of(power_rows(A, C), len(there), self.plant.ideal)
 
     def _transfer(self, e: Environment) -> Iterator[Claim]:
         first, inputs, outputs = self.part(0), range(self.plant.inputs), range(self.plant.outputs)
@@ -217,9 +217,9 @@ class Decomposition(Result):
 def solve(plant: StateSpace, method_name: str) -> Decomposition:
     """Return the decomposition of a plant."""
     m = plant.matrices
-    S, sizes = basis(m.A, m.B, m.C)
-    T = S.inverse().normal()
-    A, B, C = (T @ m.A @ S).normal(), (T @ m.B).normal(), (m.C @ S).normal()
+    S, sizes = basis(m.A, m.B, m.C, plant.ideal)
+    T = modulo(S.inverse().normal(), plant.ideal)
+    A, B, C = (modulo(value.normal(), plant.ideal) for value in (T @ m.A @ S, T @ m.B, m.C @ S))
     first = range(sizes[0])
     P = transfer_matrix(
         A.select(first, first),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.analysis.coordinates import set_anew
 from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_spectrum, stack_of
 from symobs.analysis.modes import stable_modes
-from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, undecided
+from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, stratum_of, undecided
 from symobs.derivation import Case as CaseStep
 from symobs.exact import EIGENVALUE
 from symobs.formula import Exactly
@@ -166,5 +166,5 @@ def _case(page: Page, letter: str, case: Case) -> Step:
         inner.conclude_silently(*hidden(inner, found.kind == "observability"))
     _generic(inner, found)
     _cases(inner, letter, found)
-    when, anew = relation(case.when[0].expression, 0), tuple(set_anew(page, inner))
-    return CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+    anew = tuple(set_anew(page, inner))
+    return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

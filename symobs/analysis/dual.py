@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.modes import TESTS
 from symobs.analysis.pages import given
+from symobs.analysis.strata import carried
 from symobs.certificate import Claim
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
@@ -114,15 +115,8 @@ class Dual(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The dual on every stratum of either rank test."""
-        found: dict[tuple[str, ...], Case] = {}
-        for test in self.tests.values():
-            for case in test.case_tree:
-                key = tuple(map(str, case.when))
-                if key not in found:
-                    moved = case.result if case.substitution else None
-                    there = None if moved is None else solve(moved.plant, self.sign, self.method)
-                    found[key] = Case(case.when, case.substitution, there)
-        return tuple(found.values())
+        found = {tuple(map(str, case.when)): case for test in self.tests.values() for case in test.case_tree}
+        return carried(self.plant, found.values(), lambda plant, _: solve(plant, self.sign, self.method))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

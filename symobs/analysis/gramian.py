@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, reject, time_environment
 from symobs.analysis.gramian_page import write_gramian
-from symobs.analysis.horizons import INFINITE, infinite_gramian, read_horizon, steps_gramian
+from symobs.analysis.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
 from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.certificate import Claim
@@ -58,7 +58,7 @@ class Gramian(Branched):
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant; `asked` holds `of` and `horizon`."""
         A, C = pair_of(plant, asked["of"])
-        found = rank_answer(A, C)
+        found = rank_answer(A, C, plant.ideal)
         O = found["matrix"]
         shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
         shared |= {"finite_sum": (O.T @ O).normal()}
@@ -259,4 +259,4 @@ def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observabi
     end = read_horizon(plant, horizon)
     if not plant.is_discrete:
         require_continuous(plant, "gramian")
-    return choose("gramian", method, "integral").solve(plant, of, end)
+    return over_horizon(lambda: choose("gramian", method, "integral").solve(plant, of, end))

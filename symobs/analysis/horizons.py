@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs.conditions import sign_of
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import NotWritten, known
+from symobs.expression import parse_scalar
 from symobs.stability import stability
 from symobs.system import read_scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
+    from symobs.method import Result
     from symobs.system import StateSpace
 
 INFINITE = "inf"
@@ -27,8 +31,13 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
         return INFINITE
     if value is None:
         return Scalar.of(plant.order) if plant.is_discrete else Scalar.symbol("T")
-    found = read_scalar(value, plant.symbols.seen(value), where)
-    if found.is_constant and found.fraction() <= 0:
+    if isinstance(value, str):
+        found = parse_scalar(value, plant.symbols.names, where=where, functions=True)
+    else:
+        found = read_scalar(value, plant.symbols.seen(value), where)
+    if any(known(name) for name in found.names):
+        raise InputError(f"the horizon {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
+    if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
         raise InputError(f"the horizon {found} is not positive", where=where, repair='write "T", or a number above 0')
     if "t" in found.names:
         raise InputError("the horizon depends on t", where=where, repair='t is the time; write "T"')
@@ -37,6 +46,15 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
     if plant.is_discrete and found.fraction() > _MOST_STEPS:
         raise InputError(f"{found} steps are too many", where=where, repair=f"write at most {_MOST_STEPS}, or inf")
     return found
+
+
+def over_horizon(solve: Callable[[], Result]) -> Result:
+    """Return a result over a horizon; raises `InputError` where cosines there are not written with square roots."""
+    try:
+        return solve()
+    except NotWritten as error:
+        message = f"with this horizon the answer contains a value that has no form here: {error}"
+        raise InputError(message, where="specification.horizon", repair='write "T" and put the number in') from error
 
 
 def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
-from symobs.analysis.horizons import INFINITE, read_horizon
+from symobs.analysis.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.initial_state_page import tell_initial_state
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
 from symobs.analysis.measurements import read_functions
@@ -276,4 +276,5 @@ def initial_state(
     if end == INFINITE:
         message = "the interval of measurement is finite"
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
-    return choose("initial_state", method, "moments").solve(plant, {"output": y, "input": u, "horizon": end})
+    asked = {"output": y, "input": u, "horizon": end}
+    return over_horizon(lambda: choose("initial_state", method, "moments").solve(plant, asked))

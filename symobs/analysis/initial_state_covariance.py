@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.covariance_page import tell_covariance
-from symobs.analysis.horizons import INFINITE, read_horizon
+from symobs.analysis.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
 from symobs.analysis.pages import given
 from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
@@ -334,4 +334,4 @@ def initial_state_covariance(
     if end == INFINITE:
         raise InputError("the horizon is finite here", where="specification.horizon", repair='write "T", or a number')
     asked = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity, "horizon": end}
-    return choose("initial_state_covariance", method, "gramian").solve(plant, asked)
+    return over_horizon(lambda: choose("initial_state_covariance", method, "gramian").solve(plant, asked))

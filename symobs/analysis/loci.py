@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _BRANCHES = 100
 _TERMS = 1_000
 #: The most terms of all the systems together that are worked on in one region.
-_WORK = 8_000
+_WORK = 30_000
 #: The most terms of a sum of squares, before it is multiplied out.
 _SQUARED = 2_000
 
@@ -43,15 +43,25 @@ class Work:
 
 @dataclass(frozen=True)
 class Region:
-    """The parameters that are considered: real, with declared signs, and none of `nonzero` (irreducible) vanishes."""
+    """The parameters that are considered: real, with declared signs, on a locus, and none of `nonzero` vanishes."""
 
     signs: Mapping[str, str]
     nonzero: frozenset[Scalar] = frozenset()
     work: Work = field(default_factory=Work, compare=False)
+    ideal: Ideal | None = None
+
+    @cached_property
+    def whole(self) -> Locus:
+        """All of them, as a locus."""
+        return EVERYWHERE if self.ideal is None else Locus.of(self.ideal)
 
     def vanishing(self, value: Scalar) -> tuple[Scalar, ...]:
         """Return the distinct irreducible factors of a numerator that can be 0 here."""
         return tuple(f for f in vanishing_factors([value], self.signs) if f not in self.nonzero)
+
+    def simplest_first(self, values: Iterable[Scalar]) -> list[Scalar]:
+        """Sort polynomials so that those with few factors, which others contain, come first."""
+        return sorted(values, key=lambda value: (len(self.vanishing(value)), value.size))
 
 
 @dataclass(frozen=True)
@@ -97,7 +107,7 @@ def _simplicity(value: Scalar) -> tuple[int, int, str]:
 def loci(equations: Iterable[Scalar], region: Region) -> tuple[Locus, ...]:
     """Return the common zeros of polynomials in a region as loci, none of which is seen to lie in another."""
     budget = iter(range(_BRANCHES))
-    return maximal(_branches(tuple(equations), region, budget))
+    return maximal(_branches((*equations, *region.whole.equations), region, budget))
 
 
 def maximal(found: Iterable[Locus]) -> tuple[Locus, ...]:
@@ -126,6 +136,8 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         factors = region.vanishing(equation)
         if len(factors) == 1:
             simple.append(factors[0])
+            continue
+        if any(factor in simple for factor in factors):
             continue
         for factor in factors:
             if next(budget, None) is None:

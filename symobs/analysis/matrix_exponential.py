@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.analysis.branches import Branched, Signs, rate_of, time_environment, with_signs
 from symobs.analysis.pages import formula_of_factored, given
 from symobs.certificate import Claim
+from symobs.conditions import vanishing_factors
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, factored
-from symobs.exact.exponential import MOST_STATES_WITH_PARAMETERS, Exponential, NoClosedForm, exponential
+from symobs.exact.exponential import MOST_STATES_WITH_PARAMETERS, Exponential, Mode, NoClosedForm, exponential
 from symobs.exact.functions import known
-from symobs.exact.quasi import matrix_at
+from symobs.exact.root_sum import RootSum
 from symobs.formula import Identity, Letter, Literal, Negative, Power, Product, Sum
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula import Formula
+    from symobs.formula.term import Term
     from symobs.specification import Name
     from symobs.system import StateSpace
 
@@ -33,9 +35,9 @@ _SHOWN_SUM = 4
 _SHOWN_RATE = 3
 
 
-def closed_form(plant: StateSpace, taken: Signs) -> tuple[Exponential, Signs]:
-    """Return e^{At} and the signs that were chosen.  Raises `NoClosedForm`."""
-    return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign))
+def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple[Exponential, Signs]:
+    """Return e^{At} and the signs that were chosen, with `sums` over roots if need be.  Raises `NoClosedForm`."""
+    return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
 
 
 def question_of(error: NoClosedForm) -> str:
@@ -67,12 +69,11 @@ class MatrixExponential(Branched):
     def of(cls, plant: StateSpace, method_name: str, taken: Signs) -> Self:
         """Return the result for a plant."""
         try:
-            found, chosen = closed_form(plant, taken)
+            found, chosen = closed_form(plant, taken, sums=not plant.equations)
         except NoClosedForm as error:
             answer = {"matrix": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
-        matrix = matrix_at(found.table(), TIME)
-        return cls(plant, method_name, {"matrix": matrix, "taken": taken, "chosen": chosen})
+        return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
 
     def again(self, plant: StateSpace, taken: Signs) -> Self:
         """Return e^{At} of another plant or with other signs."""
@@ -87,6 +88,15 @@ class MatrixExponential(Branched):
         Phi = letter("exp_At", e)
         yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
         yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Beside those of the entries, the discriminants of polynomials over whose roots a sum goes."""
+        if self.answer["matrix"] is None:
+            return ()
+        sums = [f for f in _functions(self.answer["matrix"]) if isinstance(f, RootSum)]
+        found = vanishing_factors([f.discriminant for f in sums], self.plant.symbols.signs)
+        return tuple(dict.fromkeys((*super().denominators, *found)))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -107,10 +117,11 @@ class MatrixExponential(Branched):
         if self.answer["matrix"] is None:
             tell_question(page, self.answer["factor"])
             return
-        found, _ = closed_form(self.plant, {**self.answer["taken"], **self.answer["chosen"]})
+        signs = {**self.answer["taken"], **self.answer["chosen"]}
+        found, _ = closed_form(self.plant, signs, sums=not self.plant.equations)
         tell_exponential(page, found, self.answer["matrix"], answer=True)
         Phi = page["exp_At"]
-        if not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
+        if found.is_closed and not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
             page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
         start = relation(Phi.at("t", 0), page.identity(self.plant.order))
         page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
@@ -138,9 +149,12 @@ def tell_question(page: Page, factor: Scalar | None) -> None:
 def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
     """Define e^{At}: the sum over the modes where it is short, then the entries; then what the roots stand for."""
     count = sum(len(own) for _, _, own in found.parts)
-    members = [page.term(_sum_of_modes(found))] if 1 < count <= _SHOWN_SUM else []
+    is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
+    members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
     say = "exponential_sum" if members else "exponential_here"
-    page.define("exp_At", *members, matrix, say=say, answer=answer, closing=False)
+    if found.is_closed:
+        members.append(matrix)
+    page.define("exp_At", *members, say=say, answer=answer, closing=False)
     tell_roots(page, matrix)
 
 
@@ -171,26 +185,21 @@ def _functions(value: Matrix) -> list[Any]:
 
 def _sum_of_modes(found: Exponential) -> Formula:
     """Return Σ function · matrix; a single pair on two states in the letters A and I."""
-    if found.order == 2 and len(found.parts) == 1 and len(found.parts[0][2]) == 2:
-        mode = found.parts[0][0]
-        C, S = (f.value_at(TIME) for f in _without_rate(found))
+    mode = found.parts[0][0]
+    if found.order == 2 and len(found.parts) == 1 and isinstance(mode, Mode) and len(mode.start) == 2:
+        still = Mode(Scalar.of(0), mode.discriminant, mode.oscillates)
+        C, S = still.values(0, TIME)
         shifted = _shifted(mode.rate)
         inside = Sum((Product((Literal(C), Identity(2))), Product((Literal(S), shifted))))
         rate = found_rate(mode.rate)
         return inside if rate is None else Product((rate, inside))
     terms = []
     for mode, power, matrices in found.parts:
-        for f, matrix in zip(mode.functions(power), matrices, strict=True):
+        for value, matrix in zip(mode.values(power, TIME), matrices, strict=True):
             if matrix.is_zero:
                 continue
-            value = f.value_at(TIME)
             terms.append(Literal(matrix) if value.is_one else Product((Literal(value), Literal(matrix))))
     return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
-
-
-def _without_rate(found: Exponential) -> tuple[Any, ...]:
-    mode = found.parts[0][0]
-    return type(mode)(Scalar.of(0), mode.discriminant, mode.oscillates).functions(0)
 
 
 def found_rate(rate: Scalar) -> Formula | None:
@@ -221,7 +230,8 @@ def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
 
     plant    n states, continuous time; only A matters
     Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
-    branch that is shown and cases the others.  A factor of degree 3 or more has no closed form: verdict undecided.
+    branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
+    Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
     Source: S0, section 4.1; S4, pendulum.
     """
     require_continuous(plant, "matrix_exponential")

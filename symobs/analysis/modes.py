@@ -7,12 +7,13 @@ X = A on ker 𝒪 they span dim ker q(X) / deg q dimensions, and the polynomial 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.observability import Controllability, Observability
 from symobs.analysis.pages import formula_of_factored
+from symobs.analysis.strata import carried
 from symobs.certificate import Claim
 from symobs.conditions import sign_of
 from symobs.exact import (
@@ -27,6 +28,7 @@ from symobs.exact import (
     factored,
     independent_rows,
     rank,
+    remainder,
     roots_of,
     stable_roots,
 )
@@ -37,9 +39,10 @@ from symobs.page import relation
 from symobs.stability import on_boundary, stability
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from symobs.analysis.observability import RankResult
+    from symobs.exact import Ideal
     from symobs.system import StateSpace
 
 #: Up to this order a rank at an eigenvalue is proved by a minor there; with parameters up to the second.
@@ -113,9 +116,20 @@ def _witness(
     return rows, columns, kernel, tuple(j for j in range(order) if j not in columns)
 
 
-def hidden_dimension(X: Matrix, factor: Scalar, variable: str) -> int:
+def factors_of(chi: Scalar, fixed: Scalar, plant: StateSpace) -> Factored:
+    """Return the factors of χ; on a stratum those of the fixed modes and those of the others, which may fall apart there."""
+    if not plant.equations:
+        return factored(chi, plant.variable)
+    powers: dict[Scalar, int] = {}
+    for part in (fixed, plant.simplified(remainder(chi, fixed, plant.variable)[0])):
+        for factor, power in factored(part, plant.variable).factors:
+            powers[factor] = powers.get(factor, 0) + power
+    return Factored(Scalar.of(1), tuple(powers.items()))
+
+
+def hidden_dimension(X: Matrix, factor: Scalar, variable: str, ideal: Ideal | None = None) -> int:
     """Return how many independent eigenvectors of X belong to one root of an irreducible factor of its polynomial."""
-    return (X.shape[0] - rank(polynomial_of(factor, variable, X))) // factor.degree(variable)
+    return (X.shape[0] - rank(polynomial_of(factor, variable, X), ideal)) // factor.degree(variable)
 
 
 def polynomial_of(polynomial: Scalar, variable: str, X: Matrix) -> Matrix:
@@ -202,11 +216,12 @@ class ModeResult(Result):
         test = TESTS[kind].of(plant, "rank")
         A, _ = test.pair(plant)
         variable, X = plant.variable, test.answer["restricted"]
-        chi = A.characteristic_polynomial(variable)
+        chi = plant.simplified(A.characteristic_polynomial(variable))
+        fixed = plant.simplified(X.characteristic_polynomial(variable)) if X.shape[0] else Scalar.of(1)
         ranks = tuple(
-            plant.order - hidden_dimension(X, factor, variable) for factor, _ in factored(chi, variable).factors
+            plant.order - hidden_dimension(X, factor, variable, plant.ideal)
+            for factor, _ in factors_of(chi, fixed, plant).factors
         )
-        fixed = X.characteristic_polynomial(variable) if X.shape[0] else Scalar.of(1)
         return {"polynomial": chi, "ranks": ranks, "fixed_polynomial": fixed}
 
     @cached_property
@@ -217,8 +232,9 @@ class ModeResult(Result):
     @cached_property
     def spectrum(self) -> tuple[Eigenvalues, ...]:
         """The eigenvalues, factor by factor."""
-        form = factored(self.answer["polynomial"], self.plant.variable)
-        return eigenvalues(*self.test.pair(self.plant), form, self.plant.variable)
+        form = factors_of(self.answer["polynomial"], self.answer["fixed_polynomial"], self.plant)
+        found = eigenvalues(*self.test.pair(self.plant), form, self.plant.variable)
+        return tuple(replace(part, witness=None) for part in found) if self.plant.equations else found
 
     @property
     def all_certificates(self) -> tuple[Any, ...]:
@@ -316,11 +332,4 @@ class ModeResult(Result):
 
     def cases_by(self, solve: Callable[[StateSpace], Result]) -> tuple[Case, ...]:
         """Return the cases of the rank test with the answers of this task there."""
-        return tuple(self._carried(self.test.case_tree, solve))
-
-    def _carried(self, cases: Iterable[Case], solve: Callable[[StateSpace], Result]) -> Iterator[Case]:
-        for case in cases:
-            if case.result is None or not case.substitution:
-                yield Case(case.when, case.substitution, None)
-            else:
-                yield Case(case.when, case.substitution, solve(case.result.plant))
+        return carried(self.plant, self.test.case_tree, lambda plant, _: solve(plant))

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, cast
 
 from symobs.analysis.missing import in_words
+from symobs.certificate import verify
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
@@ -176,6 +177,11 @@ def conditions_of(case: Case) -> Relation | Together:
     return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
 
 
+def stratum_of(case: Case) -> Relation | Together:
+    """Return what a case says of the parameters: a single equation as p = 0."""
+    return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
+
+
 def _as_written(condition: Condition) -> Relation:
     value, operator = condition.expression, condition.operator.replace("==", "=")
     terms = value.terms()
@@ -219,6 +225,12 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
         rows = page.value(unit_rows(order, tuple(number - 1 for number in numbers)))
         below = [[rows], *([rows @ A**k] for k in range(1, order))]
         facts.append(relation(block([[test], *below]).apply("rank"), order))
+    if result.piece is not None:  # a rank on a stratum may be beyond what the check of a page can see
+        relations = result.piece.relations(c.expression for c in result.domain)
+        values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
+        e = page.environment.having(values=values | {"A": result.plant.matrices.A}).under(relations)
+        if not all(verify(fact, e)[0] for fact in facts):
+            return []
     words = "one" if len(sets[0]) == 1 else "several"
     return [Conclude(sentence(f"repair_{words}_{kind}", {"states": in_words(sets)}), tuple(facts))]
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_tree import (
-    WITNESS,
     Kernel,
     Minor,
     Node,
@@ -24,7 +23,7 @@ from symobs.analysis.rank_tree import (
 )
 from symobs.certificate import Claim
 from symobs.conditions import Condition
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, apart_from_zero
 from symobs.formula import Environment
 from symobs.page import relation
 
@@ -52,7 +51,7 @@ class Piece:
 def outside(excluded: Iterable[Scalar], equations: Iterable[Scalar] = ()) -> tuple[Scalar, ...]:
     """Return relations that hold where the equations do and none of some polynomials vanishes."""
     distinct = [value for value in dict.fromkeys(excluded) if not value.is_constant]
-    return (*equations, *(1 - Scalar.symbol(f"{WITNESS}{k}") * value for k, value in enumerate(distinct)))
+    return (*equations, *map(apart_from_zero, distinct))
 
 
 @dataclass(frozen=True)

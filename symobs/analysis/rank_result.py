@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.loci import EVERYWHERE, Region, maximal
+from symobs.analysis.loci import Region, maximal
 from symobs.analysis.missing import repair_claims, smallest_sets
 from symobs.analysis.rank_cases import (
     Piece,
@@ -29,14 +29,15 @@ from symobs.analysis.rank_tree import (
     Tree,
     determinant_terms,
     exclusions,
+    kernel_on,
     minor_at_a_point,
     rank_tree,
     with_restriction,
 )
 from symobs.certificate import Certificate, Claim, check_all
-from symobs.conditions import Condition
+from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Root, Scalar, TooLarge, echelon, independent_rows, roots_of
+from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, independent_rows, modulo, roots_of
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
 from symobs.method import Case, Result
@@ -56,13 +57,17 @@ def power_rows(A: Matrix, C: Matrix) -> Matrix:
     return Matrix.block([[row] for row in rows]).normal()
 
 
-def rank_answer(A: Matrix, C: Matrix) -> dict[str, Any]:
-    """Return the observability test of a pair: matrix, rank r, kernel basis N, and the witnesses.
+def rank_answer(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> dict[str, Any]:
+    """Return the observability test of a pair (on a stratum): matrix, rank r, kernel basis N, and the witnesses.
 
     Witnesses: rows and columns of an r×r minor, rows of a minor of N, and X with A N = N X.
     """
-    O = power_rows(A, C)
+    O = modulo(power_rows(A, C), ideal)
     order = A.shape[0]
+    if ideal is not None:
+        columns = echelon(O, ideal)[0]
+        rows = independent_rows(O.select(range(O.shape[0]), columns), ideal)
+        return answer_with(O, len(columns), kernel_on(O, A, ideal, tuple(range(order))), (rows, columns))
     minor = minor_at_a_point(O) if O.size > ELIMINATED_UP_TO else None
     if minor is not None and len(minor[0]) == order:
         return answer_with(O, order, with_restriction(Matrix.zeros(order, 0), A), minor)
@@ -118,7 +123,7 @@ class RankResult(Result):
     @classmethod
     def of(cls, plant: StateSpace, method_name: str) -> Self:
         """Return the result for a plant."""
-        return cls(plant, method_name, rank_answer(*cls.pair(plant)))
+        return cls(plant, method_name, rank_answer(*cls.pair(plant), plant.ideal))
 
     @staticmethod
     def pair(plant: StateSpace) -> tuple[Matrix, Matrix]:
@@ -148,7 +153,7 @@ class RankResult(Result):
         """The determinant of a square test matrix; None where it is not square, or too long to be written down."""
         matrix: Matrix = self.answer["matrix"]
         square = matrix.shape[0] == matrix.shape[1]
-        return matrix.determinant() if square and not self.is_too_long else None
+        return self.plant.simplified(matrix.determinant()) if square and not self.is_too_long else None
 
     @cached_property
     def is_too_long(self) -> bool:
@@ -163,7 +168,7 @@ class RankResult(Result):
         if self.test_determinant:
             return (self.test_determinant,)
         minor = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"])
-        return (minor.determinant(),) if minor.shape[0] else ()
+        return (self.plant.simplified(minor.determinant()),) if minor.shape[0] else ()
 
     @property
     def verdict(self) -> str:
@@ -192,7 +197,7 @@ class RankResult(Result):
         if self.answer["rank"] < self.plant.order or self._tree is None:
             return self.domain
         lower = [node.locus for node in self._tree.strata if node.rank < self.plant.order]
-        lost = Node(EVERYWHERE, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
+        lost = Node(self._region.whole, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
         try:
             excluded = exclusions(lost, self._region)
         except TooLarge:
@@ -201,7 +206,9 @@ class RankResult(Result):
 
     @cached_property
     def _region(self) -> Region:
-        return Region(self.plant.symbols.signs, frozenset(c.expression for c in self.domain))
+        signs = self.plant.symbols.signs
+        nonzero = (*(c.expression for c in self.domain), *vanishing_factors(self.plant.nonzero, signs))
+        return Region(signs, frozenset(nonzero), ideal=self.plant.ideal)
 
     @cached_property
     def _tree(self) -> Tree | None:
@@ -224,12 +231,14 @@ class RankResult(Result):
         for node in self._tree.strata:
             try:
                 stratum = stratum_of(node, self._region)
-                certificates += check_all(stratum_claims(stratum, self._region))
+                certificates += check_all(stratum_claims(stratum, self._region), self.plant.relations)
                 found.append(self._case(stratum))
             except (CertificateRejected, TooLarge):  # a claim beyond the limits of what can be checked
                 cases.append(Case(undecided_conditions(node.locus), {}, None))
         try:
-            certificates += check_all(generic_claims(self.answer["matrix"], self._tree, self._region))
+            certificates += check_all(
+                generic_claims(self.answer["matrix"], self._tree, self._region), self.plant.relations
+            )
         except (CertificateRejected, TooLarge):
             cases += [Case((Condition("existence", value, "=="),), {}, None) for value in self.existence]
         return (*found, *cases), tuple(certificates)
@@ -270,6 +279,7 @@ class RankResult(Result):
         if self.piece is None and N.shape[1] and self._tree is not None:
             excluded += [locus.distance for locus in self._tree.generic.covers]
         e = Environment(signs=self.plant.symbols.signs, relations=(self.piece or Piece()).relations(excluded))
+        e = e.under(self.plant.relations)
         sets = smallest_sets(N, X, e)
         return sets, check_all(repair_claims(sets or (), N, X, e, self.repaired_by))
 

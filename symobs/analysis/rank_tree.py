@@ -13,17 +13,14 @@ from collections import deque
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from symobs.analysis.loci import EVERYWHERE, Locus, loci, maximal
+from symobs.analysis.loci import Locus, loci, maximal
 from symobs.conditions import FACTORED_UP_TO
-from symobs.exact import Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, echelon, independent_rows, modulo
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from symobs.analysis.loci import Region
-
-#: What is 1 over a polynomial that does not vanish; no parameter's name begins so.
-WITNESS = "_w"
 
 #: A minor: its rows and its columns.
 Minor = tuple[tuple[int, ...], tuple[int, ...]]
@@ -31,6 +28,11 @@ Minor = tuple[tuple[int, ...], tuple[int, ...]]
 #: The most eliminations of one tree, and terms of a test matrix whose rank is asked for on a locus.
 _ELIMINATIONS = 150
 _TERMS = 3_000
+
+#: The most minors of the same rows that are looked at together, and terms of one of them.
+_BESIDE, _TERMS_BESIDE = 20, 200
+#: A minor of up to this many terms is followed alone.
+_SHORT = 12
 
 #: Beyond this many terms a matrix is not eliminated but its rank read off at a point.
 ELIMINATED_UP_TO = 300
@@ -86,8 +88,8 @@ class _Search:
 
     def eliminated(self, locus: Locus) -> tuple[int, Minor, Scalar]:
         """Return the rank on a locus, a minor of that order and its value, 0 where that vanishes on the locus."""
-        if not locus.equations:
-            return len(self.generic[0]), self.generic, self.matrix.select(*self.generic).determinant().numerator
+        if locus == self.region.whole:
+            return len(self.generic[0]), self.generic, self._minor(self.generic)
         if self.left <= 0:
             raise _Exhausted
         self.left -= 1
@@ -98,17 +100,27 @@ class _Search:
             rows = independent_rows(self.matrix.select(range(self.matrix.shape[0]), columns), ideal)
         except TooLarge as error:
             raise _Exhausted from error
-        value = self.matrix.select(rows, columns).determinant().numerator
-        return len(columns), (rows, columns), Scalar.of(0) if value in ideal else value
+        return len(columns), (rows, columns), self._minor((rows, columns), ideal)
+
+    def _minor(self, minor: Minor, ideal: Ideal | None = None) -> Scalar:
+        """Return the numerator of a minor, 0 where it lies in an ideal."""
+        value = self.matrix.select(*minor).determinant().numerator
+        return Scalar.of(0) if ideal is not None and value in ideal else value
 
     def drops(self, locus: Locus) -> tuple[int, list[Minor], list[Locus]]:
         """Return the rank on a locus, minors of that order, and the loci where all of them vanish."""
         rank, minor, value = self.eliminated(locus)
-        minors, found = [minor], []
+        minors, values = [minor], [value]
+        found: list[Locus] = []
         if value.is_zero:  # entries that are not seen to vanish, though products of them do
             sharper = self._sharpened(locus, minor)
             return self.drops(sharper) if sharper is not None else (rank, minors, [Locus(locus.equations)])
-        for part in loci((*locus.equations, value), self.region):
+        if locus.equations and not self.region.vanishing(value):
+            return rank, minors, found
+        for other, beside in self._beside(locus, minor) if value.size > _SHORT else ():
+            minors.append(other)
+            values.append(beside)
+        for part in loci((*locus.equations, *self.region.simplest_first(values)), self.region):
             if part.ideal is None:
                 found.append(part)
                 continue
@@ -124,6 +136,17 @@ class _Search:
                 found.append(Locus(part.equations))
         return rank, minors, found
 
+    def _beside(self, locus: Locus, minor: Minor) -> Iterator[tuple[Minor, Scalar]]:
+        """Yield the other minors of the same rows on a locus, where they are few: the rank drops where all vanish."""
+        rows, columns = minor
+        every = range(self.matrix.shape[1])
+        if not locus.equations or not rows or math.comb(len(every), len(rows)) > _BESIDE:
+            return
+        for chosen in itertools.combinations(every, len(rows)):
+            value = self._minor((rows, chosen), locus.ideal)
+            if chosen != columns and not value.is_zero and value.size <= _TERMS_BESIDE:
+                yield (rows, chosen), value
+
     def node(self, locus: Locus) -> Node:
         """Return the node of a locus, with the loci of smaller rank below it."""
         if locus.ideal is None:
@@ -133,9 +156,8 @@ class _Search:
 
     def _sharpened(self, locus: Locus, minor: Minor) -> Locus | None:
         """Return the same locus with an entry of a minor among its equations that vanishes on it unseen."""
-        free = Scalar.symbol(WITNESS)
         for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
-            if locus.ideal is None or value in locus.ideal or not locus.ideal.having(1 - free * value).is_whole:
+            if locus.ideal is None or value in locus.ideal or not locus.ideal.having(apart_from_zero(value)).is_whole:
                 continue
             found = loci((*locus.equations, value), self.region)
             if len(found) == 1 and found[0].ideal is not None:
@@ -151,7 +173,7 @@ def rank_tree(matrix: Matrix, A: Matrix, region: Region, minor: Minor, kernel: K
     search = _Search(matrix, region, minor)
     nodes: dict[Locus, Node] = {}
     undecided: list[Locus] = []
-    waiting = deque([EVERYWHERE])
+    waiting = deque([region.whole])
     while waiting:
         locus = waiting.popleft()
         if locus in nodes:
@@ -163,7 +185,7 @@ def rank_tree(matrix: Matrix, A: Matrix, region: Region, minor: Minor, kernel: K
             continue
         undecided += [each for each in nodes[locus].below if each.ideal is None]
         waiting += [each for each in nodes[locus].below if each.ideal is not None]
-    generic = replace(nodes.pop(EVERYWHERE), kernel=kernel)
+    generic = replace(nodes.pop(region.whole), kernel=kernel)
     kept = []
     for rank in sorted({node.rank for node in nodes.values()}, reverse=True):
         kept += [nodes[each] for each in maximal(each for each, node in nodes.items() if node.rank == rank)]
@@ -218,9 +240,14 @@ def _best_kernel(
     """Return a kernel that holds on as much of a node's locus as possible, and where it does not."""
     best: tuple[Kernel, tuple[Locus, ...]] | None = None
     count = matrix.shape[1]
+    seen: set[tuple[Scalar, frozenset[Matrix]]] = set()
     for shift in range(count):
         order = tuple((index + shift) % count for index in range(count))
         kernel = kernel_on(matrix, A, node.locus.ideal if node.locus.equations else None, order)
+        columns = frozenset(kernel.basis.select(range(count), [j]) for j in range(kernel.basis.shape[1]))
+        if (kernel.restricted.common_denominator(), columns) in seen:
+            continue
+        seen.add((kernel.restricted.common_denominator(), columns))
         failing = _failing(kernel, node.locus, below, region)
         if best is None or len(failing) < len(best[1]):
             best = kernel, failing
@@ -249,17 +276,7 @@ def with_restriction(N: Matrix, A: Matrix, ideal: Ideal | None = None) -> Kernel
     if not count or len(free) < len(count):
         return Kernel(N, Matrix.zeros(len(count), len(count)), free)
     X = N.select(free, count).solve((A @ N).select(free, count)).normal()
-    if ideal is not None:
-        X = Matrix.of([[_reduced(entry, ideal) for entry in row] for row in X.rows], len(count))
-    return Kernel(N, X, free)
-
-
-def _reduced(value: Scalar, ideal: Ideal) -> Scalar:
-    """Return a rational function with numerator and denominator in normal form, kept where that is shorter."""
-    above, below, one = ideal.reduced_column([value.numerator, value.denominator, Scalar.of(1)])
-    if below.is_zero or one.is_zero:
-        return value
-    return above / below if above.size + below.size <= value.size else value
+    return Kernel(N, modulo(X, ideal), free)
 
 
 def primitive(entries: Iterable[Scalar]) -> list[Scalar]:
@@ -292,7 +309,7 @@ def _failing(kernel: Kernel, locus: Locus, below: list[Locus], region: Region) -
     for values in ([value for value in independent if not value.is_zero], [meaningful]):
         if any(value.is_constant for value in values):
             continue
-        parts = loci((*locus.equations, *values), region)
+        parts = loci((*locus.equations, *region.simplest_first(values)), region)
         failing += [part for part in parts if not any(part.lies_in(other) for other in below) and part != locus]
     return maximal(failing)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import determinant_form, given, undecided
+from symobs.analysis.pages import determinant_form, given, stratum_of, undecided
 from symobs.analysis.transition import START, TIME, antiderivative_since, transition
 from symobs.conditions import never_zero
 from symobs.derivation import Case as CaseStep
@@ -231,7 +231,7 @@ def _case(page: Page, case: Case) -> Step:
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
     steps += [_case(page, inner) for inner in case.result.case_tree]
-    return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), tuple(steps))
+    return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
 
 
 def _frozen(page: Page, result: TimeVaryingObservability) -> None:

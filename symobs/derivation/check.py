@@ -27,7 +27,7 @@ from symobs.derivation.steps import (
     Step,
 )
 from symobs.errors import DerivationRejected
-from symobs.exact import Ideal, Matrix, Scalar, roots_are
+from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, roots_are
 from symobs.exact.functions import substitute
 from symobs.formula import (
     Derivative,
@@ -332,9 +332,11 @@ def _on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envi
         with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
             replaced[name] = _there(known, substitution, lost)
     above = tuple(value.substitute(substitution) for value in environment.above)
-    inside = replace(environment, values=replaced, coefficients=named, assumed=(), above=above)
+    moved = (value.substitute(substitution).numerator for value in environment.relations)
+    relations = tuple(value for value in moved if value)
+    inside = replace(environment, values=replaced, coefficients=named, assumed=(), above=above, relations=relations)
     if isinstance(when, Together):
-        return replace(inside, relations=_left_of(when, substitution, environment))
+        return inside.under(_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
     factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
     says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)
@@ -356,22 +358,23 @@ def _left_of(when: Together, substitution: dict[str, Scalar], environment: Envir
     What is said of the stratum is held to them, and so to each of its points.
     """
     equations: list[Scalar] = []
-    relations: list[Scalar] = []
+    excluded: list[Scalar] = []
     for relation in when.relations:
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
         if relation.operators == ("=",):
             equations.append((left - right).numerator)
         elif relation.operators == ("!=",):
-            relations.append(1 - Scalar.symbol(f"_w{len(relations)}") * (left - right).numerator)
+            excluded.append(left - right)
         else:
             _reject(plain_relation(relation, environment.variable))
-    known = Ideal.of((*equations, *relations))
+    relations = [apart_from_zero(value) for value in excluded]
+    known = Ideal.of((*equations, *relations, *environment.relations))
     for name, value in substitution.items():
         solved = (Scalar.symbol(name) * value.denominator - value.numerator) in known
         if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):
             _reject(f"{name} = {value}")
     left_over = [equation.substitute(substitution).numerator for equation in equations]
-    return tuple(value for value in (*left_over, *(r.substitute(substitution).numerator for r in relations)) if value)
+    return (*(value for value in left_over if value), *(apart_from_zero(v.substitute(substitution)) for v in excluded))
 
 
 def _reject(line: str) -> NoReturn:

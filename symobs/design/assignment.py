@@ -11,7 +11,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar, apply_polynomial, echelon, independent_rows, kernel, unit_rows
+from symobs.exact import (
+    Ideal,
+    Matrix,
+    Scalar,
+    apply_polynomial,
+    echelon,
+    independent_rows,
+    kernel,
+    modulo,
+    remainder,
+    unit_rows,
+)
 from symobs.exact.krylov import Krylov
 
 if TYPE_CHECKING:
@@ -25,6 +36,12 @@ class Pair:
     A: Matrix
     c: Matrix
     variable: str
+    equations: tuple[Scalar, ...] = ()
+
+    @property
+    def ideal(self) -> Ideal | None:
+        """What is known to be 0, None where nothing is."""
+        return Ideal.of(self.equations) if self.equations else None
 
     @cached_property
     def krylov(self) -> Krylov:
@@ -44,64 +61,58 @@ class Pair:
     @property
     def is_observable(self) -> bool:
         """Whether det 𝒪 is not 0 identically."""
-        return not self.krylov.is_singular
+        if self.krylov.is_singular:
+            return False
+        return self.ideal is None or self.krylov.determinant not in self.ideal
 
     @cached_property
     def kernel(self) -> Matrix:
         """A basis of ker 𝒪 as columns; no columns where the pair is observable."""
-        return kernel(self.krylov.matrix)
+        return kernel(self.krylov.matrix, self.ideal)
 
     @cached_property
     def restricted(self) -> Matrix:
         """X with A N = N X for the kernel basis N: the plant on its unobservable subspace."""
         N = self.kernel
-        free = independent_rows(N)
-        return N.select(free, range(N.shape[1])).solve((self.A @ N).select(free, range(N.shape[1])))
+        free = independent_rows(N, self.ideal)
+        return modulo(N.select(free, range(N.shape[1])).solve((self.A @ N).select(free, range(N.shape[1]))), self.ideal)
 
     @cached_property
     def fixed_polynomial(self) -> Scalar:
         """The characteristic polynomial of the unobservable modes; 1 where there is none."""
         if not self.kernel.shape[1]:
             return Scalar.of(1)
-        return self.restricted.characteristic_polynomial(self.variable)
+        found = self.restricted.characteristic_polynomial(self.variable)
+        return found if self.ideal is None else self.ideal.simplified(found)
 
     def gain(self, desired: DesiredPolynomial) -> Matrix | None:
         """Return l with det(sI − A + l c) = φ(s), or None where φ cannot be assigned."""
         if self.is_observable:
             vector = self.krylov.solve_last()
-            return apply_polynomial(desired.factors, desired.variable, self.A, vector).normal()
-        quotient = divide(desired.polynomial, self.fixed_polynomial, self.variable)
-        return None if quotient is None else self._gain_of_observable_part(quotient)
+            return modulo(apply_polynomial(desired.factors, desired.variable, self.A, vector).normal(), self.ideal)
+        quotient, rest = self.divided(desired.polynomial)
+        return self._gain_of_observable_part(quotient) if rest.is_zero else None
+
+    def divided(self, polynomial: Scalar) -> tuple[Scalar, Scalar]:
+        """Return quotient and remainder of a division by the polynomial of the fixed modes."""
+        quotient, rest = remainder(polynomial, self.fixed_polynomial, self.variable)
+        return quotient, rest if self.ideal is None else self.ideal.simplified(rest)
 
     def _gain_of_observable_part(self, polynomial: Scalar) -> Matrix:
         """Place the observable modes; the gain has no component along the free rows of ker 𝒪."""
         order, N = self.A.shape[0], self.kernel
-        pivots, _ = echelon(self.krylov.matrix)
+        pivots, _ = echelon(self.krylov.matrix, self.ideal)
         rank = len(pivots)
         if rank == 0:
             return Matrix.zeros(order, 1)
         T = Matrix.block(
-            [[self.krylov.matrix.select(range(rank), range(order))], [unit_rows(order, independent_rows(N))]]
+            [
+                [self.krylov.matrix.select(range(rank), range(order))],
+                [unit_rows(order, independent_rows(N, self.ideal))],
+            ]
         )
         inverse = T.inverse()
-        A, c = T @ self.A @ inverse, self.c @ inverse
+        A, c = modulo(T @ self.A @ inverse, self.ideal), modulo(self.c @ inverse, self.ideal)
         part = Pair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
         gain = apply_polynomial([polynomial], self.variable, part.A, part.krylov.solve_last())
-        return (inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal()
-
-
-def divide(polynomial: Scalar, divisor: Scalar, variable: str) -> Scalar | None:
-    """Return polynomial / divisor where the division leaves no remainder."""
-    quotient = polynomial / divisor
-    return quotient if quotient.is_polynomial_in(variable) else None
-
-
-def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
-    """Return (quotient, remainder); raises ZeroDivisionError for the divisor 0."""
-    s = Scalar.symbol(variable)
-    quotient, rest = Scalar.of(0), polynomial
-    degree, top = divisor.degree(variable), divisor.coefficients(variable)[0]
-    while not rest.is_zero and rest.degree(variable) >= degree:
-        lead = rest.coefficients(variable)[0] / top * s ** (rest.degree(variable) - degree)
-        quotient, rest = quotient + lead, rest - lead * divisor
-    return quotient, rest
+        return modulo((inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal(), self.ideal)

@@ -13,7 +13,7 @@ from symobs.design.observer import ObserverDesign
 from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected, InputError, together
-from symobs.exact import Matrix, Scalar, controller
+from symobs.exact import Matrix, Scalar, controller, modulo, transfer
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
@@ -47,7 +47,7 @@ class CompensatorDesign(OutputFeedback):
         F: Scalar | Matrix | None = None
         if K is not None and L is not None and plant.inputs == plant.outputs == 1:
             numerator, denominator = own_transfer(feedback, estimator)
-            F = numerator / denominator
+            F = plant.simplified(numerator / denominator)
         elif K is not None and L is not None:
             F = realised(plant, K, L).function(plant.variable)
         return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
@@ -112,6 +112,9 @@ def realised(plant: StateSpace, K: Matrix, L: Matrix) -> Realisation:
 def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tuple[Scalar, Scalar]:
     """Return the compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
     m, K, L = feedback.plant.matrices, feedback.answer["K"], estimator.answer["L"]
+    if feedback.plant.equations:  # the gains place the poles on the stratum only
+        own = modulo(realised(feedback.plant, K, L).A, feedback.plant.ideal)
+        return transfer(own, L, K, Scalar.of(0), feedback.plant.variable)
     closed = feedback.answer["polynomial"] * estimator.answer["polynomial"]
     return controller(m.A, m.B, m.C, m.D[0, 0], K, L, closed, feedback.plant.variable)
 

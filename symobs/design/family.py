@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.analysis.observability import Controllability, Observability
 from symobs.certificate import Claim
 from symobs.design.sylvester import charts_of
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
-from symobs.method import Case
 from symobs.page import relation
 
 if TYPE_CHECKING:
@@ -20,9 +18,7 @@ if TYPE_CHECKING:
 
     from symobs.design.several import SeveralOutputs
     from symobs.design.sylvester import Sylvester
-    from symobs.method import Result
     from symobs.specification import DesiredPolynomial
-    from symobs.system import StateSpace
 
 #: What the family leaves out.
 SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det X = 0"
@@ -115,16 +111,3 @@ class Family:
         yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")
         rows = len(told["parameters"]) - self.H.shape[0] * self.H.shape[1]
         yield Claim(relation(rows, A.shape[0] * (C.shape[0] - 1)), e, "G has n*(p - 1) parameters")
-
-
-def cases_of_rank(
-    plant: StateSpace, task: str, solve: Callable[[StateSpace, dict[str, Scalar]], Result]
-) -> tuple[Case, ...]:
-    """Return the strata where the rank of 𝒪 (𝒞) drops, with the question put again on each."""
-    test = (Controllability if task == "state_feedback" else Observability).of(plant, "rank")
-    found = []
-    for case in test.case_tree:
-        values = dict(case.substitution)
-        answer = solve(case.result.plant, values) if case.result is not None and values else None
-        found.append(Case(case.when, values, answer))
-    return tuple(found)

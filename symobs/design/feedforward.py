@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.strata import strata
+from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
+from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar, kernel
@@ -17,12 +18,12 @@ from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
-from symobs.specification import Name, Poles, PolynomialText
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.conditions import Condition
+    from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
 
@@ -96,11 +97,10 @@ class FeedforwardDesign(Result):
     @cached_property
     def coupling(self) -> Matrix:
         """What multiplies the error in u = −K x + K_e e + F v: K, or K₂ with an observer of minimal order."""
-        order = self.plant.order
-        shown = self.loop.error_coordinates
-        if shown.shape[0] == 2 * order:
-            return self.loop.answer["K"]
-        return self.loop.split[1]  # type: ignore[attr-defined, no-any-return]
+        if isinstance(self.loop, MinimalOrderCompensator):
+            return self.loop.split[1]
+        K: Matrix = self.loop.answer["K"]
+        return K
 
     @cached_property
     def gain_at_rest(self) -> Matrix:
@@ -132,14 +132,10 @@ class FeedforwardDesign(Result):
     def case_tree(self) -> tuple[Case, ...]:
         """The strata of the gains, and those where the gain at rest loses its rank."""
 
-        def on(plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             return type(self).of(self.loop.on(plant, values), self.method)
 
-        gains = [case for design in (self.loop.feedback, self.loop.estimator) for case in design.case_tree]
-        there = [
-            case if case.result is None else Case(case.when, case.substitution, on(case.result.plant, dict(case.substitution)))
-            for case in gains
-        ]
+        there = carried(self.plant, self.loop.case_tree, on)
         return (*there, *strata(self.plant, [value.numerator for value in self.existence], on))
 
     @cached_property
@@ -177,7 +173,8 @@ def gain_at_rest(loop: OutputFeedback) -> Matrix:
         place = 1 if loop.plant.is_discrete else 0
         message = f"{place} is among the control poles, so the loop has no state of rest"
         raise InputError(message, where="specification.control_poles", repair=f"leave {place} out") from None
-    return ((m.C - m.D @ K) @ states + m.D).normal()
+    found: Matrix = ((m.C - m.D @ K) @ states + m.D).normal()
+    return found
 
 
 def response(loop: OutputFeedback, F: Matrix) -> Realisation:
@@ -221,4 +218,5 @@ def feedforward(
         estimate=(observer_poles, observer_polynomial),
         observer=observer,
     )
-    return choose("feedforward", method, "static").solve(loop).asked(method)
+    found: Result = choose("feedforward", method, "static").solve(loop)
+    return found.asked(method)

@@ -9,15 +9,14 @@ from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
-from symobs.analysis.strata import strata
+from symobs.analysis.strata import carried, strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.design.assignment import Pair, divide, remainder
-from symobs.design.family import Family, cases_of_rank
+from symobs.design.family import Family
 from symobs.design.several import SeveralOutputs
 from symobs.design.zeros import contradict, equations_for, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Field, Matrix, Root, Scalar, roots_of
+from symobs.exact import Field, Matrix, Root, Scalar, independent_rows, roots_of
 from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
@@ -27,6 +26,8 @@ from symobs.stability import Stability, stability
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.analysis.rank_result import RankResult
+    from symobs.design.assignment import Pair
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
@@ -46,6 +47,7 @@ class GainDesign(Result):
     zero: Places = ()
 
     letter: ClassVar[str]
+    rank_test: ClassVar[type[RankResult]]
 
     # -- the dual sides ----------------------------------------------------------------------------------------------
 
@@ -133,7 +135,7 @@ class GainDesign(Result):
     def _impossible(self) -> Iterator[Claim]:
         """C N = 0 and A N = N X make det(sI − X) a factor of every det(sI − A + LC); it does not divide φ."""
         pair, variable = self._pair, self.plant.variable
-        quotient, rest = remainder(self.answer["polynomial"], pair.fixed_polynomial, variable)
+        quotient, rest = pair.divided(self.answer["polynomial"])
         N, X = pair.kernel, pair.restricted
         values = {"A": pair.A, "C": pair.c, "N": N, "X": X, "phi": self.answer["polynomial"]}
         e = Environment(variable=variable, values=values)
@@ -141,7 +143,9 @@ class GainDesign(Result):
         pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
         yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
         yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
-        yield Claim(relation(kernel.apply("rank"), X.shape[0], "!==", 0), e, "N has full rank")
+        minor = N.select(independent_rows(N, pair.ideal), range(N.shape[1]))
+        yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
+        yield Claim(relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, "N has full rank")
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
         phi = letter("phi", e)
         yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")
@@ -161,11 +165,16 @@ class GainDesign(Result):
             return "undecided" if self.zero and self.divides and not self.excluded else "no"
         return super().verdict
 
+    @cached_property
+    def test(self) -> RankResult:
+        """The rank test of the pair."""
+        return self.rank_test.of(self.plant, "rank")
+
     @property
     def divides(self) -> bool:
         """Whether the fixed modes are among the poles asked for."""
         pair = self._pair
-        return pair.is_observable or divide(self.answer["polynomial"], pair.fixed_polynomial, pair.variable) is not None
+        return pair.is_observable or pair.divided(self.answer["polynomial"])[1].is_zero
 
     @cached_property
     def equations(self) -> tuple[Scalar, ...]:
@@ -186,13 +195,13 @@ class GainDesign(Result):
         if self.desired is None:
             return ()
         if self._pair.is_observable:
-            return self._pair.decisive
+            return tuple(self.plant.simplified(value) for value in self._pair.decisive)
         return self._obstacles if self.answer[self.letter] is None else ()
 
     @cached_property
     def _obstacles(self) -> tuple[Scalar, ...]:
         """The coefficients of φ modulo the fixed polynomial, as far as parameters can make them vanish."""
-        rest = remainder(self.answer["polynomial"], self.fixed_polynomial, self.plant.variable)[1]
+        rest = self._pair.divided(self.answer["polynomial"])[1]
         found = [c.numerator for c in rest.coefficients(self.plant.variable) if not c.is_zero]
         return () if any(c.is_constant for c in found) else tuple(found)
 
@@ -249,14 +258,15 @@ class GainDesign(Result):
             if own is None or found.answer[self.letter] is None:
                 return found
             try:  # the gain of the main line, where it is still there
-                return found.with_answer(self.letter, own.substitute(values))
+                kept = own.substitute(values)
             except ZeroDivisionError:
                 return found
+            return found.with_answer(self.letter, kept) if plant.admits(kept) else found
 
-        if isinstance(self._pair, SeveralOutputs) and self._pair.is_observable:
-            return cases_of_rank(self.plant, self.task, solve)
         obstacles = self.existence
-        if len(obstacles) <= 1 or self._pair.is_observable:
+        if self._pair.is_observable:
+            return carried(self.plant, self.test.case_tree, solve)
+        if len(obstacles) <= 1:
             return strata(self.plant, obstacles, solve)
         shared = set.intersection(*(set(vanishing_factors([c], self.plant.symbols.signs)) for c in obstacles))
         elsewhere = Case(tuple(Condition("existence", c, "==") for c in obstacles), {}, None)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from symobs.analysis.observability import Controllability, Observability, RankResult
 from symobs.analysis.pages import (
     determinant_form,
     factored_form,
@@ -14,6 +13,7 @@ from symobs.analysis.pages import (
     hidden_polynomial,
     say_stability,
     square_test,
+    stratum_of,
     undecided,
 )
 from symobs.derivation import Case as CaseStep
@@ -44,7 +44,6 @@ class Side:
     test: str
     index: str
     coefficient: str
-    rank: type[RankResult]
 
     @property
     def phi(self) -> str:
@@ -52,8 +51,8 @@ class Side:
         return f"phi_{self.index}"
 
 
-OBSERVER = Side("observer", "L", "O", "observability", "o", "beta_", Observability)
-FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "c", "alpha_", Controllability)
+OBSERVER = Side("observer", "L", "O", "observability", "o", "beta_")
+FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")
 
 
 def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
@@ -123,7 +122,7 @@ def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
         return
     if not page.knows(side.matrix):
         define_test_matrix(page, side)
-        square_test(page, side.matrix, side.rank.of(page.plant, "rank"), side.test)
+        square_test(page, side.matrix, design.test, side.test)
     elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
         return
     if design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
@@ -313,7 +312,6 @@ def _verified(page: Page, design: GainDesign, side: Side) -> None:
 
 def _case(page: Page, case: Case, side: Side) -> None:
     """Say what is true on a stratum."""
-    when = relation(case.when[0].expression, 0)
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
         return
@@ -324,7 +322,7 @@ def _case(page: Page, case: Case, side: Side) -> None:
         _on_stratum(page, case, result, side)
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    page.steps.append(CaseStep(when, tuple(case.substitution.items()), tuple(steps)))
+    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps)))
 
 
 def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
@@ -347,7 +345,7 @@ def design_gain_on(case: Case, page: Page, side: Side) -> bool:
     if not page.knows(side.gain):
         return False
     try:
-        page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
+        moved = page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
     except ZeroDivisionError:
         return False
-    return True
+    return case.result is not None and case.result.plant.admits(moved)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from symobs.analysis.observability import Observability
 from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
@@ -33,6 +34,7 @@ from symobs.specification import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.analysis.rank_result import RankResult
     from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
@@ -45,11 +47,12 @@ class ObserverDesign(GainDesign):
 
     task: ClassVar[str] = "observer"
     letter: ClassVar[str] = "L"
+    rank_test: ClassVar[type[RankResult]] = Observability
 
     @staticmethod
     def pair(plant: StateSpace) -> Pair:
         """Return (A, C)."""
-        return pair_of(plant.matrices.A, plant.matrices.C, plant.variable)
+        return pair_of(plant.matrices.A, plant.matrices.C, plant.variable, plant.equations)
 
     @staticmethod
     def oriented(gain: Matrix) -> Matrix:

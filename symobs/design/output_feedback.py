@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
+from symobs.analysis.strata import carried
 from symobs.certificate import Certificate, Claim, check
 from symobs.conditions import sign_of
 from symobs.exact import Factored, Matrix, Scalar, factored, transfer, transfer_matrix
@@ -148,15 +149,7 @@ class OutputFeedback(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
-        found = []
-        for design in (self.feedback, self.estimator):
-            for case in design.case_tree:
-                if case.result is None:
-                    found.append(case)
-                    continue
-                other = self.on(case.result.plant, dict(case.substitution))
-                found.append(Case(case.when, case.substitution, other))
-        return tuple(found)
+        return carried(self.plant, (*self.feedback.case_tree, *self.estimator.case_tree), self.on)
 
     def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
         """Return the compensator on a stratum."""
@@ -202,7 +195,7 @@ class OutputFeedback(Result):
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
         P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
-        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.under(self.plant.relations)))
         return tuple(tuple(factored(entry, variable) for entry in row) for row in whole.rows)
 
     @cached_property
@@ -217,7 +210,7 @@ class OutputFeedback(Result):
         form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e))
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
         return form
 
     @cached_property

@@ -14,7 +14,8 @@ from symobs.certificate import Certificate, Claim
 from symobs.design.gain import letters_of
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Matrix, Root, Scalar, unit_rows
+from symobs.exact import Matrix, Root, Scalar, echelon, unit_rows
+from symobs.exact.functions import NotWritten
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -212,7 +213,10 @@ class ReducedOrderObserver(Result):
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
             T = self.answer["T"].substitute(values)
-            usable = not T.determinant().is_zero
+            if not echelon(plant.matrices.C, plant.ideal)[0]:
+                message = "nothing is measured here"
+                raise NotWritten(message)
+            usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
         return strata(self.plant, (determinant, *self.inner.existence), solve)
@@ -237,7 +241,9 @@ class ReducedOrderObserver(Result):
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
     """Return the plant of x₂ alone, seen through A₁₂."""
-    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols)
+    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols).restricted(
+        plant.equations, plant.nonzero
+    )
 
 
 @method("reduced_order_observer/partition", source="S0, (4.32)-(4.41); Luenberger 1971")

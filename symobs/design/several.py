@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_result import power_rows
-from symobs.design.assignment import Pair, divide
+from symobs.design.assignment import Pair
 from symobs.design.chains import cost, simple_gains
 from symobs.design.sylvester import charts_of
 from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 
-def pair_of(A: Matrix, C: Matrix, variable: str) -> Pair:
+def pair_of(A: Matrix, C: Matrix, variable: str, equations: tuple[Scalar, ...] = ()) -> Pair:
     """Return the pair (A, C): one output has a unique gain where it sees everything, several have families."""
-    return (Pair if C.shape[0] == 1 else SeveralOutputs)(A, C, variable)
+    return (Pair if C.shape[0] == 1 else SeveralOutputs)(A, C, variable, equations)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class SeveralOutputs(Pair):
     @cached_property
     def kernel(self) -> Matrix:
         """A basis of ker 𝒪 as columns."""
-        return kernel(self.matrix)
+        return kernel(self.matrix, self.ideal)
 
     @property
     def decisive(self) -> tuple[Scalar, ...]:
@@ -56,9 +56,9 @@ class SeveralOutputs(Pair):
         if self.is_observable:
             return self.A, self.c, Matrix.identity(self.A.shape[0])
         order, outputs = self.A.shape[0], self.c.shape[0]
-        rows = independent_rows(self.matrix)
+        rows = independent_rows(self.matrix, self.ideal)
         size = len(rows)
-        others = unit_rows(order, independent_rows(self.kernel))
+        others = unit_rows(order, independent_rows(self.kernel, self.ideal))
         T = Matrix.block([[self.matrix.select(rows, range(order))], [others]] if size else [[others]])
         inverse = T.inverse()
         A, C = (T @ self.A @ inverse).normal(), (self.c @ inverse).normal()
@@ -72,8 +72,8 @@ class SeveralOutputs(Pair):
         """Return the factors of φ over the fixed polynomial, None where it does not divide φ."""
         if self.is_observable:
             return desired.factors
-        quotient = divide(desired.polynomial, self.fixed_polynomial, self.variable)
-        if quotient is None:
+        quotient, rest = self.divided(desired.polynomial)
+        if not rest.is_zero:
             return None
         return tuple(f for f, power in factored(quotient, self.variable).factors for _ in range(power))
 
@@ -103,5 +103,5 @@ class SeveralOutputs(Pair):
         """Return Lₒ of a gain: what it does to the seen part."""
         if self.is_observable:
             return gain
-        rows = independent_rows(self.matrix)
+        rows = independent_rows(self.matrix, self.ideal)
         return (self.matrix.select(rows, range(self.A.shape[0])) @ gain).normal()

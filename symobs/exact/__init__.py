@@ -6,12 +6,12 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.calculus import antiderivative, exponential_of_integral
 from symobs.exact.complex import Complex
-from symobs.exact.elimination import echelon, independent_rows, kernel, rank, reduced_echelon, unit_rows
+from symobs.exact.elimination import echelon, independent_rows, kernel, modulo, rank, reduced_echelon, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
-from symobs.exact.ideal import Ideal, TooLarge
+from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix
-from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of
+from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of, remainder
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 from symobs.exact.sides import stable_roots
@@ -32,6 +32,7 @@ __all__ = [
     "Shifted",
     "TooLarge",
     "antiderivative",
+    "apart_from_zero",
     "apply_polynomial",
     "companion",
     "controller",
@@ -43,9 +44,11 @@ __all__ = [
     "hankel_of",
     "independent_rows",
     "kernel",
+    "modulo",
     "product_of",
     "rank",
     "reduced_echelon",
+    "remainder",
     "root_of_pole",
     "roots_are",
     "roots_of",

@@ -53,14 +53,25 @@ class Extension:
 
     def inverse(self, value: Scalar) -> Scalar:
         """Return 1/value: the solution y of value · y = 1 among polynomials of lower degree than q."""
+        solution = self._multiplication(value).solve(Matrix.unit(self.degree, 0))
+        return from_coefficients(list(reversed(solution.entries)), self.name)
+
+    def _multiplication(self, value: Scalar) -> Matrix:
+        """Return the matrix of the multiplication by a value in the basis 1, λ, λ², …."""
         columns, image = [], self.reduce(value)
-        root = Scalar.symbol(self.name)
         for _ in range(self.degree):
             columns.append(self._ascending(image))
-            image = self.reduce(image * root)
-        table = Matrix.of([[column[i] for column in columns] for i in range(self.degree)])
-        solution = table.solve(Matrix.unit(self.degree, 0))
-        return from_coefficients(list(reversed(solution.entries)), self.name)
+            image = self.reduce(image * Scalar.symbol(self.name))
+        return Matrix.of([[column[i] for column in columns] for i in range(self.degree)])
+
+    def trace(self, value: Scalar) -> Scalar:
+        """Return the sum of a value over all roots: the trace of the multiplication by it."""
+        table = self._multiplication(value)
+        return sum((table[i, i] for i in range(self.degree)), Scalar.of(0))
+
+    def norm(self, value: Scalar) -> Scalar:
+        """Return the product of a value over all roots: the determinant of the multiplication by it."""
+        return self._multiplication(value).determinant()
 
     def _ascending(self, value: Scalar) -> list[Scalar]:
         found = list(reversed(value.coefficients(self.name)))

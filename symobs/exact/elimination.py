@@ -70,16 +70,23 @@ def _kernel_vector(
     return build(field, tuple((entry / shared,) for entry in vector), field.one, (columns, 1))
 
 
-def rank(matrix: Matrix) -> int:
-    """Return the rank over the field: for parameters, the generic rank."""
+def rank(matrix: Matrix, relations: Ideal | None = None) -> int:
+    """Return the rank over the field: for parameters, the generic rank (where the relations hold)."""
     if isinstance(matrix.table, fmpz_mat):
         return int(matrix.table.rank())
-    return len(echelon(matrix)[0])
+    return len(echelon(matrix, relations)[0])
 
 
-def kernel(matrix: Matrix) -> Matrix:
-    """Return a basis of {v : M v = 0} as columns; no columns where it is trivial."""
-    vectors = echelon(matrix)[1]
+def modulo(matrix: Matrix, relations: Ideal | None) -> Matrix:
+    """Return a matrix with its entries simplified by relations."""
+    if relations is None or not matrix.names:
+        return matrix
+    return Matrix.of([[relations.simplified(entry) for entry in row] for row in matrix.rows], matrix.shape[1])
+
+
+def kernel(matrix: Matrix, relations: Ideal | None = None) -> Matrix:
+    """Return a basis of {v : M v = 0} as columns (where the relations hold); no columns where it is trivial."""
+    vectors = echelon(matrix, relations)[1]
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(matrix.shape[1])], len(vectors))
 
 

@@ -12,9 +12,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact.functions import ONE, ZERO, square_root
+from symobs.exact.algebraic import EIGENVALUE, Extension
+from symobs.exact.functions import ONE, ZERO, registered, square_root
 from symobs.exact.matrix import Matrix
-from symobs.exact.quasi import Key, Quasi
+from symobs.exact.polynomial import companion
+from symobs.exact.quasi import Key, Quasi, matrix_at
+from symobs.exact.root_sum import RootSum
 from symobs.exact.roots import factored
 from symobs.exact.scalar import Scalar
 
@@ -54,6 +57,22 @@ class Mode:
     oscillates: bool
 
     @property
+    def rates(self) -> Matrix:
+        """D with f′ = D f for the functions of power 0."""
+        if self.discriminant.is_zero:
+            return Matrix.of([[self.rate]])
+        return Matrix.of([[self.rate, self.discriminant], [ONE, self.rate]])
+
+    @property
+    def start(self) -> tuple[Scalar, ...]:
+        """Their values at 0."""
+        return (ONE,) if self.discriminant.is_zero else (ONE, ZERO)
+
+    def values(self, power: int, time: Scalar) -> tuple[Scalar, ...]:
+        """Return the functions as scalars in functions of time."""
+        return tuple(f.value_at(time) for f in self.functions(power))
+
+    @property
     def root(self) -> Scalar:
         """√|δ|."""
         return square_root(-self.discriminant if self.oscillates else self.discriminant)
@@ -76,17 +95,58 @@ class Mode:
 
 
 @dataclass(frozen=True)
+class RootMode:
+    """The functions Σ λʲ e^{λt}/q′(λ), j below the degree of q, a polynomial in λ whose roots have no closed form."""
+
+    polynomial: Scalar
+
+    @property
+    def rates(self) -> Matrix:
+        """D with φ′ = D φ: φⱼ′ = φⱼ₊₁, and the last one by q(λ) = 0."""
+        return companion(Extension(self.polynomial, EIGENVALUE).coefficients[1:])
+
+    @property
+    def start(self) -> tuple[Scalar, ...]:
+        """Their values at 0, traces of λʲ/q′(λ)."""
+        return tuple(value.moved({"t": ZERO}) for value in self._sums(Scalar.symbol("t")))
+
+    def _sums(self, time: Scalar) -> tuple[RootSum, ...]:
+        degree = self.polynomial.degree(EIGENVALUE)
+        return tuple(RootSum("RootSum", time, self.polynomial, power) for power in range(degree))
+
+    def values(self, power: int, time: Scalar) -> tuple[Scalar, ...]:
+        """Return tᵏ φⱼ."""
+        return tuple(time**power * registered(value) for value in self._sums(time))
+
+
+@dataclass(frozen=True)
 class Exponential:
     """e^{At} = Σ function · matrix over the parts; a part is (mode, k, the matrices of its one or two functions)."""
 
-    parts: tuple[tuple[Mode, int, tuple[Matrix, ...]], ...]
+    parts: tuple[tuple[Mode | RootMode, int, tuple[Matrix, ...]], ...]
     order: int
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether no sum over roots is needed."""
+        return all(isinstance(mode, Mode) for mode, _, _ in self.parts)
+
+    def matrix(self, time: Scalar) -> Matrix:
+        """Return the values, in functions of time and in sums over roots."""
+        total = matrix_at(self.table(), time)
+        for mode, power, matrices in self.parts:
+            if isinstance(mode, RootMode):
+                for value, matrix in zip(mode.values(power, time), matrices, strict=True):
+                    total = total + matrix * value
+        return total
+
     def table(self) -> Table:
-        """Return the entries."""
+        """Return the entries, as far as their functions are closed forms."""
         zero = Quasi({})
         rows = [[zero] * self.order for _ in range(self.order)]
         for mode, power, matrices in self.parts:
+            if isinstance(mode, RootMode):
+                continue
             for f, matrix in zip(mode.functions(power), matrices, strict=True):
                 for i in range(self.order):
                     for j in range(self.order):
@@ -95,12 +155,14 @@ class Exponential:
         return tuple(tuple(row) for row in rows)
 
 
-def modes_of(polynomial: Scalar, variable: str, sign: Callable[[Scalar], str]) -> tuple[tuple[Mode, int], ...]:
-    """Return the modes of a characteristic polynomial with multiplicities.
+def modes_of(
+    polynomial: Scalar, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False
+) -> tuple[tuple[Mode | RootMode, int], ...]:
+    """Return the modes of a characteristic polynomial with multiplicities; sums over roots only where asked for.
 
     `sign` returns what is known of a discriminant's sign.  Raises `NoClosedForm`, `OpenBranch`.
     """
-    found: list[tuple[Mode, int]] = []
+    found: list[tuple[Mode | RootMode, int]] = []
     for factor, multiplicity in factored(polynomial, variable).factors:
         coefficients = factor.coefficients(variable)
         if len(coefficients) == 2:
@@ -112,17 +174,22 @@ def modes_of(polynomial: Scalar, variable: str, sign: Callable[[Scalar], str]) -
             if known not in {"positive", "negative"}:
                 raise OpenBranch(discriminant)
             found.append((Mode(rate, discriminant, known == "negative"), multiplicity))
+        elif sums:
+            found.append((RootMode(factor.substitute({variable: Scalar.symbol(EIGENVALUE)})), multiplicity))
         else:
             raise NoClosedForm(factor)
     return tuple(found)
 
 
-def exponential(A: Matrix, variable: str, sign: Callable[[Scalar], str]) -> Exponential:
-    """Return e^{At}.  Raises `NoClosedForm` where it has none here, `OpenBranch` where a sign must be known first."""
+def exponential(A: Matrix, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False) -> Exponential:
+    """Return e^{At}, with `sums` over roots if need be.
+
+    Raises `NoClosedForm` where it has none here, `OpenBranch` where a sign must be known first.
+    """
     order = A.shape[0]
     if order > (MOST_STATES_WITH_PARAMETERS if A.names else MOST_STATES):
         raise NoClosedForm(None)
-    found = modes_of(A.characteristic_polynomial(variable), variable, sign)
+    found = modes_of(A.characteristic_polynomial(variable), variable, sign, sums=sums)
     places = [(mode, k) for mode, multiplicity in found for k in range(multiplicity)]
     D, start = _rates(found)
     columns = [start]
@@ -137,7 +204,7 @@ def exponential(A: Matrix, variable: str, sign: Callable[[Scalar], str]) -> Expo
     matrices = [Matrix.of([row[i * order : (i + 1) * order] for i in range(order)]) for row in solved]
     parts, at = [], 0
     for mode, k in places:
-        width = 1 if mode.discriminant.is_zero else 2
+        width = len(mode.start)
         own = tuple(matrices[at : at + width])
         at += width
         if any(not matrix.is_zero for matrix in own):
@@ -145,20 +212,18 @@ def exponential(A: Matrix, variable: str, sign: Callable[[Scalar], str]) -> Expo
     return Exponential(tuple(parts), order)
 
 
-def _rates(modes: Sequence[tuple[Mode, int]]) -> tuple[Matrix, Matrix]:
+def _rates(modes: Sequence[tuple[Mode | RootMode, int]]) -> tuple[Matrix, Matrix]:
     """Return D and f(0) with f′ = D f, f the column of all functions."""
-    order = sum(multiplicity * (1 if mode.discriminant.is_zero else 2) for mode, multiplicity in modes)
+    order = sum(multiplicity * len(mode.start) for mode, multiplicity in modes)
     rows = [[ZERO] * order for _ in range(order)]
     start, at = [ZERO] * order, 0
     for mode, multiplicity in modes:
-        width = 1 if mode.discriminant.is_zero else 2
-        start[at] = ONE
+        block, width = mode.rates, len(mode.start)
+        start[at : at + width] = mode.start
         for k in range(multiplicity):
             for i in range(width):
-                rows[at + i][at + i] = mode.rate
+                rows[at + i][at : at + width] = block.rows[i]
                 if k:
                     rows[at + i][at + i - width] = Scalar.of(k)
-            if width == 2:
-                rows[at][at + 1], rows[at + 1][at] = mode.discriminant, ONE
             at += width
     return Matrix.of(rows), Matrix.column(start)

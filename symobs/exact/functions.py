@@ -23,6 +23,15 @@ if TYPE_CHECKING:
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
+#: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
+PI = "pi"
+#: cos(π r) for r = 0, 1/6, 1/4, 1/3, 1/2: (rational factor, radicand).
+_COSINES = {Fraction(0): (Fraction(1), 1), Fraction(1, 6): (Fraction(1, 2), 3), Fraction(1, 4): (Fraction(1, 2), 2)}
+_COSINES |= {Fraction(1, 3): (Fraction(1, 2), 1), Fraction(1, 2): (Fraction(0), 1)}
+
+
+class NotWritten(ArithmeticError):
+    """A value that is not written with square roots here."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +46,23 @@ class Function:
         """The generator's name."""
         return f"{self.kind}({self.argument})"
 
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The plain symbols inside."""
+        return symbols_in(self.argument)
+
+    def rate(self, time: str) -> Scalar:
+        """Return d/dt, by the chain rule."""
+        if self.kind == "sqrt":
+            return ZERO
+        sign, kind = _RATES[self.kind]
+        return derivative(self.argument, time) * generator(kind, self.argument) * sign
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the function with symbols of its argument replaced."""
+        argument = substitute(self.argument, values)
+        return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
+
 
 _KNOWN: dict[str, Function] = {}
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
@@ -49,7 +75,11 @@ def known(name: str) -> Function | None:
 
 def generator(kind: str, argument: Scalar) -> Scalar:
     """Return the generator of this name as a scalar."""
-    function = Function(kind, argument)
+    return registered(Function(kind, argument))
+
+
+def registered(function: Function) -> Scalar:
+    """Return a function as a generator, known by its name from now on."""
     _KNOWN[function.name] = function
     return Scalar.symbol(function.name)
 
@@ -58,10 +88,24 @@ def function(kind: str, argument: Scalar) -> Scalar:
     """Return kind(argument); arguments of even and odd functions are given a positive leading coefficient."""
     if argument.is_zero:
         return ONE if kind in {"exp", "cos", "cosh"} else ZERO
+    if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
+        turns = (argument / Scalar.symbol(PI)).fraction()
+        return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
     if kind == "exp" or not leads_with_minus(argument):
         return generator(kind, argument)
     value = generator(kind, -argument)
     return -value if kind in {"sin", "sinh"} else value
+
+
+def _cosine(turns: Fraction) -> Scalar:
+    """Return cos(π r).  Raises `NotWritten` where the table does not have it."""
+    turns = abs((turns + 1) % 2 - 1)
+    sign, turns = (-1, 1 - turns) if turns > Fraction(1, 2) else (1, turns)
+    if turns not in _COSINES:
+        message = f"cos({turns}*pi) is not written with square roots here"
+        raise NotWritten(message)
+    front, radicand = _COSINES[turns]
+    return square_root(Scalar.of(radicand)) * front * sign
 
 
 def leads_with_minus(value: Scalar) -> bool:
@@ -211,10 +255,7 @@ def _rate(name: str, time: str) -> Scalar:
     if name == time:
         return ONE
     found = known(name)
-    if found is None or found.kind == "sqrt":
-        return ZERO
-    sign, kind = _RATES[found.kind]
-    return derivative(found.argument, time) * generator(kind, found.argument) * sign
+    return ZERO if found is None else found.rate(time)
 
 
 @overload
@@ -230,10 +271,8 @@ def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar |
     images = {name: values[name] for name in value.names if name in values}
     for name in value.names:
         found = known(name)
-        if found is None or not symbols_in(found.argument) & values.keys():
-            continue
-        argument = substitute(found.argument, values)
-        images[name] = square_root(argument) if found.kind == "sqrt" else function(found.kind, argument)
+        if found is not None and found.symbols & values.keys():
+            images[name] = found.moved(values)
     return value.substitute(images) if images else value
 
 
@@ -242,14 +281,14 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
     names: set[str] = set()
     for name in value.names:
         found = known(name)
-        names |= symbols_in(found.argument) if found is not None else {name}
+        names |= found.symbols if found is not None else {name}
     return frozenset(names)
 
 
 def symbols_named(name: str) -> frozenset[str]:
     """Return the plain symbols of a generator: its own name, or those of its argument."""
     found = known(name)
-    return symbols_in(found.argument) if found is not None else frozenset((name,))
+    return found.symbols if found is not None else frozenset((name,))
 
 
 # -- how generators depend on each other -----------------------------------------------------------------------------
@@ -283,7 +322,7 @@ def identities(
     values = tuple(values)
     found = {f for value in values for name in value.names if (f := known(name)) is not None}
     roots = all_roots(*values)
-    moving = sorted((f for f in found if f.kind != "sqrt"), key=lambda f: f.name)
+    moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument).items():

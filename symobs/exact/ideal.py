@@ -83,12 +83,29 @@ class Ideal:
     def __contains__(self, value: Scalar) -> bool:
         return self.remainder(value).is_zero
 
+    def simplified(self, value: Scalar) -> Scalar:
+        """Return a rational function that agrees with `value` wherever the ideal vanishes, in normal form.
+
+        Where that would be longer, or divide by 0, the value stays as it is.
+        """
+        if not self.generators:
+            return value
+        above, below, one = self.reduced_column([value.numerator, value.denominator, Scalar.of(1)])
+        if below.is_zero or one.is_zero:
+            return value
+        return above / below if above.size + below.size <= value.size else value
+
     def having(self, *others: Scalar) -> Ideal:
         """Return the ideal with further generators; raises `TooLarge`."""
         return Ideal.of((*self.generators, *others))
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
         return Scalar(self.field, polynomial.project_to_context(self.field.context), self.field.one)
+
+
+def apart_from_zero(value: Scalar) -> Scalar:
+    """Return the polynomial 1 − w p, which has zeros exactly where p is not 0; w is a generator that belongs to p alone."""
+    return 1 - Scalar.symbol(f"1/({value.numerator})") * value.numerator
 
 
 @lru_cache(maxsize=512)

@@ -99,3 +99,14 @@ def hankel_of(coefficients: Sequence[Scalar]) -> Matrix:
     return Matrix.of(
         [[ascending[i + j + 1] if i + j + 1 <= order else Scalar.of(0) for j in range(order)] for i in range(order)]
     )
+
+
+def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return (quotient, remainder); raises ZeroDivisionError for the divisor 0."""
+    s = Scalar.symbol(variable)
+    quotient, rest = Scalar.of(0), polynomial
+    degree, top = divisor.degree(variable), divisor.coefficients(variable)[0]
+    while not rest.is_zero and rest.degree(variable) >= degree:
+        lead = rest.coefficients(variable)[0] / top * s ** (rest.degree(variable) - degree)
+        quotient, rest = quotient + lead, rest - lead * divisor
+    return quotient, rest

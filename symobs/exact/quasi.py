@@ -254,7 +254,7 @@ def _generator(name: str, time: str) -> Quasi:
     found = known(name)
     assert found is not None  # noqa: S101 - only functions move
     speed = derivative(found.argument, time)
-    if speed * Scalar.symbol(time) != found.argument or _depends(speed, time):
+    if found.kind == "RootSum" or speed * Scalar.symbol(time) != found.argument or _depends(speed, time):
         message = f"{name} is not a function of a multiple of {time}"
         raise ValueError(message)
     if found.kind == "exp":

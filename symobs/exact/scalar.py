@@ -7,6 +7,7 @@ two scalars are equal exactly when both parts are.  Arithmetic joins fields by i
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
@@ -15,7 +16,7 @@ from symobs.exact.field import RATIONALS, Field
 from symobs.exact.ring import by_powers, degree_bound, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 #: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
 _COEFFICIENT_LIMIT = 2**31
@@ -26,7 +27,7 @@ _WHOLE_TEXT = 20
 class Scalar:
     """An element numerator / denominator of a field."""
 
-    __slots__ = ("denominator_part", "field", "numerator_part")
+    __slots__ = ("denominator_part", "field", "known_hash", "numerator_part")
 
     def __init__(self, field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> None:
         """Take parts that are already reduced; `reduced` is the general constructor."""
@@ -160,7 +161,12 @@ class Scalar:
         return bool(a.numerator_part == b.numerator_part and a.denominator_part == b.denominator_part)
 
     def __hash__(self) -> int:
-        """Hash by invariants that do not depend on the surrounding field."""
+        """Hash by invariants that do not depend on the surrounding field; kept, since they take a while."""
+        if not hasattr(self, "known_hash"):
+            self.known_hash: int = self._hash()
+        return self.known_hash
+
+    def _hash(self) -> int:
         if self.is_constant:
             return hash(self.fraction())
         numerator, denominator = self.numerator_part, self.denominator_part
@@ -235,11 +241,13 @@ class Scalar:
 
     def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
         """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""
-        names = self.field.names
-        return [
-            (int(coefficient), tuple((name, int(power)) for name, power in zip(names, powers, strict=True) if power))
-            for powers, coefficient in self.numerator_part.terms()
-        ]
+        return list(self.each_term())
+
+    def each_term(self) -> Iterator[tuple[int, tuple[tuple[str, int], ...]]]:
+        """Yield the terms one by one."""
+        for powers, coefficient in self.numerator_part.terms():
+            pairs = zip(self.field.names, powers, strict=True)
+            yield int(coefficient), tuple((name, int(power)) for name, power in pairs if power)
 
     def __str__(self) -> str:
         from symobs.exact.text import scalar_text  # noqa: PLC0415 - printing stands on scalars, not the reverse
@@ -285,22 +293,15 @@ class Scalar:
 
         Factors are primitive with positive leading coefficient; those of the denominator have negative multiplicity.
         """
-        if self.is_zero:
-            return self, ()
-        above, over = _factor(self.field, self.numerator_part)
-        below, under = _factor(self.field, self.denominator_part)
-        found = [(Scalar(self.field, part, self.field.one), power) for part, power in over]
-        found += [(Scalar(self.field, part, self.field.one), -power) for part, power in under]
-        return Scalar.rational(above, below), tuple(found)
+        return (self, ()) if self.is_zero else _factored(self)
 
     def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
         """Return the value with generators replaced; raises ZeroDivisionError where a denominator vanishes."""
         relevant = {name: value for name, value in values.items() if name in self.field.position}
         if not relevant:
             return self
-        return _compose(self.numerator_part, self.field, relevant) / _compose(
-            self.denominator_part, self.field, relevant
-        )
+        above, below = (_compose(p, self.field, relevant) for p in (self.numerator_part, self.denominator_part))
+        return above / below
 
 
 def _constant(polynomial: fmpz_mpoly) -> fmpz:
@@ -318,6 +319,17 @@ def _from_terms(
 ) -> Scalar:
     field = Field.of(names)
     return Scalar(field, field.context.from_dict(dict(numerator)), field.context.from_dict(dict(denominator)))
+
+
+@lru_cache(maxsize=4096)
+def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
+    """Return what `factors` does of a value that is not 0; the same polynomials are asked about again and again."""
+    field = value.field
+    above, over = _factor(field, value.numerator_part)
+    below, under = _factor(field, value.denominator_part)
+    found = [(Scalar(field, part, field.one), power) for part, power in over]
+    found += [(Scalar(field, part, field.one), -power) for part, power in under]
+    return Scalar.rational(above, below), tuple(found)
 
 
 def _factor(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:

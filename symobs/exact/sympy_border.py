@@ -9,8 +9,10 @@ import sympy  # noqa: TID253 - this module is imported only where SymPy objects 
 
 from symobs.errors import InexactInput, InputError
 from symobs.exact import functions
+from symobs.exact.algebraic import EIGENVALUE
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
+from symobs.exact.root_sum import RootSum
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -40,7 +42,14 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
     """Return the Symbol of a name, or the function it is the name of."""
     found = functions.known(name)
     if found is None:
-        return objects.setdefault(name, sympy.Symbol(name))
+        return sympy.pi if name == functions.PI else objects.setdefault(name, sympy.Symbol(name))
+    if isinstance(found, RootSum):
+        root = sympy.Symbol(found.bound)
+        named = {EIGENVALUE: Scalar.symbol(found.bound)}
+        q, summand = (
+            scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
+        )
+        return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
     return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
 
 
@@ -137,14 +146,14 @@ def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool
     They are counted as SymPy's `CRootOf` does.
     """
     symbol = sympy.Symbol(variable)
-    polynomial = sympy.Poly(scalar_to_sympy(factor), symbol)
+    polynomial = sympy.Poly(scalar_to_sympy(factor.numerator), symbol)
     roots = [sympy.CRootOf(polynomial, k) for k in range(polynomial.degree())]
-    return tuple(_is_inside(root, discrete=discrete) for root in roots)
+    return tuple(_is_inside(root, polynomial, discrete=discrete) for root in roots)
 
 
-def _is_inside(root: Any, *, discrete: bool) -> bool:
+def _is_inside(root: Any, polynomial: sympy.Poly, *, discrete: bool) -> bool:
     """Tell on which side of the boundary a root lies; one closer to it than any bound for its distance lies on it."""
-    degree, size = root.poly.degree(), len(str(sum(abs(int(c)) for c in root.poly.all_coeffs())))
+    degree, size = polynomial.degree(), len(str(sum(abs(int(c)) for c in polynomial.all_coeffs())))
     # r and its mirror image are roots of a polynomial of degree 2d: Mahler's bound for the distance of two roots of it.
     smallest = (degree + 1) * len(str(2 * degree)) + (4 * degree + 1) * size + 5
     distance: Any = 0

@@ -16,6 +16,7 @@ from lark import Token
 
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
+from symobs.exact.functions import PI
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, Scope, refusal
 from symobs.expression.source import Source, shown
 
@@ -209,6 +210,8 @@ class Tokeniser:
 
     def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
         """Return the symbol `name`; raises the error that says why there is none."""
+        if name == PI and self.scope.functions:
+            return Scalar.symbol(PI)
         reasons = refusal(name)
         if reasons:
             raise self.source.error(reasons[0], at, reasons[1])

@@ -76,6 +76,10 @@ class Environment:
         changed: dict[str, Any] = {key: {**getattr(self, key), **new} for key, new in updates.items()}
         return replace(self, **changed)
 
+    def under(self, relations: tuple[Scalar, ...]) -> Environment:
+        """Return an environment in which further polynomials are 0."""
+        return replace(self, relations=(*self.relations, *relations)) if relations else self
+
 
 @dataclass(frozen=True)
 class Signal:

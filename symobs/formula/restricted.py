@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar
@@ -19,9 +20,14 @@ class Restricted(Exact):
     """
 
     def __init__(self, environment: Environment) -> None:
-        """Raise `TooLarge` where the relations are too long to be decided."""
+        """Keep the relations."""
         super().__init__(environment)
-        self.ideal = Ideal.of(environment.relations)
+        self.relations = environment.relations
+
+    @cached_property
+    def ideal(self) -> Ideal:
+        """What vanishes here; raises `TooLarge` where the relations are too long to be decided."""
+        return Ideal.of(self.relations)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
         """Refuse a value that has no meaning here."""

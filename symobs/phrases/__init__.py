@@ -16,6 +16,7 @@ from symobs.phrases import (
     coordinates,
     duality,
     families,
+    feedforward,
     gains,
     minimal_order,
     modes,
@@ -39,6 +40,7 @@ _MODULES = (
     families,
     compensation,
     minimal_order,
+    feedforward,
     reduced_order,
     time_varying,
 )

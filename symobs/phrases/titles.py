@@ -13,8 +13,10 @@ PHRASES: dict[str, str] = {
     "reduced_order_observer": "Reduced-order observer.",
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
+    "feedforward": "Feedforward.",
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
+    "without_serifs": "Set without serifs, {parameter} is a parameter of the data, not the matrix or signal of that letter.",
     "declared": "Throughout, {signs}.",
     "desired_pole": "The pole asked for is {poles}.",
     "desired_poles": "The poles asked for are {poles}.",
@@ -26,3 +28,5 @@ PHRASES: dict[str, str] = {
     "observer_poles": "The observer poles are to be {poles}.",
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
 }
+
+NAMING = ("without_serifs",)

@@ -222,7 +222,7 @@ class Breaker(Generic[B]):
     def _digits(self, value: Scalar) -> list[Piece[B]]:
         """A number in runs of digits; the next line begins with a sign that it goes on."""
         if not value.is_constant:
-            return [Piece(self.printer.leaf(value))]
+            return [Piece(self.printer.scalar(value))]
         digits = decimal(value.fraction().numerator)
         runs = [digits[start : start + _DIGITS_TOGETHER] for start in range(0, len(digits), _DIGITS_TOGETHER)]
         first, *rest = [Piece(self.printer.digits(run)) for run in runs]

@@ -113,6 +113,10 @@ class Glyphs(ABC, Generic[B]):
         """A square root."""
 
     @abstractmethod
+    def summed(self, over: B, term: B) -> B:
+        """The sum of a term over all that fulfil an equation."""
+
+    @abstractmethod
     def named(self, form: str) -> B:
         """A letter given by its LaTeX."""
 

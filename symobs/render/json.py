@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, ClassVar
 
-from symobs.exact.functions import symbols_named
+from symobs.exact.functions import PI, symbols_named
 from symobs.face import to_json
 from symobs.method import Case, Document, Result, output_format
 
@@ -48,7 +48,7 @@ def _symbols(result: Result) -> dict[str, str]:
     names = set(result.plant.symbols.signs) | set(result.plant.field.names)
     for value in result.answer.values():
         names |= getattr(value, "names", frozenset())
-    names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t"}
+    names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t", PI}
     return {name: result.plant.symbols.sign(name) for name in sorted(names)}
 
 

@@ -224,6 +224,11 @@ class LatexPrinter(Printer[LatexBox]):
         r"""`\sqrt`."""
         return LatexBox(argument.width + 0.9, Level.ATOM, rf"\sqrt{{{argument.source}}}", argument.height)
 
+    def summed(self, over: LatexBox, term: LatexBox) -> LatexBox:
+        r"""`\sum_{λ³+λ+1=0} …`."""
+        width = widths.SCRIPT * over.width + term.width
+        return LatexBox(width, Level.PRODUCT, rf"\sum_{{{over.source}}} {term.source}", max(2, term.height))
+
     def named(self, form: str) -> LatexBox:
         """The letter."""
         return LatexBox(widths.source_width(form), Level.ATOM, form)

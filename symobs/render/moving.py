@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 #: A function of time as a monomial: (name, exponent), the exponentials apart from the rest.
 Part = tuple[tuple[str, int], ...]
-_RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5}
+_RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 
 
 def moves(name: str) -> bool:

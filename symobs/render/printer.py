@@ -10,8 +10,9 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import EIGENVALUE, Matrix, Scalar
 from symobs.exact.functions import known
+from symobs.exact.root_sum import RootSum
 from symobs.formula import (
     Apply,
     At,
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from symobs.exact.functions import Function
 
 #: Letters that are functions of time; in discrete time they carry the index k.
-SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o"})
+SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o", "v_r"})
 
 
 class Printer(Glyphs[B]):
@@ -127,6 +128,10 @@ class Printer(Glyphs[B]):
             return self.named(self.symbols[function.name])
         if function.kind == "exp":
             return self.exponential(function.argument)
+        if isinstance(function, RootSum):
+            q, below = (self.typeset(spelled(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
+            over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
+            return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
         argument = self.scalar(function.argument)
         if function.kind == "sqrt":
             return self.root(argument)

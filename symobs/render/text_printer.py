@@ -94,7 +94,7 @@ class TextPrinter(Printer[TextBox]):
         if value.is_constant:
             return text_box(decimal(value.fraction().numerator))
         (name,) = value.names
-        return text_box(symbol_text(name))
+        return text_box(symbol_text(name, self.symbols.get(name)))
 
     def identity(self) -> TextBox:
         """I."""
@@ -194,6 +194,10 @@ class TextPrinter(Printer[TextBox]):
     def root(self, argument: TextBox) -> TextBox:
         """√3, √(ω² - b²)."""
         return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
+
+    def summed(self, over: TextBox, term: TextBox) -> TextBox:
+        """Σ[λ³ + λ + 1 = 0] …."""
+        return self.joined([text_box("Σ["), over, text_box("] "), term], Level.PRODUCT)
 
     def named(self, form: str) -> TextBox:
         """The letter: a Greek one by its glyph."""

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
-from symobs.exact import Field, Matrix, Scalar, companion
+from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_scalar
 from symobs.system.reading import read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 
 class StateSpace:
@@ -60,6 +61,8 @@ class StateSpace:
         self.time = read_time(dt, known)
         self.origin = transfer_function
         self.is_from_floats = False
+        self.equations: tuple[Scalar, ...] = ()
+        self.nonzero: tuple[Scalar, ...] = ()
         if any("t" in part.names for part in parts.values() if part is not None):
             self._let_vary()
         given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
@@ -153,6 +156,7 @@ class StateSpace:
         m = self.matrices
         plant = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=self.symbols)
         plant.matrices, plant.time, plant.is_from_floats = m, TimeVarying(), self.is_from_floats
+        plant.equations, plant.nonzero = self.equations, self.nonzero
         return plant
 
     @cached_property
@@ -167,7 +171,44 @@ class StateSpace:
         B = m.B.substitute(values) if m.has_input else None
         C = m.C.substitute(values) if m.has_output else None
         D = m.D.substitute(values) if m.has_input and m.has_output else None
-        return StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+        images = [equation.substitute(values).numerator for equation in self.equations]
+        nonzero = [value.substitute(values).numerator for value in self.nonzero]
+        return plant.restricted([image for image in images if not image.is_zero], nonzero)
+
+    def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
+        """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
+        ideal = Ideal.of((*self.equations, *equations))
+        if not ideal.generators:
+            return self
+        m, plant = self.matrices, copy(self)
+        plant.__dict__.pop("field", None)
+        plant.matrices = Matrices(
+            modulo(m.A, ideal),
+            modulo(m.B, ideal) if m.has_input else None,
+            modulo(m.C, ideal) if m.has_output else None,
+            modulo(m.D, ideal),
+        )
+        plant.equations, plant.nonzero = ideal.generators, tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        return plant
+
+    def simplified(self, value: Scalar) -> Scalar:
+        """Return a value in the parameters as simple as what is known of them allows; 0 where it is that."""
+        return self.ideal.simplified(value) if self.ideal is not None else value
+
+    def admits(self, value: Scalar | Matrix) -> bool:
+        """Tell whether a value has a meaning here: whether its denominator is not one of what is known to be 0."""
+        return self.ideal is None or value.common_denominator() not in self.ideal
+
+    @property
+    def ideal(self) -> Ideal | None:
+        """What is known to be 0, None where nothing is."""
+        return Ideal.of(self.equations) if self.equations else None
+
+    @property
+    def relations(self) -> tuple[Scalar, ...]:
+        """What vanishes for the parameters considered: the equations, and 1 − w p for each p that does not vanish."""
+        return (*self.equations, *map(apart_from_zero, self.nonzero))
 
     def knowing(self, *values: object) -> StateSpace:
         """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""

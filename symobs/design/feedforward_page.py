@@ -1,0 +1,133 @@
+"""The page of the feedforward, in the order of S3, section G."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import factored_form, formula_of_factored, given
+from symobs.design.compensator_page import MATRIX
+from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant, write_gain
+from symobs.design.minimal_order_compensator import MinimalOrderCompensator
+from symobs.design.observer import page_style, write_observer
+from symobs.design.reduced_order_observer import ReducedOrderObserver
+from symobs.design.reduced_order_page import write_observer_of_rest
+from symobs.exact import Matrix, Scalar
+from symobs.formula.term import Term, block
+from symobs.page import Page, relation
+
+if TYPE_CHECKING:
+    from symobs.design.feedforward import FeedforwardDesign
+
+
+def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
+    """Write the gains, the loop with its new input, and F."""
+    plant, loop = page.plant, design.loop
+    minimal = isinstance(loop, MinimalOrderCompensator)
+    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
+    with page.section("state_feedback"):
+        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+    if isinstance(loop.estimator, ReducedOrderObserver):
+        write_observer_of_rest(page, loop.estimator)
+    else:
+        with page.section("observer"):
+            write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+            if loop.answer["L"] is not None:
+                write_observer(page)
+    if loop.answer["K"] is None or loop.answer["L"] is None:
+        return
+    with page.section("feedforward"):
+        if design.answer["F"] is None:
+            _impossible(page, design)
+            return
+        _loop(page, design, minimal=minimal)
+        _gain(page, design)
+
+
+def _at_rest(page: Page) -> Term:
+    """(C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
+    A, B, C, K = (page[name] for name in "ABCK")
+    closed = B @ K - A
+    if page.plant.is_discrete:
+        closed = page.identity(page.plant.order) - A + B @ K
+    if not page.plant.matrices.has_feedthrough:
+        return C @ closed.inverse @ B
+    return (C - page["D"] @ K) @ closed.inverse @ B + page["D"]
+
+
+def _impossible(page: Page, design: FeedforwardDesign) -> None:
+    """The gain at rest has dependent rows, whatever K is."""
+    page.define("G_0", _at_rest(page), say="gain_at_rest")
+    if page["G_0"].value.shape == (1, 1):
+        page.conclude("no_feedforward_single")
+        return
+    w = page.set("w_0", design.answer["w"])
+    page.conclude(
+        "no_feedforward",
+        row=relation(w, w.shown),
+        vanishes=relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs)),
+    )
+
+
+def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
+    """U = −K x̂ + F v, and what becomes of state, error and output."""
+    plant, m = page.plant, page.plant.matrices
+    F = design.answer["F"]
+    page.set("F_v", F if isinstance(F, Matrix) else Matrix.of([[F]]))
+    if minimal:
+        parts = (page["K"] @ page["T"].inverse).value.normal()
+        page.set("K_1", parts.select(range(plant.inputs), range(plant.outputs)))
+        page.set("K_2", parts.select(range(plant.inputs), range(plant.outputs, plant.order)))
+        page.equal(relation(page["K"] @ page["T"].inverse, block([[page["K_1"], page["K_2"]]])), say="partitioned_gain")
+        page.signal(
+            "u",
+            -page["K_1"] @ page["x_1"] - page["K_2"] @ page["x_2_hat"] + page["F_v"] @ page["v_r"],
+            say="feedforward_law",
+        )
+    else:
+        page.signal("u", -page["K"] @ page["x_hat"] + page["F_v"] @ page["v_r"], say="feedforward_law")
+    A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
+    x, v, error = page["x"], page["v_r"], page["e_2" if minimal else "e"]
+    coupling = page["K_2"] if minimal else K
+    own = page["F_z"] if minimal else A - page["L"] @ C
+    lines = [
+        relation(x.derivative, (A - B @ K) @ x + B @ coupling @ error + B @ F_v @ v),
+        relation(error.derivative, own @ error),
+    ]
+    output = C @ x
+    if m.has_feedthrough:
+        D = page["D"]
+        output = (C - D @ K) @ x + D @ coupling @ error + D @ F_v @ v
+    page.equal(*lines, relation(page["y"], output), say="feedforward_loop")
+    errors = design.loop.error_coordinates.shape[0] - plant.order
+    zero = page.value(Matrix.zeros(errors, plant.order))
+    page.define("A_cl", block([[A - B @ K, B @ coupling], [zero, own]]), silent=True, closing=False)
+    determinant = (page.s @ page.identity(plant.order + errors) - page["A_cl"]).apply("det")
+    of_error = (page.s @ page.identity(errors) - own).apply("det") if minimal else error_determinant(page, OBSERVER)
+    parts_of = error_determinant(page, FEEDBACK) @ of_error
+    product = page.term(formula_of_factored(design.loop.loop_polynomial))
+    page.equal(relation(determinant, parts_of, product), say="feedforward_polynomial")
+
+
+def _gain(page: Page, design: FeedforwardDesign) -> None:
+    """F from the gain at rest, and the transfer function from v to y."""
+    plant, m = page.plant, page.plant.matrices
+    A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
+    page.define("G_0", _at_rest(page), say="gain_at_rest")
+    G = page["G_0"]
+    if plant.inputs == plant.outputs:
+        page.equal(relation(F_v, G.inverse, F_v.shown), say="feedforward_gain", answer=True)
+    else:
+        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.shown), say="feedforward_smallest", answer=True)
+    one = page.identity(plant.outputs) if plant.outputs > 1 else page.value(1)
+    page.verified("as_required", check=relation(G @ F_v, one))
+    resolvent = (page.s @ page.identity(plant.order) - A + B @ K).inverse
+    response = C @ resolvent @ B @ F_v
+    if m.has_feedthrough:
+        response = (C - page["D"] @ K) @ resolvent @ B @ F_v + page["D"] @ F_v
+    T = design.answer["transfer_function"]
+    if isinstance(T, Scalar):
+        page.define("T_v", response, factored_form(page, T), say="feedforward_response", answer=True, closing=False)
+    else:
+        shown = [page.value(T)] if T.size <= MATRIX else []
+        page.define("T_v", response, *shown, say="feedforward_response", answer=True, closing=False)
+    page.conclude_silently(relation(page["T_v"], T))
