@@ -8,6 +8,7 @@ from symobs.analysis.pages import factored_form, formula_of_factored, given
 from symobs.design.compensator_page import MATRIX
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant, write_gain
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
+from symobs.design.minimal_order_page import partitioned_gain
 from symobs.design.observer import page_style, write_observer
 from symobs.design.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reduced_order_page import write_observer_of_rest
@@ -74,10 +75,7 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     F = design.answer["F"]
     page.set("F_v", F if isinstance(F, Matrix) else Matrix.of([[F]]))
     if minimal:
-        parts = (page["K"] @ page["T"].inverse).value.normal()
-        page.set("K_1", parts.select(range(plant.inputs), range(plant.outputs)))
-        page.set("K_2", parts.select(range(plant.inputs), range(plant.outputs, plant.order)))
-        page.equal(relation(page["K"] @ page["T"].inverse, block([[page["K_1"], page["K_2"]]])), say="partitioned_gain")
+        partitioned_gain(page)
         page.signal(
             "u",
             -page["K_1"] @ page["x_1"] - page["K_2"] @ page["x_2_hat"] + page["F_v"] @ page["v_r"],
@@ -88,7 +86,7 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
     x, v, error = page["x"], page["v_r"], page["e_2" if minimal else "e"]
     coupling = page["K_2"] if minimal else K
-    own = page["F_z"] if minimal else A - page["L"] @ C
+    own = page["A_22"] - page["L"] @ page["A_12"] if minimal else A - page["L"] @ C
     lines = [
         relation(x.derivative, (A - B @ K) @ x + B @ coupling @ error + B @ F_v @ v),
         relation(error.derivative, own @ error),
@@ -102,7 +100,8 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     zero = page.value(Matrix.zeros(errors, plant.order))
     page.define("A_cl", block([[A - B @ K, B @ coupling], [zero, own]]), silent=True, closing=False)
     determinant = (page.s @ page.identity(plant.order + errors) - page["A_cl"]).apply("det")
-    of_error = (page.s @ page.identity(errors) - own).apply("det") if minimal else error_determinant(page, OBSERVER)
+    of_rest = page.s @ page.identity(errors) - page["A_22"] + page["L"] @ page["A_12"] if minimal else None
+    of_error = error_determinant(page, OBSERVER) if of_rest is None else of_rest.apply("det")
     parts_of = error_determinant(page, FEEDBACK) @ of_error
     product = page.term(formula_of_factored(design.loop.loop_polynomial))
     page.equal(relation(determinant, parts_of, product), say="feedforward_polynomial")

@@ -65,15 +65,9 @@ def _one(page: Page) -> Term:
 
 def _control_law(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
     """U = −K x̂ in terms of the output and of the observer's state."""
-    plant, outputs = page.plant, page.plant.outputs
-    K, T = page["K"], page["T"]
-    whole = K if T.value == Matrix.identity(plant.order) else K @ T.inverse
-    parts, inputs = whole.value.normal(), range(plant.inputs)
-    page.set("K_1", parts.select(inputs, range(outputs)))
-    page.set("K_2", parts.select(inputs, range(outputs, plant.order)))
+    plant = page.plant
+    partitioned_gain(page)
     K_1, K_2 = page["K_1"], page["K_2"]
-    both = block([[K_1, K_2]])
-    page.equal(relation(whole, both, both.shown), say="partitioned_gain")
     page.signal("u", -K_1 @ page["x_1"] - K_2 @ page["x_2_hat"], say="minimal_control")
     page.conclude_silently(relation(page["u"], -page["K"] @ page["x_hat"]))
     page.define("K_y", K_1 + K_2 @ page["L"], say="output_gain")
@@ -99,6 +93,17 @@ def _control_law(page: Page, design: MinimalOrderCompensator, *, large: bool) ->
     W, K_y, K_2, u, y, z = (page[name] for name in ("W_u", "K_y", "K_2", "u", "y", observer_state(page)))
     pairs = [(-(W @ K_y).value, y), (-(W @ K_2).value, z)]
     page.equal(relation(u, -(W @ K_y) @ y - W @ K_2 @ z, *_numbers(page, pairs, large=large)))
+
+
+def partitioned_gain(page: Page) -> None:
+    """[K₁ K₂] = K T⁻¹."""
+    plant, K, T = page.plant, page["K"], page["T"]
+    whole = K if T.value == Matrix.identity(plant.order) else K @ T.inverse
+    parts, inputs = whole.value.normal(), range(plant.inputs)
+    page.set("K_1", parts.select(inputs, range(plant.outputs)))
+    page.set("K_2", parts.select(inputs, range(plant.outputs, plant.order)))
+    both = block([[page["K_1"], page["K_2"]]])
+    page.equal(relation(whole, both, both.shown), say="partitioned_gain")
 
 
 def _numbers(page: Page, pairs: list[tuple[Matrix | Scalar, Term]], *, large: bool) -> list[Term]:
