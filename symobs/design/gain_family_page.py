@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 #: What has more terms is not written out: a matrix, a determinant, a general gain.
-_MATRIX, _DETERMINANT, _GAIN = 40, 24, 60
+_MATRIX, _DETERMINANT, _GAIN = 40, 24, 40
 
 
 def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -36,9 +36,12 @@ def write_sylvester(page: Page, design: GainDesign, side: Side, desired: Desired
         page.define(f"{side.gain}_G", _gain(page, side, "G_phi", "X_phi", equation), general, say="general_gain")
     own = chart.own_G
     if own is None:
-        page.define(side.gain, design.answer[side.gain], say="no_member", answer=True)
+        page.define(
+            side.gain, design.answer[side.gain], say=f"alone_{design.wish}" if design.wish else "no_member", answer=True
+        )
         return
-    page.define("G_1", own, say="member_zero" if design.zero else "member_several")
+    words = f"{design.wish}_{side.kind}" if design.wish else "zero" if design.zero else "several"
+    page.define("G_1", own, say=f"member_{words}")
     solution = page.set("X_1", equation.solution(own))
     page.equal(
         relation(solution, solution.shown),

@@ -18,6 +18,19 @@ PHRASES: dict[str, str] = {
     "dimension_several": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of $G_phi$. Left out are "
     "gains whose closed-loop matrix is not cyclic.",
     "member_several": "A gain with short entries belongs to",
+    **{
+        f"{where}_decoupled_{kind}": f"{what}{end}"
+        for kind, what in (
+            ("observer", "The output errors are decoupled, each obeying an equation of its own, by the gain"),
+            ("state_feedback", "The inputs are decoupled, each driving a part of its own, by the gain"),
+        )
+        for where, end in (("member", " that belongs to"), ("alone", ""))
+    },
+    **{
+        f"{where}_smallest_{kind}": f"The smallest sum of squares of its entries has the gain{end}"
+        for kind in ("observer", "state_feedback")
+        for where, end in (("member", " that belongs to"), ("alone", ""))
+    },
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",
