@@ -302,8 +302,8 @@ def _text(entry: object) -> object:
     return str(entry) if is_sympy(entry) else entry
 
 
-def reject_both(name: str, gain: object, poles: object, polynomial: object) -> None:
+def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:
     """Raise `InputError` where a gain is given together with what it should achieve."""
     if gain is not None and (poles is not None or polynomial is not None):
-        message = f"both {name} and {'poles' if poles is not None else 'polynomial'} are given"
+        message = f"both {name} and {other if poles is not None else 'polynomial'} are given"
         raise InputError(message, where=f"specification.{name}", repair="keep one of them")

@@ -417,6 +417,9 @@ class World:
                 case Relation(members, operators):
                     values = [self.value(member) for member in members]
                     for index, operator in enumerate(operators):
+                        if operator == "~":  # the rows span the same space
+                            yield "=", Fraction(not same_rows(values[index], values[index + 1]))
+                            continue
                         content = zeroed(plus(values[index], times(Fraction(-1), values[index + 1])))
                         yield (
                             operator,
@@ -444,6 +447,13 @@ class World:
             return ("of", tuple(self.coefficients(root.factor)), root.index)
         radicand = self.scalar(root.radicand)
         return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
+
+
+def same_rows(left: Rows, right: Rows) -> bool:
+    """Tell whether the rows of two tables span the same space."""
+    if len(left[0]) != len(right[0]):
+        return False
+    return len({eliminate(table, len(left[0]))[0] for table in (left, right, [*left, *right])}) == 1
 
 
 def single(value: Any) -> Fraction:

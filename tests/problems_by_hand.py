@@ -312,7 +312,13 @@ PROBLEMS = {
 
 
 #: Examples with several outputs or inputs, whose gains are not unique: `test_gain_families` holds them to the claim itself.
-FAMILIES = {"triple_pole_two_outputs", "two_masses_zeros", "hidden_state_two_outputs", "two_inputs_feedback"}
+FAMILIES = {
+    "two_masses_parametric",
+    "triple_pole_two_outputs",
+    "two_masses_zeros",
+    "hidden_state_two_outputs",
+    "two_inputs_feedback",
+}
 
 
 def points(name: str, count: int) -> Iterator[dict[Any, Any]]:

@@ -60,7 +60,7 @@ Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free 
 
 def facts_in(item: object) -> Iterator[Fact]:
     """Yield every fact anywhere in a derivation, by the fields of its dataclasses alone."""
-    if isinstance(item, (Relation, Predicate, Roots, Exactly)):
+    if isinstance(item, (Relation, Predicate, Roots, Exactly, Shown)):
         yield item
     elif isinstance(item, (tuple, list)):
         for part in item:

@@ -262,3 +262,22 @@ def test_a_weak_point_is_followed_by_others(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(certificate, "EXACT_UP_TO", -1)
     monkeypatch.setattr(certificate, "_error_bound", lambda *_: 2.0**-20)
     assert verify(said(a, a), Environment()) == ("at 3 random points modulo 64-bit primes", 2.0**-60)
+
+
+# -- rows that span the same space ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "same"),
+    [
+        ([[2, 4], [1, 3]], [[1, 0], [0, 1]], True),
+        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 3]], True),
+        ([[a, 1, 0], [0, b, 1]], [[1, 0, -1 / (a * b)], [0, 1, 1 / b]], True),
+        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 4]], False),
+        ([[1, 0, 0], [0, 1, 0]], [[1, 0, 0]], False),
+        ([[1, 0]], [[1, 0], [0, 1]], False),
+    ],
+)
+def test_matrices_are_equivalent_where_their_rows_span_the_same_space(left: Any, right: Any, *, same: bool) -> None:
+    relation = said(Matrix.of(left), "~", Matrix.of(right))
+    assert (verify(relation, Environment())[0] == "exact") == same

@@ -209,3 +209,19 @@ def test_roots_without_closed_form_are_held_to_their_factor() -> None:
     refused(phi, Conclude(None, (Roots(Letter("phi"), roots[1:]),)))
     other = tuple(Root(root.factor + 1, "s", root.centre, root.radicand, 1, root.index) for root in roots)
     refused(phi, Conclude(None, (Roots(Letter("phi"), other),)))
+
+
+def test_a_matrix_of_rational_functions_is_stable_where_all_its_poles_are() -> None:
+    G = Letter("G_cl")
+
+    def given(*entries: Scalar) -> Given:
+        return Given((said(G, Literal(Matrix.row(entries))),))
+
+    stable, unstable = given(1 / (s + 1), s / (s + 2)), given(1 / (s + 1), 1 / (s - 2))
+    checked(stable, Conclude(None, (Predicate("stable", G),)))
+    refused(stable, Conclude(None, (Predicate("unstable", G),)))
+    refused(stable, Conclude(None, (Predicate("strictly_proper", G),)))
+    refused(stable, Conclude(None, (Predicate("polynomial", G),)))
+    checked(unstable, Conclude(None, (Predicate("unstable", G),)))
+    checked(unstable, Conclude(None, (Predicate("strictly_proper", G),)))
+    refused(unstable, Conclude(None, (Predicate("stable", G),)))

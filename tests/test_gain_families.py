@@ -290,6 +290,53 @@ def test_methods_for_one_output_say_so(name: str) -> None:
         symobs.state_feedback(CHAINS, poles=[-1, -1, -1], method=name)
 
 
+# -- members with a name ---------------------------------------------------------------------------------------------------
+
+
+def orders_seen(A: Any, C: Any) -> list[int]:
+    """Return the ranks of the observability matrices of the outputs one by one."""
+    return [Matrix.vstack(*[C[i, :] * A**k for k in range(A.rows)]).rank() for i in range(C.rows)]
+
+
+def test_decoupled_output_errors_obey_equations_of_their_own() -> None:
+    A = [[0, 1, 0, 0], [3, -1, 2, 0], [0, 0, 0, 1], [1, 0, 4, 2]]
+    plant = symobs.StateSpace(A, C=[[1, 0, 0, 0], [0, 0, 1, 0]])
+    found = symobs.observer(plant, poles=[-1, -1, -2, -2], member="decoupled")
+    assert sorted(orders_seen(plant.A - found.L * plant.C, plant.C)) == [2, 2]
+    assert max(orders_seen(plant.A, plant.C)) > 2
+    assert "decoupled" in found.to("text")
+    other = symobs.observer(plant, poles=[-1, -1, -2, -2]).with_answer("L", found.answer["L"]).answer["L"]
+    assert other == found.answer["L"]
+    back = symobs.state_feedback(symobs.StateSpace(plant.A.T, plant.C.T), poles=[-1, -1, -2, -2], member="decoupled")
+    assert back.K == found.L.T
+    mixed = symobs.observer(plant, poles=[-1, -1, -2, -2], zero="[* 0; * 0; * 0; * 0]").answer["L"]
+    with pytest.raises(CertificateRejected, match="add up"):
+        found.with_answer("L", mixed)
+
+
+def test_the_smallest_gain_is_smaller_than_others() -> None:
+    plant = symobs.StateSpace("[0 1; 2 3]", C="[1 0; 2 0; 3 0]")
+    found = symobs.observer(plant, poles=[-1, -2], member="smallest")
+    A, single = plant.A, sympy.symbols("x y")
+    moved = Matrix(single) * Matrix([[1, 0]])
+    error = sympy.Poly((s * sympy.eye(2) - A + moved).det() - (s + 1) * (s + 2), s).coeffs()
+    unique = Matrix(single).subs(sympy.solve(error, single))
+    # Least squares: the row l of L with l (1, 2, 3) given is the shortest along (1, 2, 3).
+    assert unique * Matrix([[1, 2, 3]]) / 14 == found.L
+    with pytest.raises(CertificateRejected):
+        found.with_answer("L", symobs.observer(plant, poles=[-1, -2]).answer["L"])
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"member": "smallest"}, {"member": "nearest"}, {"member": "decoupled", "zero": "(1, 1)"}],
+)
+def test_members_that_are_not_known_are_refused(arguments: dict[str, str]) -> None:
+    with pytest.raises(InputError) as caught:
+        symobs.observer(TRIPLE, poles=[-1, -1, -1], **arguments)
+    assert caught.value.where == "specification.member"
+
+
 # -- one output: every road leads to the same gain ------------------------------------------------------------------------
 
 

@@ -142,11 +142,6 @@ def test_every_line_of_every_derivation(name: str, record_property: Callable[[st
 def said_and_assumed(hand: Hand, reader: Reader) -> None:
     """Hold what sentences mention, and what is assumed from some line on, against the problem."""
     for where, value in reader.tally.spoken:
-        if where in {"pole_reduced.pole", "pair_reduced.pole", "generalised.pole"}:
-            wish, variable = hand.control if hand.observer is None else hand.observer, hand.variable
-            factor = value if value.has(variable) else variable - value
-            assert sympy.rem(wish, factor, variable) == 0
-            continue
         assert where == "defective.pole"
         for polynomial in (hand.control, sympy.diff(hand.control, hand.variable)):
             assert polynomial.subs(hand.variable, value) == 0

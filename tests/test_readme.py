@@ -45,6 +45,8 @@ def test_python_gives_the_values_in_its_comments() -> None:
     assert [str(condition) for condition in design.conditions] == ["Ne(2*c - 1, 0)"]
     survivors = [case for case in design.cases if case.result is not None and case.result.verdict == "yes"]
     assert [case.when for case in survivors] == [(sympy.Eq(c - 1, 0),)]
+    assert names["several"].family["parameters"] == ("g1", "g2", "g3")
+    assert names["zeros"].L[:, 1].is_zero_matrix
 
 
 def test_every_promised_value_is_on_a_line_of_its_own() -> None:

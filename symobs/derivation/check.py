@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
+from symobs.derivation.properties import PREDICATES, needed, polynomial_of, subjects
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -52,10 +53,10 @@ from symobs.formula import (
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
 from symobs.pointwise import never_together_zero
-from symobs.stability import is_beyond, is_marginal, marginal_where, monic, no_stable_compensator, stability
+from symobs.stability import monic
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
 Value: TypeAlias = Scalar | Matrix | Signal
 _BUG = "please report this: it is a bug of symobs"
@@ -189,7 +190,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, Roots):
         _about_letters(fact.polynomial, environment)
         value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))
-        polynomial = _polynomial(value, environment)
+        polynomial = polynomial_of(value, environment)
         if polynomial is not value:
             polynomial = monic(polynomial, environment.variable)
         if not roots_are(polynomial, environment.variable, fact.values):
@@ -197,33 +198,20 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         return
     if isinstance(fact, Exactly):
         _about_letters(fact.property.subject, environment)
-        value = _denominator_of_all(evaluate(fact.property.subject, environment, Exact(environment)))
-        polynomial = _polynomial(value, environment)
-        needed = _needed(fact.property.name, polynomial, environment, discrete)
+        found = evaluate(fact.property.subject, environment, Exact(environment))
+        (value,) = subjects(fact.property.name, found, environment.variable)
+        polynomial = polynomial_of(value, environment)
+        bounds = needed(fact.property.name, polynomial, environment, discrete)
         said = {_positive_part(relation, environment) for relation in fact.where}
         strict = {operator in {"<", ">"} for relation in fact.where for operator in relation.operators}
-        if not needed or said != set(needed) or strict != {fact.property.name == "stable"}:
+        if not bounds or said != set(bounds) or strict != {fact.property.name == "stable"}:
             _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
     _about_letters(fact.subject, environment)
     found = evaluate(fact.subject, environment, Exact(environment))
-    whole = isinstance(found, Matrix) and fact.name == "strictly_proper"
-    parts = found.entries if whole else (_denominator_of_all(found),)
+    parts = subjects(fact.name, found, environment.variable)
     if fact.name not in PREDICATES or not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
         _reject(f"{fact.name}({found})")
-
-
-def _denominator_of_all(value: Any) -> Scalar:
-    """Return a scalar as it is; of a matrix of rational functions what holds all their poles."""
-    return value.common_denominator() if isinstance(value, Matrix) and value.shape != (1, 1) else as_scalar(value)
-
-
-def _needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
-    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
-    variable, signs = environment.variable, environment.signs
-    if name == "marginal":
-        return marginal_where(polynomial, variable, signs, discrete=discrete)
-    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
 
 
 def _positive_part(relation: Relation, environment: Environment) -> Scalar:
@@ -250,9 +238,9 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 
 
 def _assume(relation: Relation, environment: Environment) -> Environment:
-    """Let the factors of a difference be different from 0 from here on."""
+    """Let the factors of a difference, which there must be, be different from 0 from here on."""
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
-    factors = [factor for factor, _ in (left - right).numerator.factors()[1]]
+    factors = [factor for factor, _ in (left - right).numerator.factors()[1]] or _reject(f"{left} != {right}")
     return replace(environment, assumed=(*environment.assumed, *factors))
 
 
@@ -380,39 +368,3 @@ def _left_of(when: Together, substitution: dict[str, Scalar], environment: Envir
 def _reject(line: str) -> NoReturn:
     message = f"the line {line} is not true"
     raise DerivationRejected(message, repair=_BUG, line=line)
-
-
-# -- properties that no equation states -------------------------------------------------------------------------------
-
-
-def _polynomial(value: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial as it is, and of a rational function the denominator."""
-    return value if value.is_polynomial_in(environment.variable) else value.denominator
-
-
-def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
-    polynomial = _polynomial(value, environment)
-    return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
-
-
-def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
-    return value.degree(environment.variable), value.denominator.degree(environment.variable)
-
-
-PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
-    "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
-    "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
-    "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
-    "polynomial": lambda value, environment, _: value.is_polynomial_in(environment.variable),
-    "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
-    "no_stable_compensator": lambda value, environment, discrete: (
-        not discrete and no_stable_compensator(value, environment.variable, environment.signs)
-    ),
-    "marginal": lambda value, environment, discrete: is_marginal(
-        value, environment.variable, environment.signs, discrete=discrete
-    ),
-    "beyond": lambda value, environment, discrete: is_beyond(
-        value, environment.variable, environment.signs, discrete=discrete
-    ),
-    "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
-}

@@ -14,6 +14,7 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.family import Family
 from symobs.design.several import SeveralOutputs
+from symobs.design.slices import member, member_claims
 from symobs.design.zeros import contradict, equations_for, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, independent_rows, roots_of
@@ -45,6 +46,8 @@ class GainDesign(Result):
     desired: DesiredPolynomial | None
     working: Pair | None = field(default=None, compare=False)
     zero: Places = ()
+    #: Which member of the family is asked for: `decoupled`, `smallest`, or none in particular.
+    wish: str = ""
 
     letter: ClassVar[str]
     rank_test: ClassVar[type[RankResult]]
@@ -77,12 +80,15 @@ class GainDesign(Result):
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str, zero: Places = ()) -> Self:
-        """Return the design that assigns φ, with zeros in these places of the gain, or the negative result."""
+    def of(
+        cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str, zero: Places = (), wish: str = ""
+    ) -> Self:
+        """Return the design that assigns φ, with zeros or the member of the family asked for, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
         gain = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
+        gain = member(pair, desired, wish) if wish else gain
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired, pair, zero)
+        return cls(plant, method_name, answer, desired, pair, zero, wish)
 
     @classmethod
     def places(cls, zero: Places) -> Places:
@@ -117,6 +123,8 @@ class GainDesign(Result):
                 yield Claim(relation(1, 0), e, says if self.letter == "L" else says.replace("L*C", "B*K"))
             return
         yield self._assigned(gain)
+        if self.wish:
+            yield from member_claims(self._pair, self.oriented(gain), self.wish)
         if self.zero:
             e = Environment(variable=self.plant.variable)
             entries = Matrix.row([gain[i, j] for i, j in self.zero])
@@ -253,7 +261,7 @@ class GainDesign(Result):
             return ()
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-            found = type(self).of(plant, desired.substitute(values), self.method, self.zero)
+            found = type(self).of(plant, desired.substitute(values), self.method, self.zero, self.wish)
             own = self.answer[self.letter]
             if own is None or found.answer[self.letter] is None:
                 return found

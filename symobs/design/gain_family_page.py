@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form
+from symobs.conditions import vanishing_factors
 from symobs.design.sylvester import Sylvester, charts_of
 from symobs.exact import Matrix, companion
 from symobs.page import Page, relation
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 #: What has more terms is not written out: a matrix, a determinant, a general gain.
-_MATRIX, _DETERMINANT, _GAIN = 40, 24, 60
+_MATRIX, _DETERMINANT, _GAIN, _SOLUTION = 40, 24, 40, 120
 
 
 def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -36,15 +37,18 @@ def write_sylvester(page: Page, design: GainDesign, side: Side, desired: Desired
         page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
     own = chart.own_G
     if own is None:
-        page.define(side.gain, design.answer[side.gain], say="no_member", answer=True)
+        page.define(
+            side.gain, design.answer[side.gain], say=f"alone_{design.wish}" if design.wish else "no_member", answer=True
+        )
         return
-    page.define(f"G_{side.index}1", own, say="member_zero" if design.zero else "member_several")
+    words = f"{design.wish}_{side.kind}" if design.wish else "zero" if design.zero else "several"
+    page.define(f"G_{side.index}1", own, say=f"member_{words}")
     solution = page.set(f"X_{side.index}1", equation.solution(own))
-    page.equal(
-        relation(solution, solution.shown),
-        relation(solution.apply("det"), determinant_form(page, solution.value.determinant())),
-        say="solution_of_member",
-    )
+    determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
+    if solution.value.size <= _SOLUTION:
+        page.equal(relation(solution, solution.shown), determinant, say="solution_of_member")
+    else:
+        page.equal(determinant, say="solution_long")
     page.conclude_silently(_sylvester(page, side, "1", equation))
     page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
 
@@ -84,6 +88,11 @@ def _equation(page: Page, side: Side, which: str, equation: Sylvester, value: Ma
     page.set(G, value)
     solution = page.set(X, equation.solution(value))
     page.equal(_sylvester(page, side, which, equation), say=f"sylvester_{side.kind}")
+    apart = vanishing_factors([equation.resultant], page.plant.symbols.signs)
+    if apart and all(factor.size <= _MATRIX for factor in apart):
+        page.assume("spectra_provided", *apart)
+    elif apart:
+        page.remark("spectra_apart")
     page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
     page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
     if solution.value.size <= _MATRIX:

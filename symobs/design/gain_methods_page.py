@@ -10,6 +10,7 @@ from symobs.design.matching import matching
 from symobs.design.names import taken_names
 from symobs.design.row_reduction import Reduction, gain_of, row_reduction
 from symobs.exact import Matrix, Scalar, companion
+from symobs.formula import Literal, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
 
@@ -162,6 +163,9 @@ def _pair(part: Reduction) -> bool:
     return part.size == 2 and part.J[0, 0] == part.J[1, 1]
 
 
-def _named(page: Page, part: Reduction) -> Term:
+def _named(page: Page, part: Reduction) -> Shown:
     """Return what a reduction is for: a pole, or a factor of φ."""
-    return page.value(part.J[0, 0] if part.size == 1 else part.J.characteristic_polynomial(page.plant.variable))
+    if part.size == 1:
+        return Shown(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
+    pencil = page.s @ page.identity(part.size) - page.value(part.J)
+    return Shown(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))

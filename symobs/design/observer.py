@@ -190,6 +190,7 @@ def observer(
     polynomial: PolynomialText = None,
     L: GainText = None,
     zero: Entries = None,
+    member: Name = "simple",
     method: Name = "auto",
 ) -> Result:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
@@ -199,6 +200,7 @@ def observer(
     polynomial    φ, monic of degree n; or
     L             a given n×p gain, whose polynomial, poles and stability are reported
     zero          entries of L that are to vanish: "(1, 2), (3, 1)" or "[* 0; * *; 0 *]"
+    member        "simple" (short numbers), "decoupled" (each output obeys an equation of its own) or "smallest" norm
     Returns L (n×p), polynomial, A (A − LC), B_u (B − LD), B_y (L); where L is not unique, because there are several
     outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
     AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot
@@ -214,6 +216,9 @@ def observer(
     assert desired is not None  # noqa: S101 - required
     automatic = "ackermann" if plant.outputs == 1 else "sylvester"
     chosen = choose("observer", method, automatic)
+    if member != "simple":
+        reject_both("member", member, zero, None, other="zero")
+        return ObserverDesign.of(plant, desired, chosen.name, wish=member).asked(method)
     if zero is not None:
         places = read_entries(zero, "zero", (plant.order, plant.outputs))
         return ObserverDesign.of(plant, desired, chosen.name, places).asked(method)

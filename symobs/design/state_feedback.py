@@ -148,6 +148,7 @@ def state_feedback(
     polynomial: PolynomialText = None,
     K: GainText = None,
     zero: Entries = None,
+    member: Name = "simple",
     method: Name = "auto",
 ) -> Result:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s).
@@ -157,6 +158,7 @@ def state_feedback(
     polynomial    φ, monic of degree n; or
     K             a given m×n gain, whose polynomial, poles and stability are reported
     zero          entries of K that are to vanish: "(1, 2), (3, 1)" or "[* 0 *; * * 0]"
+    member        "simple" (short numbers), "decoupled" (each input drives a part of its own) or "smallest" norm
     Returns K (m×n), polynomial, closed_loop_matrix (A − BK); where K is not unique, because there are several inputs
     or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
     AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be
@@ -172,6 +174,9 @@ def state_feedback(
     assert desired is not None  # noqa: S101 - required
     automatic = "ackermann" if plant.inputs == 1 else "sylvester"
     chosen = choose("state_feedback", method, automatic)
+    if member != "simple":
+        reject_both("member", member, zero, None, other="zero")
+        return StateFeedbackDesign.of(plant, desired, chosen.name, wish=member).asked(method)
     if zero is not None:
         places = read_entries(zero, "zero", (plant.inputs, plant.order))
         return StateFeedbackDesign.of(plant, desired, chosen.name, places).asked(method)

@@ -105,6 +105,11 @@ class Sylvester:
         columns = [Matrix.unit(order, j) for j in range(order)]
         return Matrix.block([[apply_polynomial(self.factors, self.variable, self.shifted, unit) for unit in columns]])
 
+    @property
+    def resultant(self) -> Scalar:
+        """Det φ(A − L₀C): the equation has a solution for every G where this does not vanish."""
+        return self._at_A.determinant()
+
     def gain(self, G: Matrix) -> Matrix:
         """Return L = L₀ + (G X⁻¹)ᵀ; raises ZeroDivisionError where X is singular."""
         found = self._at_A @ self.raised(G).T.solve(G.T)

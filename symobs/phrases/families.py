@@ -18,6 +18,9 @@ PHRASES: dict[str, str] = {
     },
     "solution_is": "The solution of the equation is then",
     "determinant_free": "where the free entries must not make the determinant vanish,",
+    "spectra_provided": "There is one, whatever stands on the right, where no pole asked for is an eigenvalue of the plant. For this way to the gain we assume {condition}.",
+    "spectra_apart": "There is one, whatever stands on the right, where no pole asked for is an eigenvalue of the plant.",
+    "solution_long": "for which the solution, too long to be written out, has the determinant",
     "solution_of_member": "for which the solution is",
     "one_gain_only": "For one output (input) nothing is left free. The solution of the equation is",
     "general_gain": "All these gains are",
@@ -27,6 +30,19 @@ PHRASES: dict[str, str] = {
         for kind, side in _SIDES
     },
     "member_several": "A gain with short entries belongs to",
+    **{
+        f"{where}_decoupled_{kind}": f"{what}{end}"
+        for kind, what in (
+            ("observer", "The output errors are decoupled, each obeying an equation of its own, by the gain"),
+            ("state_feedback", "The inputs are decoupled, each driving a part of its own, by the gain"),
+        )
+        for where, end in (("member", " that belongs to"), ("alone", ""))
+    },
+    **{
+        f"{where}_smallest_{kind}": f"The smallest sum of squares of its entries has the gain{end}"
+        for kind in ("observer", "state_feedback")
+        for where, end in (("member", " that belongs to"), ("alone", ""))
+    },
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",

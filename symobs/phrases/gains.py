@@ -85,8 +85,6 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     )
 }
 
-NAMING = ("pole_reduced", "pair_reduced", "factor_reduced", "generalised")
-
 RESTS_ON: dict[str, str] = {
     "upper_parts": "row_reduction",
     "companion_rows": "companion_form",

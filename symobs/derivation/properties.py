@@ -1,0 +1,71 @@
+"""Properties that no equation states: stable, strictly proper, never zero (trusted)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.certificate import as_scalar
+from symobs.conditions import never_zero
+from symobs.exact import Matrix, Scalar
+from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symobs.formula import Environment
+
+
+def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial as it is, and of a rational function the denominator."""
+    return value if value.is_polynomial_in(environment.variable) else value.denominator
+
+
+def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
+    polynomial = polynomial_of(value, environment)
+    return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
+
+
+def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
+    return value.degree(environment.variable), value.denominator.degree(environment.variable)
+
+
+def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
+    """Return what a property is asked of: a scalar, all entries of a matrix, or what holds the poles of all.
+
+    Raises TypeError for a matrix without poles: a constant matrix would be stable whatever its eigenvalues.
+    """
+    if not isinstance(value, Matrix) or value.shape == (1, 1):
+        return (as_scalar(value),)
+    denominator = value.common_denominator()
+    if name not in {"strictly_proper", "stable", "unstable"} or denominator.degree(variable) < 1:
+        message = f"{name} is no property of this matrix"
+        raise TypeError(message)
+    return value.entries if name == "strictly_proper" else (denominator,)
+
+
+def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
+    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
+    variable, signs = environment.variable, environment.signs
+    if name == "marginal":
+        return marginal_where(polynomial, variable, signs, discrete=discrete)
+    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
+#: What each property asks of a scalar, of the environment, and of discrete time.
+PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
+    "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
+    "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
+    "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
+    "polynomial": lambda value, environment, _: value.is_polynomial_in(environment.variable),
+    "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
+    "no_stable_compensator": lambda value, environment, discrete: (
+        not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
+    "marginal": lambda value, environment, discrete: is_marginal(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "beyond": lambda value, environment, discrete: is_beyond(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
+}
