@@ -71,6 +71,12 @@ class CompensatorDesign(OutputFeedback):
                 moved = moved - L @ D @ K
             yield Claim(relation(F, K @ moved.inverse @ L), e)
 
+    @property
+    def coupling(self) -> Matrix:
+        """K."""
+        K: Matrix = self.answer["K"]
+        return K
+
     @cached_property
     def realisation(self) -> Realisation:
         """A − BK − LC + LDK, L, K, 0."""

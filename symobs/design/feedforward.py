@@ -10,7 +10,6 @@ from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
-from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar, kernel
@@ -67,7 +66,7 @@ class FeedforwardDesign(Result):
             return
         m = self.plant.matrices
         values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
-        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.coupling}
+        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling}
         e = Environment(variable=self.plant.variable, values=values)
         A, B, C, D = (letter(name, e) for name in "ABCD")
         K_ = letter("K", e)
@@ -93,14 +92,6 @@ class FeedforwardDesign(Result):
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of the loop and of F."""
         return (*self.loop.all_certificates, *self.certificates)
-
-    @cached_property
-    def coupling(self) -> Matrix:
-        """What multiplies the error in u = −K x + K_e e + F v: K, or K₂ with an observer of minimal order."""
-        if isinstance(self.loop, MinimalOrderCompensator):
-            return self.loop.split[1]
-        K: Matrix = self.loop.answer["K"]
-        return K
 
     @cached_property
     def gain_at_rest(self) -> Matrix:

@@ -118,6 +118,11 @@ class MinimalOrderCompensator(OutputFeedback):
         """N and K₂."""
         return split(self.answer["K"], self.estimator)
 
+    @property
+    def coupling(self) -> Matrix:
+        """K₂."""
+        return self.split[1]
+
     @cached_property
     def realisation(self) -> Realisation:
         """F − G W K₂, H − G W N, W K₂, W N, with W = (I − N D)⁻¹."""

@@ -88,6 +88,11 @@ class OutputFeedback(Result):
         """F in state space."""
         raise NotImplementedError
 
+    @property
+    def coupling(self) -> Matrix:
+        """What multiplies the estimation error in u: K, or K₂ with an observer of minimal order."""
+        raise NotImplementedError
+
     @cached_property
     def error_coordinates(self) -> Matrix:
         """The loop in (x, e) or (x, e₂)."""

@@ -26,6 +26,7 @@ from symobs.phrases import (
     time,
     time_varying,
     titles,
+    tracking,
 )
 
 _MODULES = (
@@ -41,6 +42,7 @@ _MODULES = (
     compensation,
     minimal_order,
     feedforward,
+    tracking,
     reduced_order,
     time_varying,
 )

@@ -14,6 +14,7 @@ PHRASES: dict[str, str] = {
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
     "feedforward": "Feedforward.",
+    "tracking": "Tracking.",
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
     "without_serifs": "Set without serifs, {parameter} is a parameter of the data, not the matrix or signal of that letter.",

@@ -43,7 +43,9 @@ if TYPE_CHECKING:
     from symobs.exact.functions import Function
 
 #: Letters that are functions of time; in discrete time they carry the index k.
-SIGNALS = frozenset({"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o", "v_r"})
+SIGNALS = frozenset(
+    {"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o", "v_r", "x_d", "e_d"}
+)
 
 
 class Printer(Glyphs[B]):
