@@ -12,9 +12,13 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: Tasks and methods some of whose polynomials have one root less than the plant has states; which.
-FEWER = {"reduced_order_observer": ("",), "compensator/minimal_order": ("observer_",)}
+FEWER = {
+    "reduced_order_observer": ("",),
+    "compensator/minimal_order": ("observer_",),
+    "tracking": ("observer_",),
+}
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
-OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order"}
+OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
 #: Methods that answer another question than the other methods of their task.
 OTHER_QUESTIONS = {"compensator/minimal_order"}
 

@@ -274,6 +274,54 @@ def F_stable_holds(result: Any, at: Setting) -> None:
         assert at.is_stable(denominator) == (result.fields["F_stable"] == "yes")
 
 
+def feedforward_holds(result: Any, at: Setting) -> None:
+    """Hold F to G F = I for the gain G at rest, and T to its definition; with both gains and no F, G has dependent rows."""
+    loop = result.loop
+    if None in (loop.answer["K"], loop.answer["L"]):
+        assert result.answer["F"] is None
+        return
+    K = matrix_at(loop.answer["K"], at.point)
+    closed = subtract(at.A, multiply(at.B, K))
+    seen = subtract(at.C, multiply(at.D, K))
+    rest = Fraction(int(at.discrete))
+    if result.answer["stuck"] is not None:
+        assert not at_number(characteristic(closed), rest)
+        return
+    G = response(closed, at.B, seen, rest) + at.D[0][0]
+    if result.answer["F"] is None:
+        assert not G
+        return
+    F = value_at(result.fields["F"], at.point)
+    assert G * F == 1
+    for s in at.probes:
+        if at_number(characteristic(closed), s):
+            expected = (response(closed, at.B, seen, s) + at.D[0][0]) * F
+            assert rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point) == expected
+
+
+def tracking_holds(result: Any, at: Setting) -> None:
+    """Hold K_d to (A_d − A + BK_d) V = 0, V = I or x_d(0), A_d x_d(0), …; the errors' matrix to control times observer."""
+    design_holds(result.loop.feedback, at, "control_")
+    reduced_order_holds(result.loop.estimator, at, "observer_")
+    A_d = matrix_at(result.reference, at.point)
+    passed = [[Fraction(int(i == j)) for j in range(len(A_d))] for i in range(len(A_d))]
+    if result.start is not None:
+        columns = [matrix_at(result.start, at.point)]
+        for _ in A_d:
+            columns.append(multiply(A_d, columns[-1]))
+        passed = [[column[i][0] for column in columns] for i in range(len(A_d))]
+    wanted = multiply(subtract(at.A, A_d), passed)
+    if result.fields["K_d"] is None:
+        assert not result.fields["solvable"]
+        both = [[*b, *w] for b, w in zip(at.B, wanted, strict=True)]
+        assert rank_of(both) > rank_of(at.B)
+        return
+    assert multiply(multiply(at.B, matrix_at(result.fields["K_d"], at.point)), passed) == wanted
+    if None not in (result.fields["K"], result.fields["L"]):
+        whole = product([at.wanted["control_"], at.wanted["observer_"]])
+        assert characteristic(matrix_at(result.fields["error_matrix"], at.point)) == whole
+
+
 def rank_holds(result: Result, at: Setting) -> None:
     dual = result.task == "controllability"
     A, C = at.pair(dual=dual)
@@ -349,6 +397,8 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "observer": design_holds,
     "state_feedback": design_holds,
     "compensator": compensator_holds,
+    "feedforward": feedforward_holds,
+    "tracking": tracking_holds,
     "observability": rank_holds,
     "controllability": rank_holds,
     "characteristic_polynomial": polynomial_holds,

@@ -19,6 +19,7 @@ from symobs import StateSpace, compensator, observability, observer
 from symobs.analysis.observability import RankResult
 from symobs.design.compensator import CompensatorDesign
 from symobs.design.gain import GainDesign
+from symobs.design.tracking import TrackingDesign
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import symbols_in
@@ -58,6 +59,10 @@ def sample(found: Sequence[Change], most: int) -> Sequence[Change]:
     if WHOLE or len(found) <= most:
         return found
     return [found[index * len(found) // most] for index in range(most)]
+
+
+#: Examples whose answer leaves entries free: K_d beside one trajectory, the row that shows there is none.
+NOT_UNIQUE = {"cart_tracking", "cart_tracking_impossible"}
 
 
 @dataclass
@@ -125,7 +130,20 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         moved = plus(plus(multiply(B, K), multiply(L, C)), times(Fraction(-1), multiply(L, multiply(D, K))))
         ((F,),) = multiply(K, multiply(inverse(plus(pencil(s, A), moved)), L))
         return own == [K, L] and world.value(answer["F"]) == F
+    if isinstance(part, TrackingDesign):
+        return _is_followed(part, answer, A, B, world)
     return False
+
+
+def _is_followed(part: TrackingDesign, answer: Mapping[str, Any], A: Rows, B: Rows, world: World) -> bool:
+    """Tell whether B K_d = A − A_d on what the reference passes through, or a row annuls B and not A − A_d there."""
+    difference = plus(A, times(Fraction(-1), world.value(part.reference)))
+    wanted = multiply(difference, world.value(part.passed))
+    if answer["K_d"] is not None:
+        followed: Rows = multiply(multiply(B, world.value(answer["K_d"])), world.value(part.passed))
+        return bool(followed == wanted)
+    row = world.value(answer["w"])
+    return not any(map(any, multiply(row, B))) and any(map(any, multiply(row, wanted)))
 
 
 def _holds_in_time(part: Result, answer: Mapping[str, Any], world: World) -> bool:
@@ -247,7 +265,8 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
         assert count.lies == []
         assert count.tried == count.rejected + count.true
         of_ranks = count is lines and {result.task for result in results(path)} <= OF_RANKS
-        assert count.rejected > (0.75 if of_ranks else 0.8) * count.tried
+        is_free = count is answers and path.stem in NOT_UNIQUE
+        assert count.rejected > (0.75 if of_ranks else 0.4 if is_free else 0.8) * count.tried
     assert lines.tried >= 100
 
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim
+from symobs.conditions import Condition, vanishing_factors
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
 from symobs.design.output_feedback import OutputFeedback, Realisation
-from symobs.errors import CertificateRejected, InputError
+from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
@@ -21,7 +22,6 @@ from symobs.page import Page, relation
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.conditions import Condition
     from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 class FeedforwardDesign(Result):
     """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
 
-    `loop` is the compensator whose gains are used, with its own claims; `w` is None, or a row with w G = 0 for the gain
-    G at rest from the input, so that no F can make G F = I.
+    `loop` is the compensator whose gains are used, with its own claims.  Where there is no F, `w` is a row with w G = 0
+    for the gain G at rest from the input, or `stuck` a state with (A − BK) x = 0 (x in discrete time): the loop has a mode
+    that never comes to rest.
     """
 
     loop: OutputFeedback
@@ -40,13 +41,16 @@ class FeedforwardDesign(Result):
 
     @classmethod
     def of(cls, loop: OutputFeedback, method_name: str) -> Self:
-        """Return the feedforward of a loop; raises `InputError` where a control pole leaves no state of rest."""
+        """Return the feedforward of a loop, or the negative result."""
         plant = loop.plant
-        answer: dict[str, Any] = {"F": None, "transfer_function": None, "w": None}
+        answer: dict[str, Any] = dict.fromkeys(("F", "transfer_function", "w", "stuck"))
         if loop.answer["K"] is not None and loop.answer["L"] is not None:
-            G = gain_at_rest(loop)
-            left = kernel(G.T)
-            if left.shape[1]:
+            stuck = kernel(moving_at_rest(loop))
+            G = None if stuck.shape[1] else gain_at_rest(loop)
+            left = Matrix.zeros(1, 0) if G is None else kernel(G.T)
+            if G is None:
+                answer["stuck"] = stuck.select(range(plant.order), [0])
+            elif left.shape[1]:
                 answer["w"] = left.select(range(left.shape[0]), [0]).T
             else:
                 F = (G.inverse() if plant.inputs == plant.outputs else G.T @ (G @ G.T).inverse()).normal()
@@ -57,20 +61,28 @@ class FeedforwardDesign(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
-        K, F, w = self.loop.answer["K"], self.answer["F"], self.answer["w"]
+        K, F, w, stuck = self.loop.answer["K"], self.answer["F"], self.answer["w"], self.answer["stuck"]
         have = K is not None and self.loop.answer["L"] is not None
-        if have != ((F is None) != (w is None)) or (F is None) != (self.answer["transfer_function"] is None):
+        reasons = sum(value is not None for value in (F, w, stuck))
+        if reasons != int(have) or (F is None) != (self.answer["transfer_function"] is None):
             message = "there is a feedforward exactly where both gains exist and the gain at rest has full rank"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         if not have:
             return
         m = self.plant.matrices
         values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
-        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling}
-        e = Environment(variable=self.plant.variable, values=values)
+        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling, "x_0": stuck}
+        told = {name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()}  # as unpickled
+        e = Environment(variable=self.plant.variable, values=told)
         A, B, C, D = (letter(name, e) for name in "ABCD")
         K_ = letter("K", e)
         order, one = self.plant.order, identity(self.plant.order, e)
+        if stuck is not None:
+            still = A @ letter("x_0", e) - B @ K_ @ letter("x_0", e)
+            there = letter("x_0", e) if self.plant.is_discrete else Matrix.zeros(order, 1)
+            yield Claim(relation(still, there), e, "a mode never comes to rest")
+            yield Claim(relation(letter("x_0", e), "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
+            return
         rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
         at_rest = (C - D @ K_) @ rest @ B + D
         if w is not None:
@@ -105,11 +117,12 @@ class FeedforwardDesign(Result):
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """What must not vanish besides: det G, or det GGᵀ where there are more inputs than outputs."""
+        """What must not vanish besides: det (−A + BK), and det G, or det GGᵀ where there are more inputs than outputs."""
         if self.answer["F"] is None:
             return ()
         G = self.gain_at_rest
-        return ((G if self.plant.inputs == self.plant.outputs else G @ G.T).determinant(),)
+        square = G if self.plant.inputs == self.plant.outputs else G @ G.T
+        return moving_at_rest(self.loop).determinant(), square.determinant()
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -117,7 +130,11 @@ class FeedforwardDesign(Result):
         own = super().holds_where
         known = {condition.expression for condition in own}
         gains = [*self.loop.feedback.holds_where, *self.loop.estimator.holds_where]
-        return (*own, *(condition for condition in gains if condition.expression not in known))
+        further = {c.expression: c for c in gains if c.expression not in known}
+        for factor in vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs):
+            if factor not in known:
+                further.setdefault(factor, Condition("existence", factor))
+        return (*own, *further.values())
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -127,7 +144,8 @@ class FeedforwardDesign(Result):
             return type(self).of(self.loop.on(plant, values), self.method)
 
         there = carried(self.plant, self.loop.case_tree, on)
-        return (*there, *strata(self.plant, [value.numerator for value in self.existence], on))
+        own = strata(self.plant, [value.numerator for value in self.existence], on)
+        return tuple({case.when: case for case in (*own, *there)}.values())
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -152,19 +170,17 @@ class FeedforwardDesign(Result):
         write_feedforward(page, self)
 
 
+def moving_at_rest(loop: OutputFeedback) -> Matrix:
+    """Return −A + BK, in discrete time I − A + BK: what must be regular for the loop to come to rest."""
+    m = loop.plant.matrices
+    moving: Matrix = m.B @ loop.answer["K"] - m.A
+    return moving + Matrix.identity(loop.plant.order) if loop.plant.is_discrete else moving
+
+
 def gain_at_rest(loop: OutputFeedback) -> Matrix:
     """Return (C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
     m, K = loop.plant.matrices, loop.answer["K"]
-    closed = m.B @ K - m.A
-    if loop.plant.is_discrete:
-        closed = closed + Matrix.identity(loop.plant.order)
-    try:
-        states = closed.solve(m.B)
-    except ZeroDivisionError:
-        place = 1 if loop.plant.is_discrete else 0
-        message = f"{place} is among the control poles, so the loop has no state of rest"
-        raise InputError(message, where="specification.control_poles", repair=f"leave {place} out") from None
-    found: Matrix = ((m.C - m.D @ K) @ states + m.D).normal()
+    found: Matrix = ((m.C - m.D @ K) @ moving_at_rest(loop).solve(m.B) + m.D).normal()
     return found
 
 
@@ -194,12 +210,12 @@ def feedforward(
     """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
 
     plant                                   n states, m inputs, p ≤ m outputs, D allowed
-    control_poles or control_polynomial     the n poles of A − BK, 0 (in discrete time 1) not among them
+    control_poles or control_polynomial     the n poles of A − BK
     observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of the observer
     observer                                `full` or `minimal`
     Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
-    times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (at 1) the verdict is
-    `no`.  Raises `InputError` for wrong poles or shapes.
+    times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (in
+    discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
     Source: S3, section G and (12).
     """
     loop = observer_based(

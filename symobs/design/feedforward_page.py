@@ -56,7 +56,13 @@ def _at_rest(page: Page) -> Term:
 
 
 def _impossible(page: Page, design: FeedforwardDesign) -> None:
-    """The gain at rest has dependent rows, whatever K is."""
+    """The loop never comes to rest, or the gain at rest has dependent rows, whatever K is."""
+    if design.answer["stuck"] is not None:
+        x = page.set("x_0", design.answer["stuck"])
+        moved = (page["A"] - page["B"] @ page["K"]) @ x
+        there = x if page.plant.is_discrete else page.value(Matrix.zeros(page.plant.order, 1))
+        page.conclude("no_rest", state=relation(x, x.shown), still=relation(moved, there))
+        return
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     if page["G_0"].value.shape == (1, 1):
         page.conclude("no_feedforward_single")
@@ -99,6 +105,8 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     errors = design.loop.error_coordinates.shape[0] - plant.order
     zero = page.value(Matrix.zeros(errors, plant.order))
     page.define("A_cl", block([[A - B @ K, B @ coupling], [zero, own]]), silent=True, closing=False)
+    state, driven = block([[x], [error]]), block([[B @ F_v], [page.value(Matrix.zeros(errors, plant.outputs))]])
+    page.conclude_silently(relation(state.derivative, page["A_cl"] @ state + driven @ v))
     determinant = (page.s @ page.identity(plant.order + errors) - page["A_cl"]).apply("det")
     of_rest = page.s @ page.identity(errors) - page["A_22"] + page["L"] @ page["A_12"] if minimal else None
     of_error = error_determinant(page, OBSERVER) if of_rest is None else of_rest.apply("det")

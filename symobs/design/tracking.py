@@ -91,9 +91,9 @@ class TrackingDesign(Result):
             said = "A_d - A + B*K_d = 0" if everywhere else "(A_d - A + B*K_d)*V = 0"
             yield Claim(relation(left if everywhere else left @ V, zero), e, said)
         if self.has_gains:
-            values = {"A_e": self.error_matrix, "phi": self.loop.loop_polynomial.value}
+            values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
             own = Environment(variable=self.plant.variable, values=values)
-            pencil = letter("s", own) @ identity(self.error_matrix.shape[0], own) - letter("A_e", own)
+            pencil = letter("s", own) @ identity(self.matrix_of_errors.shape[0], own) - letter("A_e", own)
             yield Claim(relation(pencil.apply("det"), letter("phi", own)), own, "det(s*I - error matrix) = phi_c*phi_o")
 
     def _passed_through(self, e: Environment) -> Iterator[Claim]:
@@ -126,7 +126,7 @@ class TrackingDesign(Result):
         return (*self.loop.all_certificates, *self.certificates)
 
     @cached_property
-    def error_matrix(self) -> Matrix:
+    def matrix_of_errors(self) -> Matrix:
         """[A − BK, −BK; 0, A − LC] in (e_d, e), or [A − BK, −BK₂; 0, F] in (e_d, e₂)."""
         whole, order = self.loop.error_coordinates, self.plant.order
         first, second = range(order), range(order, whole.shape[0])
@@ -177,7 +177,7 @@ class TrackingDesign(Result):
         found |= {"L": loop.answer["L"]}
         if not self.has_gains:
             return found | {"fixed_modes": loop.feedback.unmoved_modes + loop.estimator.unmoved_modes}
-        return found | {"error_matrix": self.error_matrix, "polynomial": loop.loop_polynomial}
+        return found | {"error_matrix": self.matrix_of_errors, "polynomial": loop.loop_polynomial}
 
     @property
     def free_signals(self) -> Mapping[str, int]:

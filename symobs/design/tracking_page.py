@@ -115,7 +115,7 @@ def _errors(page: Page, design: TrackingDesign) -> None:
     """The block triangular matrix of both errors, and its polynomial."""
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
     A, B, C, K, L = (page[name] for name in "ABCKL")
-    order, size = page.plant.order, design.error_matrix.shape[0]
+    order, size = page.plant.order, design.matrix_of_errors.shape[0]
     own = page["A_22"] - L @ page["A_12"] if minimal else A - L @ C
     through = B @ page["K_2"] if minimal else B @ K
     zero = page.value(Matrix.zeros(size - order, order))
