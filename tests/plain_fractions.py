@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.functions import known
+from symobs.exact.root_sum import RootSum
 from symobs.formula import (
     Apply,
     At,
@@ -208,6 +209,9 @@ class World:
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
         function = known(name)
+        if isinstance(function, RootSum):
+            q = [self.scalar(c) for c in function.polynomial.coefficients(EIGENVALUE)]
+            return series.root_sum(q, function.power, self.scalar(function.argument))  # type: ignore[no-any-return]
         if function is not None:
             return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
         if name in self.meanings:

@@ -172,3 +172,20 @@ def applied(kind: str, argument: Any) -> Any:
         for name, part in new.items():
             found[name].append(part)
     return Series.make(found[kind])
+
+
+def root_sum(polynomial: Sequence[Fraction], power: int, argument: Any) -> Any:
+    """Return Σ λᵖ e^{λa} / q′(λ) over the roots λ of q, highest coefficient of q first; its derivative has the power p + 1."""
+    parts = argument.parts if isinstance(argument, Series) else [argument]
+    roots = CONTEXT.polyroots([digits(c) for c in polynomial], maxsteps=500, extraprec=400)
+    degree = len(polynomial) - 1
+    slope = [digits(c) * (degree - k) for k, c in enumerate(polynomial[:-1])]
+    rows: list[list[Any]] = []
+    for further in reversed(range(len(parts))):
+        terms = (r ** (power + further) * CONTEXT.exp(r * digits(parts[0])) / CONTEXT.polyval(slope, r) for r in roots)
+        row = [CONTEXT.re(sum(terms))]
+        for k in range(1, len(parts) - further):
+            whole = _total(_product(parts[i] * i, rows[-1][k - i]) for i in range(1, k + 1))
+            row.append(_product(whole, Fraction(1, k)))
+        rows.append(row)
+    return Series.make(rows[-1])
