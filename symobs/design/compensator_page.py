@@ -167,6 +167,10 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     if not large:
         members.append(second.shown @ states)
     page.equal(relation(*members), say="estimate_coordinates")
+    one = page.identity(order)
+    turn = block([[one, zero], [one, -one]])
+    page.conclude_silently(relation(turn @ turn, page.identity(2 * order)))
+    page.remark("similar_loops", relation(turn @ second @ turn, page["A_cl"]), turned=relation(state, turn @ states))
 
 
 def return_path(page: Page, design: OutputFeedback) -> None:

@@ -12,6 +12,7 @@ from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
 from symobs.design.matching import matching
+from symobs.design.observer_existence_page import write_ansatz, write_found
 from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
@@ -80,9 +81,16 @@ class ObserverDesign(GainDesign):
     def write(self, page: Page) -> None:
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
+        by_ansatz = self.page_method == "existence" and self.answer["L"] is not None
+        if by_ansatz:
+            with page.section("existence"):
+                write_ansatz(page, self.answer["L"])
         with page.section("observer"):
-            write_gain(page, self, OBSERVER, page_style(self.page_method, self.plant, several=self.plant.outputs > 1))
-            if self.answer["L"] is not None:
+            style = "auto" if self.page_method == "existence" else self.page_method
+            write_gain(page, self, OBSERVER, page_style(style, self.plant, several=self.plant.outputs > 1))
+            if by_ansatz:
+                write_found(page)
+            elif self.answer["L"] is not None:
                 write_observer(page)
 
 
@@ -141,6 +149,12 @@ def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = φ(A) 𝒪⁻¹ eₙ."""
     require_one(plant.outputs, "output", "ackermann")
     return ObserverDesign.of(plant, desired, "ackermann")
+
+
+@method("observer/existence", source="S4, existence of an asymptotic observer")
+def existence(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """x̂' = F x̂ + G u + H y with undetermined F, G, H: the error is free of x and u for G = B, F = A − HC alone."""
+    return ObserverDesign.of(plant, desired, "existence")
 
 
 @method("observer/sylvester", source=SYLVESTER)

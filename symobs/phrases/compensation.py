@@ -11,6 +11,11 @@ PHRASES: dict[str, str] = {
     "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
     "error_equation": "Whatever the input, the error {error} then obeys",
     "observer_collected": "Collected, the observer reads",
+    "existence_ansatz": "Let a linear system be driven by what is known, with matrices still to be determined:",
+    "existence_error": "Then {error} obeys",
+    "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",
+    "existence_left": "and of the error there remains",
+    "existence_observer": "With $H_x = L$ the observer is",
     "separation": "By the separation principle the control law uses the estimate in place of the state:",
     "observer_closed": "Put into the observer, it leaves a system that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
@@ -23,6 +28,7 @@ PHRASES: dict[str, str] = {
     "closed_loop_matrix": "so that plant and error together are block triangular,",
     "polynomial_splits": "and the polynomial of the loop is the product of the two that were asked for:",
     "estimate_coordinates": "In state and estimate the same loop reads",
+    "similar_loops": "The two matrices are similar through {turned}.",
     "plant_transfer": "As a transfer function the plant is",
     "return_path": "With $F$ in the return path,",
     "no_stable_compensator": "At a zero of $P$ in the right half-plane its characteristic polynomial is negative. No stable compensator can stabilise such a plant.",
@@ -36,7 +42,7 @@ PHRASES: dict[str, str] = {
 }
 
 #: A new thought begins here.
-OPENS = ("observer_equation",)
+OPENS = ("observer_equation", "existence_observer")
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_stable": ("strictly_proper", "stable"),
@@ -48,6 +54,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 
 RESTS_ON: dict[str, str] = {
     "observer_equation": "observer",
+    "existence_left": "existence",
     "error_equation": "error",
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",

@@ -13,6 +13,7 @@ PHRASES: dict[str, str] = {
     "reduced_order_observer": "Reduced-order observer.",
     "compensator": "Compensator.",
     "closed_loop": "Closed loop.",
+    "existence": "An observer from nothing but its task.",
     "feedforward": "Feedforward.",
     "tracking": "Tracking.",
     "realised": "In controllable canonical form this is",
