@@ -112,6 +112,7 @@ LETTERS: dict[str, LetterForm] = {
     "A_e": LetterForm(r"A_{\mathrm e}", "A_e", "matrix of the errors"),
     "V_d": LetterForm(r"V_{\mathrm d}", "V_d", "what the trajectory passes through"),
     "w_d": LetterForm("w", "w", "row that annuls the input matrix"),
+    "G_r": LetterForm(r"G_{\mathrm r}({v})", "G_r({v})", "loop with unity feedback"),
     "F_x": LetterForm("F", "F", "matrix of the observer"),
     "G_x": LetterForm("G", "G", "input matrix of the observer"),
     "H_x": LetterForm("H", "H", "output matrix of the observer"),

@@ -192,6 +192,11 @@ class Hand:
         return sympy.cancel(self.plant_transfer / (1 + self.plant_transfer * self.compensator))
 
     @cached_property
+    def unity_loop(self) -> Any:
+        through = self.plant_transfer * self.compensator
+        return sympy.cancel(through / (1 + through))
+
+    @cached_property
     def loop_matrix(self) -> Any:
         BK, LC = self.B * self.feedback_gain, self.observer_gain * self.C
         return Matrix([[self.A - BK, BK], [sympy.zeros(*self.A.shape), self.A - LC]])

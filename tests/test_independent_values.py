@@ -88,6 +88,7 @@ def known_letters(hand: Hand) -> dict[str, Any]:
             "F": hand.compensator,
             "A_cl": hand.loop_matrix,
             "G_cl": hand.loop,
+            "G_r": hand.unity_loop,
             "u": {"x_hat": -hand.feedback_gain},
         }
         above, below = (sympy.Poly(part, s_) for part in hand.compensator.as_numer_denom())
@@ -230,6 +231,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
                 "F": hand.compensator,
                 "compensator_matrix": hand.compensator_matrix,
                 "closed_loop": hand.loop,
+                "closed_loop_unity": hand.unity_loop,
                 "closed_loop_polynomial": characteristic(hand.loop_matrix, variable),
                 "closed_loop_matrix": hand.loop_matrix,
                 "closed_loop_matrix_estimate": hand.loop_matrix_estimate,

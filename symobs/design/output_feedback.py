@@ -219,6 +219,19 @@ class OutputFeedback(Result):
         return form
 
     @cached_property
+    def unity_loop(self) -> Factored:
+        """PF/(1 + PF): from the reference to y with F before the plant and unity feedback; one input, one output."""
+        numerator, _ = self.plant_transfer
+        own, _ = self.own_transfer
+        polynomial, variable = self.loop_polynomial, self.plant.variable
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
+        e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
+        P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
+        return _over(numerator, own, polynomial) if kept else factored(value, variable)
+
+    @cached_property
     def loop_polynomial(self) -> Factored:
         """φ_c φ_o, with the factors that were asked for."""
         factors: dict[Scalar, int] = {}
@@ -267,6 +280,7 @@ class OutputFeedback(Result):
             "compensator_matrix": self.own_matrix,
             "closed_loop_polynomial": self.loop_polynomial,
             "closed_loop": self.loop,
+            "closed_loop_unity": self.unity_loop if self.is_single else None,
             "closed_loop_matrix": self.error_coordinates,
             "closed_loop_matrix_estimate": self.estimate_coordinates,
             "family": self.families,
