@@ -135,6 +135,7 @@ class Hand:
     variable: Any = s
     large: bool = False
     sign: int = 1
+    follows: bool = False
 
     @property
     def discrete(self) -> bool:
@@ -158,6 +159,7 @@ class Hand:
             signs=self.signs,
             variable=self.variable,
             sign=self.sign,
+            follows=self.follows,
         )
 
     # -- answers, found by textbook formulas ---------------------------------------------------------------------------
@@ -195,6 +197,18 @@ class Hand:
     def unity_loop(self) -> Any:
         through = self.plant_transfer * self.compensator
         return sympy.cancel(through / (1 + through))
+
+    @cached_property
+    def gain_at_rest(self) -> Any:
+        """Return (C − DK)(−A + BK)⁻¹B + D."""
+        K, D = self.feedback_gain, self.feedthrough
+        return ((self.C - D * K) * (self.B * K - self.A).inv() * self.B + D).applyfunc(sympy.cancel)
+
+    @cached_property
+    def followed(self) -> Any:
+        """Return v → y with F the inverse of the gain at rest."""
+        K, D, F = self.feedback_gain, self.feedthrough, self.gain_at_rest.inv()[0]
+        return sympy.cancel(F * (response(self.A - self.B * K, self.B, self.C - D * K, self.variable) + D[0]))
 
     @cached_property
     def loop_matrix(self) -> Any:
@@ -274,6 +288,17 @@ PROBLEMS = {
         observer=s**3 + 60 * s**2 + 1600 * s + 16000,
     ),
     "cart_pendulum_feedback": Hand(**cart, control=(s + 1) * (s + 2) * (s + 3) * (s + 4)),
+    "servo_feedforward": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2, follows=True),
+    "third_order_feedforward": Hand(
+        **third_order,
+        control=(s + 3) * (s + 4) * (s + 5),
+        observer=(s + 5) * (s + 6) * (s + 7),
+        follows=True,
+    ),
+    "servo_observer_feedthrough": Hand(**servo, D=Matrix([[d]]), observer=(s + 10) ** 2, signs={"d": "real"}),
+    "pendulum_observer_existence": Hand(
+        **hanging, observer=s**2 + p * s + q, signs=pendulum | {"p": "real", "q": "real"}
+    ),
     "dual_servo": Hand(**servo),
     "dual_reversed": Hand(**hanging, signs=pendulum, sign=-1),
     "eigenvalue_test_servo": Hand(A=servo["A"], C=servo["C"]),

@@ -95,6 +95,14 @@ def known_letters(hand: Hand) -> dict[str, Any]:
         for stem, part in (("n", above), ("d", below)):
             ascending = [value / below.LC() for value in reversed(part.all_coeffs())]
             known |= {f"{stem}_{k}": value for k, value in enumerate(ascending)}
+    if "L" in known and "K" not in known and B is not None:
+        L = hand.observer_gain
+        known |= {"F_x": A - L * C, "G_x": B - L * hand.feedthrough, "H_x": L}
+        known |= entries("f", known["F_x"]) | entries("g", known["G_x"]) | entries("h", L)
+    if hand.follows:
+        F = hand.gain_at_rest.inv()
+        known |= {"F_v": F, "G_0": hand.gain_at_rest, "T_v": hand.followed}
+        known["u"] = {"x_hat": -hand.feedback_gain, "v_r": F}
     return known
 
 
@@ -221,6 +229,10 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
             polynomial = characteristic(A - hand.observer_gain * C, variable)
             driven = None if B is None else B - hand.observer_gain * hand.feedthrough
             own = {"L": hand.observer_gain, "A": A - hand.observer_gain * C, "B_u": driven, "B_y": hand.observer_gain}
+        case "feedforward":
+            whole = {"polynomial": characteristic(hand.loop_matrix, variable), "closed_loop_matrix": hand.loop_matrix}
+            gains = {"K": hand.feedback_gain, "L": hand.observer_gain}
+            return gains | whole | {"F": hand.gain_at_rest.inv()[0], "transfer_function": hand.followed}
         case "state_feedback":
             polynomial = characteristic(A - B * hand.feedback_gain, variable)
             own = {"K": hand.feedback_gain, "closed_loop_matrix": A - B * hand.feedback_gain}
