@@ -47,6 +47,10 @@ def test_python_gives_the_values_in_its_comments() -> None:
     assert [case.when for case in survivors] == [(sympy.Eq(c - 1, 0),)]
     assert names["several"].family["parameters"] == ("g1", "g2", "g3")
     assert names["zeros"].L[:, 1].is_zero_matrix
+    minimal, s, d = names["minimal"], sympy.Symbol("s"), sympy.Symbol("d")
+    assert sympy.simplify(minimal.F - (31 * s + 40) / ((1 - 31 * d) * s + 13 - 40 * d)) == 0
+    assert minimal.direct_term == sympy.Matrix([31 / (1 - 31 * d)])
+    assert [str(condition) for condition in minimal.conditions] == ["Ne(31*d - 1, 0)"]
 
 
 def test_every_promised_value_is_on_a_line_of_its_own() -> None:
