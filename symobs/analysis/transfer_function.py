@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.analysis.pages import factored_form, given
 from symobs.certificate import Claim
-from symobs.errors import InputError
-from symobs.exact import Scalar, roots_of, transfer
+from symobs.exact import Matrix, Scalar, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
 from symobs.formula import Environment, Literal, Quotient, Roots, Shown
 from symobs.formula.term import block, identity, letter
 from symobs.method import Result, choose, method, task
@@ -42,18 +41,22 @@ class TransferFunction(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The reduced function, its poles and zeros."""
-        P: Scalar = self.answer["transfer_function"]
+        P: Scalar | Matrix = self.answer["transfer_function"]
         variable = self.plant.variable
+        if isinstance(P, Matrix):
+            below, above = pole_and_zero_polynomial(P, variable)
+        else:
+            below, above = P.denominator, P.numerator
         return {
             "transfer_function": P,
-            "poles": roots_of(P.denominator, variable),
-            "zeros": roots_of(P.numerator, variable) if P else (),
+            "poles": roots_of(below, variable),
+            "zeros": roots_of(above, variable) if above else (),
         }
 
     def write(self, page: Page) -> None:
         """Write adjugate over determinant, then the reduced function."""
         given(page)
-        P: Scalar = self.answer["transfer_function"]
+        P: Scalar | Matrix = self.answer["transfer_function"]
         m, variable = page.plant.matrices, self.plant.variable
         with page.section("transfer_function"):
             A, B, C = page["A"], page["B"], page["C"]
@@ -64,6 +67,9 @@ class TransferFunction(Result):
             stages = [C @ pencil.inverse @ B, one_over @ C.shown @ adjugate @ B.shown]
             if m.has_feedthrough:
                 stages = [stage + page["D"] for stage in stages]
+            if isinstance(P, Matrix):
+                page.define("P", *stages, page.value(P), say="its_transfer_matrix", answer=True, closing=False)
+                return
             page.define("P", *stages, factored_form(page, P), say="its_transfer_function", answer=True, closing=False)
             if P.denominator.degree(variable) < self.plant.order:
                 everything = block([[C @ A**k] for k in range(m.A.shape[0])]) @ block(
@@ -84,6 +90,10 @@ class TransferFunction(Result):
 def resolvent(plant: StateSpace) -> TransferFunction:
     """C adj(sI − A) B over det(sI − A), as a bordered determinant, reduced."""
     m = plant.matrices
+    if (plant.inputs, plant.outputs) != (1, 1):
+        numerators, below = transfer_matrix(m.A, m.B, m.C, m.D, plant.variable)
+        P = Matrix.of([[above / below for above in row] for row in numerators.rows])
+        return TransferFunction(plant, "resolvent", {"transfer_function": P})
     numerator, characteristic = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
     return TransferFunction(plant, "resolvent", {"transfer_function": numerator / characteristic})
 
@@ -92,12 +102,10 @@ def resolvent(plant: StateSpace) -> TransferFunction:
 def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
     """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros.
 
-    plant    n states, one input, one output
-    Returns transfer_function, poles, zeros (both with multiplicity).  Raises `InputError` where B or C is missing.
+    plant    n states, m inputs, p outputs
+    Returns transfer_function (p×m where it is not 1×1), poles and zeros with multiplicity: those of Smith
+    and McMillan.  Raises `InputError` where B or C is missing.
     Source: S0, chapter 4.
     """
     plant.require("B", "C", task="transfer_function")
-    if (plant.inputs, plant.outputs) != (1, 1):
-        message = f"the plant has {plant.inputs} inputs and {plant.outputs} outputs"
-        raise InputError(message, where="plant", repair="keep one input and one output")
     return choose("transfer_function", method, "resolvent").solve(plant)

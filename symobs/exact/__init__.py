@@ -15,6 +15,7 @@ from symobs.exact.polynomial import apply_polynomial, companion, from_coefficien
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 from symobs.exact.sides import stable_roots
+from symobs.exact.smith_mcmillan import pole_and_zero_polynomial
 from symobs.exact.transfer import controller, transfer, transfer_matrix
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "independent_rows",
     "kernel",
     "modulo",
+    "pole_and_zero_polynomial",
     "product_of",
     "rank",
     "reduced_echelon",

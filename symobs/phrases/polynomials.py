@@ -5,6 +5,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "its_characteristic_polynomial": "The characteristic polynomial is",
     "its_roots": "Its roots are {roots}.",
+    "its_transfer_matrix": "The transfer function is a matrix,",
     "its_transfer_function": "Adjugate over determinant gives",
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
     "its_poles": "The poles are {roots}.",

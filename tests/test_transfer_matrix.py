@@ -1,0 +1,40 @@
+"""Transfer functions of several inputs and outputs, their poles and zeros."""
+
+from __future__ import annotations
+
+import sympy
+
+import symobs
+
+s = sympy.Symbol("s")
+
+
+def test_poles_and_zeros_are_those_of_smith_and_mcmillan() -> None:
+    """Skogestad and Postlethwaite, Multivariable Feedback Control, examples on poles and zeros from minors."""
+    no_zeros = symobs.StateSpace("[-1 0; 0 -2]", "[-8/5 -4/5; 12/5 8/5]", "[1 1; 3 2]")
+    found = symobs.transfer_function(no_zeros)
+    expected = sympy.Matrix([[s - 1, s], [-6, s - 2]]) * sympy.Rational(4, 5) / ((s + 1) * (s + 2))
+    assert (found.transfer_function - expected).applyfunc(sympy.simplify).is_zero_matrix
+    assert sorted(found.poles) == [-2, -1]
+    assert found.zeros == ()
+    with_zero = symobs.transfer_function(symobs.StateSpace("-2", "[-3 4]", "[1; -3/2]", "[1 0; 0 2]"))
+    expected = sympy.Matrix([[s - 1, 4], [sympy.Rational(9, 2), 2 * (s - 1)]]) / (s + 2)
+    assert (with_zero.transfer_function - expected).applyfunc(sympy.simplify).is_zero_matrix
+    assert with_zero.poles == (-2,)
+    assert with_zero.zeros == (4,)
+
+
+def test_a_zero_that_no_entry_has() -> None:
+    """With a parameter: [1/(s+1), 1/(s+2); 1/(s+1), 1/(s+a)] loses rank nowhere but where a = 2."""
+    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -a]", "[1 0; 0 1; 0 1]", "[1 1 0; 1 0 1]")
+    found = symobs.transfer_function(plant)
+    a = sympy.Symbol("a")
+    assert sorted(found.poles, key=str) == sorted([-1, -2, -a], key=str)
+    assert found.zeros == ()
+    assert "matrix" in found.to("text")
+
+
+def test_a_matrix_that_is_zero_has_neither() -> None:
+    found = symobs.transfer_function(symobs.StateSpace("[-1 0; 0 -2]", "[1 0; 0 0]", "[0 1; 0 0]"))
+    assert found.transfer_function.is_zero_matrix
+    assert found.poles == found.zeros == ()
