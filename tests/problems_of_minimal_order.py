@@ -1,4 +1,6 @@
-"""The worked examples with an observer of minimal order written out a second time, by hand.
+"""The worked examples with an observer of minimal order, or with several inputs and outputs, a second time, by hand.
+
+Of gains that are not unique one is given, and all else follows from it.
 
 Nothing in this file asks symobs for anything.
 """
@@ -42,7 +44,7 @@ def entries(stem: str, gain: Any) -> dict[str, Any]:
 class MinimalOrder(Hand):
     """An observer of order n − p in the coordinates T = [C; R], and with control poles the compensator with it.
 
-    `observer` has degree n − p; where there are several outputs (inputs), L (K) is given.
+    `observer` has degree n − p.
     """
 
     R: Any
@@ -214,6 +216,10 @@ two_masses = {
     "C": Matrix([[1, 0, 0, 0], [0, 0, 1, 0]]),
 }
 
+accelerometer = two_masses | {"C": Matrix([[1, 0, 0, 0], [1, 0, -1, 0]]), "D": Matrix([[0, 0], [0, 1]])}
+feedback = {"control": (s + 1) * (s + 2) ** 2 * (s + 3), "K": Matrix([[8, 5, 0, 0], [1, 0, 1, 3]])}
+rates = Matrix([[0, 1, 0, 0], [0, 0, 0, 1]])
+
 PROBLEMS_OF_MINIMAL_ORDER = {
     "servo_minimal_order": MinimalOrder(**servo, R=second_state, control=(s + 2) ** 2, observer=s + 10),
     "servo_minimal_order_feedthrough": MinimalOrder(
@@ -241,11 +247,25 @@ PROBLEMS_OF_MINIMAL_ORDER = {
         **cart, C=Matrix([[1, 0, 0, 0]]), R=sympy.eye(4)[1:, :], observer=(s + 20) * ((s + 20) ** 2 + 400)
     ),
     "two_masses_minimal_order": MinimalOrder(
+        **two_masses, **feedback, R=rates, observer=(s + 5) * (s + 6), L=Matrix([[5, 0], [0, 6]])
+    ),
+    "two_masses_minimal_order_feedthrough": MinimalOrder(
+        **accelerometer, **feedback, R=rates, observer=(s + 5) * (s + 6), L=Matrix([[5, 0], [5, -6]])
+    ),
+}
+
+#: Observers of full order for the same plants.
+PROBLEMS_OF_SEVERAL = {
+    "two_masses_output_feedback": Hand(
         **two_masses,
-        R=Matrix([[0, 1, 0, 0], [0, 0, 0, 1]]),
-        control=(s + 1) * (s + 2) ** 2 * (s + 3),
-        observer=(s + 5) * (s + 6),
-        K=Matrix([[8, 5, 0, 0], [1, 0, 1, 3]]),
-        L=Matrix([[5, 0], [0, 6]]),
+        **feedback,
+        observer=(s + 5) ** 2 * (s + 6) ** 2,
+        L=Matrix([[10, 0], [27, 1], [0, 12], [0, 35]]),
+    ),
+    "two_masses_feedthrough": Hand(
+        **accelerometer,
+        **feedback,
+        observer=(s + 5) ** 2 * (s + 6) ** 2,
+        L=Matrix([[11, 0], [33, 0], [11, -11], [30, -28]]),
     ),
 }

@@ -34,7 +34,7 @@ from tests.problems_by_hand import (
 )
 from tests.problems_by_hand import points as points_of
 from tests.problems_in_time import PROBLEMS_IN_TIME, VARYING
-from tests.problems_of_minimal_order import PROBLEMS_OF_MINIMAL_ORDER, MinimalOrder, entries
+from tests.problems_of_minimal_order import PROBLEMS_OF_MINIMAL_ORDER, PROBLEMS_OF_SEVERAL, MinimalOrder, entries
 from tests.second_reader import Reader, facts_in, sympy_scalar, values_of
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from tests.problems_by_hand import Hand
 
 FOLDER = Path(__file__).parents[1] / "worked_examples"
-BY_HAND: dict[str, Hand] = {**PROBLEMS, **PROBLEMS_OF_MINIMAL_ORDER}
+BY_HAND: dict[str, Hand] = {**PROBLEMS, **PROBLEMS_OF_MINIMAL_ORDER, **PROBLEMS_OF_SEVERAL}
 
 
 @cache
