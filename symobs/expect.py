@@ -86,7 +86,8 @@ def _with_member(result: Result, name: str, entry: Any, where: str) -> Result:
         return result
     try:
         wanted = parse_matrix(entry, _names(result), where=where)
-        return result.with_answer(name, wanted) if wanted.shape == answer.shape else result
+        other = wanted.shape == answer.shape and wanted != answer
+        return result.with_answer(name, wanted) if other else result
     except (CertificateRejected, InputError):  # no member, or unreadable, which `met` will say
         return result
 

@@ -17,6 +17,7 @@ from tests.plain import (
     transposed,
     value_at,
 )
+from tests.plain_fractions import plus
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -133,12 +134,12 @@ def decomposition_holds(result: Any, at: Setting) -> None:
             assert not (entry and leads_out)
     assert not any(any(B[i]) for i in range(len(A)) if kind[i] in {2, 3})
     assert not any(row[j] for row in C for j in range(len(A)) if kind[j] in {1, 3})
-    from tests.claims import rational_at, response  # noqa: PLC0415 - the two modules belong together
+    from tests.claims import response, table_at  # noqa: PLC0415 - the two modules belong together
 
     for s in at.probes:
         if at_number(characteristic(at.A), s):
-            expected = response(at.A, at.B, at.C, s) + at.D[0][0]
-            found = rational_at(result.fields["transfer_function"], result.plant.variable, s, at.point)
+            expected = plus(response(at.A, at.B, at.C, s), at.D)
+            found = table_at(result.fields["transfer_function"], result.plant.variable, s, at.point)
             assert found == expected
 
 

@@ -161,12 +161,34 @@ def transposed(rows: Rows) -> Rows:
     return [list(column) for column in zip(*rows, strict=True)]
 
 
-def assignable(A: Rows, C: Rows, phi: Polynomial) -> bool:
-    """Tell whether some l has det(sI − A + l c) = φ(s).
+def hidden(A: Rows, C: Rows) -> Polynomial:
+    """Return the characteristic polynomial of A on the kernel of 𝒪, by a basis that is the identity on the free rows."""
+    pivots, reduced = eliminated(observability_rows(A, C))
+    free = [j for j in range(len(A)) if j not in pivots]
+    N = [[Fraction(int(i == j)) for j in free] for i in range(len(A))]
+    for pivot, row in zip(pivots, reduced, strict=True):
+        N[pivot] = [-row[j] for j in free]
+    moved = multiply(A, N)
+    return characteristic([moved[i] for i in free]) if free else [Fraction(1)]
 
-    det(sI − A + l c) = χ(s) + c adj(sI − A) l, so this is a linear system: φ − χ among the combinations of the n
-    polynomials c adj(sI − A).
+
+def divides(divisor: Polynomial, polynomial: Polynomial) -> bool:
+    """Tell whether a monic polynomial divides another."""
+    rest = list(polynomial)
+    while len(rest) >= len(divisor):
+        shifted = [rest[0] * c for c in divisor] + [Fraction(0)] * (len(rest) - len(divisor))
+        rest = [x - y for x, y in zip(rest, shifted, strict=True)][1:]
+    return not any(rest)
+
+
+def assignable(A: Rows, C: Rows, phi: Polynomial) -> bool:
+    """Tell whether some L has det(sI − A + L C) = φ(s).
+
+    For one output det(sI − A + l c) = χ(s) + c adj(sI − A) l, so this is a linear system: φ − χ among the combinations
+    of the n polynomials c adj(sI − A).  For several, the polynomial of what the outputs do not show must divide φ.
     """
+    if len(C) > 1:
+        return divides(hidden(A, C), phi)
     chi, adjugates = faddeev_leverrier(A)
     spanned = transposed([multiply(C, part)[0] for part in adjugates])
     wanted = [x - y for x, y in zip(phi, chi, strict=True)][1:]

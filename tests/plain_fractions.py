@@ -434,7 +434,8 @@ class World:
                 case Shown(formula, value):
                     yield from self.facts((Relation((formula, value), ("=",)),))
                 case Predicate(name, subject):
-                    yield f"property {name}", single(self.value(subject))
+                    value = self.value(subject)
+                    yield f"property {name}", value if is_matrix(value) else single(value)
                 case Roots(polynomial, values):
                     yield "condition", single(self.value(polynomial))
                     yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
@@ -471,6 +472,11 @@ def single(value: Any) -> Fraction:
 
 def is_number(value: Any) -> bool:
     return isinstance(value, Fraction)
+
+
+def is_matrix(value: Any) -> bool:
+    """Tell whether a value is a table of more than one entry."""
+    return isinstance(value, list) and len(value) * len(value[0]) > 1
 
 
 def plus(left: Any, right: Any) -> Any:

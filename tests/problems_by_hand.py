@@ -6,7 +6,7 @@ Nothing in this file asks symobs for anything.
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from sympy import Matrix, Rational, symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+    from typing import Self
 
 # -- linear algebra ----------------------------------------------------------------------------------------------------
 
@@ -53,10 +54,60 @@ def characteristic(A: Any, s: Any) -> Any:
     return sympy.expand((s * sympy.eye(A.rows) - A).det(method="berkowitz"))
 
 
-def response(A: Any, B: Any, C: Any, s: Any) -> Any:
-    """Return C (sI − A)⁻¹ B of one input and one output."""
+def response(A: Any, B: Any, C: Any, s: Any, D: Any = None) -> Any:
+    """Return C (sI − A)⁻¹ B + D, of one input and one output a scalar."""
     pencil = s * sympy.eye(A.rows) - A
-    return sympy.cancel((C * pencil.adjugate() * B)[0] / pencil.det(method="berkowitz"))
+    found = C * pencil.adjugate() * B / pencil.det(method="berkowitz")
+    return single((found if D is None else found + D).applyfunc(sympy.cancel))
+
+
+def single(matrix: Any) -> Any:
+    """Return the entry of a 1×1 matrix, any other matrix as it is."""
+    return matrix[0] if matrix.shape == (1, 1) else matrix
+
+
+def return_path(P: Any, F: Any) -> Any:
+    """Return (I + P F)⁻¹ P: the plant with F in its return path, negative feedback."""
+    P, F = (part if isinstance(part, sympy.MatrixBase) else sympy.Matrix([[part]]) for part in (P, F))
+    return single((inverse(sympy.eye(P.rows) + P * F) * P).applyfunc(sympy.cancel))
+
+
+def common_denominator(function: Any) -> Any:
+    """Return the least common denominator of a rational function, or of the entries of a matrix of them."""
+    entries = list(function) if isinstance(function, sympy.MatrixBase) else [function]
+    return sympy.lcm_list([sympy.fraction(sympy.cancel(entry))[1] for entry in entries])
+
+
+def companion(polynomial: Any, variable: sympy.Symbol) -> Any:
+    """Return the matrix with ones above its diagonal whose last row makes this its characteristic polynomial."""
+    ascending = sympy.Poly(polynomial, variable).monic().all_coeffs()[:0:-1]
+    order = len(ascending)
+    return sympy.Matrix(order, order, lambda i, j: -ascending[j] if i == order - 1 else int(j == i + 1))
+
+
+#: What the free entries of G are in the comparison: a solution with letters in it is too large for SymPy.
+FREE_ENTRIES = {f"g{k}": Rational(sympy.prime(k + 4), sympy.prime(k + 2)) for k in range(1, 17)}
+
+
+def sylvester_letters(A: Any, B: Any, gain: Any, polynomial: Any, variable: sympy.Symbol, side: str) -> dict[str, Any]:
+    """Return F, G, X of AX − XF = BG: in general, one row of G held at e₁ᵀ, others free; and of one gain K, where KX = G.
+
+    A − BK = XFX⁻¹ leaves X free up to polynomials in F, which the row that is held fixes.
+    """
+    F, n = companion(polynomial, variable), A.rows
+    held = sympy.eye(n)[0, :]
+    G = held.col_join(sympy.Matrix(B.cols - 1, n, list(FREE_ENTRIES.values())[: n * (B.cols - 1)]))
+    shifted = sympy.kronecker_product(sympy.eye(n), A) - sympy.kronecker_product(F.T, sympy.eye(n))
+    X = sympy.Matrix(n, n, list(shifted.LUsolve((B * G).T.reshape(n * n, 1)))).T
+    unknown = sympy.Matrix(n, n, sympy.symbols(f"x1:{n * n + 1}"))
+    equations = [*((A - B * gain) * unknown - unknown * F), *((gain * unknown)[0, :] - held)]
+    own = unknown.subs(sympy.solve(equations, list(unknown), dict=True)[0])
+    assert not own.free_symbols
+    found = {"F": F, "G": G, "X": X}
+    return {f"{letter}_{side}": value for letter, value in found.items()} | {
+        f"X_{side}1": own,
+        f"G_{side}1": gain * own,
+    }
 
 
 def canonical_transformation(A: Any, test: Any, s: Any) -> Any:
@@ -136,37 +187,35 @@ class Hand:
     large: bool = False
     sign: int = 1
     follows: bool = False
+    shrunk: int = 1  # by what sample points are divided
 
     @property
     def discrete(self) -> bool:
         return bool(self.variable == z)
 
-    def at(self, point: Mapping[Any, Any]) -> Hand:
+    def at(self, point: Mapping[Any, Any]) -> Self:
         """Return the problem at one point of its parameters."""
+        names = ("A", "B", "C", "D", "control", "observer", "K", "L")
+        given = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        return replace(self, large=False, **{name: value.subs(point) for name, value in given.items()})
 
-        def moved(value: Any) -> Any:
-            return None if value is None else value.subs(point)
+    @property
+    def is_several(self) -> bool:
+        return max(1 if part is None else min(part.shape) for part in (self.B, self.C)) > 1
 
-        return Hand(
-            A=moved(self.A),
-            B=moved(self.B),
-            C=moved(self.C),
-            D=moved(self.D),
-            control=moved(self.control),
-            observer=moved(self.observer),
-            K=moved(self.K),
-            L=moved(self.L),
-            signs=self.signs,
-            variable=self.variable,
-            sign=self.sign,
-            follows=self.follows,
-        )
+    @property
+    def decisive(self) -> Any:
+        """What must not vanish where parameters may make it vanish."""
+        test = observability_matrix(self.A, self.C)
+        return test.det() if test.is_square else sympy.Integer(1)
 
     # -- answers, found by textbook formulas ---------------------------------------------------------------------------
 
     @cached_property
     def feedthrough(self) -> Any:
-        return sympy.zeros(1, 1) if self.D is None else self.D
+        if self.D is not None:
+            return self.D
+        return sympy.zeros(1 if self.C is None else self.C.rows, 1 if self.B is None else self.B.cols)
 
     @cached_property
     def feedback_gain(self) -> Any:
@@ -178,7 +227,13 @@ class Hand:
 
     @cached_property
     def plant_transfer(self) -> Any:
-        return response(self.A, self.B, self.C, self.variable) + self.feedthrough[0]
+        return response(self.A, self.B, self.C, self.variable, self.feedthrough)
+
+    @property
+    def families(self) -> dict[str, Any] | None:
+        """Return (A, B, polynomial) of each gain that is not unique, (Aᵀ, Cᵀ, φ) of L."""
+        found = {"K": (self.A, self.B, self.control)} if self.B.cols > 1 else {}
+        return (found | ({"L": (self.A.T, self.C.T, self.observer)} if self.C.rows > 1 else {})) or None
 
     @cached_property
     def compensator_matrix(self) -> Any:
@@ -191,10 +246,12 @@ class Hand:
 
     @cached_property
     def loop(self) -> Any:
-        return sympy.cancel(self.plant_transfer / (1 + self.plant_transfer * self.compensator))
+        return return_path(self.plant_transfer, self.compensator)
 
     @cached_property
     def unity_loop(self) -> Any:
+        if self.B.cols > 1 or self.C.rows > 1:
+            return None
         through = self.plant_transfer * self.compensator
         return sympy.cancel(through / (1 + through))
 
@@ -351,13 +408,13 @@ FAMILIES = {
 }
 
 
-def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
+def points(name: str, hand: Hand, count: int) -> Iterator[dict[Any, Any]]:
     """Yield points that the declared signs allow and that lose no observability, the same in every run."""
     chance = random.Random(name)  # noqa: S311 - points that repeat
-    for _ in range(count if PROBLEMS[name].signs else 1):
+    for _ in range(count if hand.signs else 1):
         point = {}
-        for parameter, sign in PROBLEMS[name].signs.items():
-            size = Rational(chance.randint(1, 40), chance.randint(1, 9))
+        for parameter, sign in hand.signs.items():
+            size = Rational(chance.randint(1, 40), chance.randint(1, 9) * hand.shrunk)
             point[sympy.Symbol(parameter)] = (
                 size if sign in {"positive", "nonnegative"} or chance.random() < 0.5 else -size
             )

@@ -322,7 +322,11 @@ class Reader:
         return all(compare(difference.subs(point), operator) for point in self.samples())
 
     def predicate(self, name: str, subject: Formula) -> None:
-        value = sympy.cancel(scalar(self.value(subject)))
+        found = self.value(subject)
+        if shape(found) not in {None, (1, 1)}:
+            self.property_of_entries(name, found)
+            return
+        value = sympy.cancel(scalar(found))
         above, below = (sympy.Poly(part, self.symbol) for part in value.as_numer_denom())
         if name in {"polynomial", "not_polynomial"}:
             assert (below.degree() == 0) == (name == "polynomial"), subject
@@ -351,6 +355,20 @@ class Reader:
             else:
                 stable = is_stable(polynomial.subs(point), self.symbol, discrete=self.derivation.discrete)
                 assert stable == {"stable": True, "unstable": False}[name], subject
+
+    def property_of_entries(self, name: str, found: Value) -> None:
+        """Decide properties of matrices of rational functions: all entries have them, or one is unstable."""
+        fractions = [sympy.fraction(sympy.cancel(entry)) for entry in found]
+        if name == "strictly_proper":
+            assert all(
+                sympy.degree(above, self.symbol) < sympy.degree(below, self.symbol) or above == 0
+                for above, below in fractions
+            ), found
+            return
+        for point in self.samples():
+            poles = [below.subs(point) for _, below in fractions if below.has(self.symbol)]
+            stable = all(is_stable(below, self.symbol, discrete=self.derivation.discrete) for below in poles)
+            assert stable == {"stable": True, "unstable": False}[name], found
 
     def exactly(self, subject: Formula, where: tuple[Relation, ...]) -> None:
         """Compare the roots at every sample with the inequalities; both outcomes must occur."""

@@ -161,6 +161,7 @@ def test_an_assumption_holds_from_there_on() -> None:
     assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).assumed == (c - 1,)
     refused(Equal((distinct,)), Given((distinct,)))
     refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
+    refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
 
 
 def test_an_assumption_is_the_one_that_is_said() -> None:

@@ -20,7 +20,8 @@ from tests.claims import Setting, conditions_hold
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import parts_of
 from tests.plain import (
-    eliminated,
+    at_number,
+    hidden,
     is_hurwitz,
     is_schur,
     matrix_at,
@@ -32,7 +33,7 @@ from tests.plain import (
     transposed,
     value_at,
 )
-from tests.plain_fractions import World, determinant, identity, inverse, times
+from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.series import CONTEXT, Series, digits
 
 if TYPE_CHECKING:
@@ -82,6 +83,8 @@ def at(value: Any, point: Point) -> Any:
         return matrix_at(value, point)
     if isinstance(value, Factored):
         return value_at(value.unit, point) * prod(value_at(factor, point) ** power for factor, power in value.factors)
+    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+        return [[at(entry, point) for entry in row] for row in value]
     if isinstance(value, tuple):
         return product_of_roots(value, point)
     return None if value is None else value_at(value, point)
@@ -117,14 +120,8 @@ def blocks(*rows: tuple[Rows, Rows]) -> Rows:
 
 
 def hidden_at(A: Rows, C: Rows, s: Fraction) -> Fraction:
-    """Return the polynomial of A on the kernel of 𝒪, read off a basis that is the identity on the free rows."""
-    pivots, reduced = eliminated(observability_rows(A, C))
-    free = [j for j in range(len(A)) if j not in pivots]
-    N = [[Fraction(int(i == j)) for j in free] for i in range(len(A))]
-    for pivot, row in zip(pivots, reduced, strict=True):
-        N[pivot] = [-row[j] for j in free]
-    moved = multiply(A, N)
-    return characteristic_at([moved[i] for i in free], s) if free else Fraction(1)
+    """Return the polynomial of A on the kernel of 𝒪."""
+    return at_number(hidden(A, C), s)
 
 
 def computed(part: Result, point: Point) -> dict[str, Any]:
@@ -139,8 +136,8 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
     if part.task in {"pbh", "detectability", "stabilizability"}:
         dual = part.task == "stabilizability" or part.fields.get("of") == "controllability"
-        hidden = hidden_at(transposed(A), transposed(B), s) if dual else hidden_at(A, C, s)
-        return {"polynomial": characteristic_at(A, s), "fixed_polynomial": hidden}
+        fixed = hidden_at(transposed(A), transposed(B), s) if dual else hidden_at(A, C, s)
+        return {"polynomial": characteristic_at(A, s), "fixed_polynomial": fixed}
     if part.task in {"dual", "decomposition", "canonical_form"}:
         return {"polynomial": characteristic_at(A, s)} if "polynomial" in part.fields else {}
     if part.task == "characteristic_polynomial":
@@ -156,19 +153,21 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         return expected | {"A": subtract(A, multiply(L, C)), "B_u": driven, "B_y": L}
     if part.task == "state_feedback":
         closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
-        hidden = hidden_at(transposed(A), transposed(B), s)
-        return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": hidden}
+        fixed = hidden_at(transposed(A), transposed(B), s)
+        return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": fixed}
     if part.task == "time_varying_observability":
         return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
     if part.task == "reduced_order_observer":
         if "F" not in answer:
             return {}
-        T, L = answer["T"], answer["L"]
-        unmeasured = multiply(multiply(T, A), inverse(T))
-        hidden = hidden_at([row[1:] for row in unmeasured[1:]], [unmeasured[0][1:]], s)
-        F = subtract([row[1:] for row in unmeasured[1:]], multiply(L, [unmeasured[0][1:]]))
+        known, L = len(C), answer["L"]
+        moved = [row[known:] for row in multiply(multiply(answer["T"], A), inverse(answer["T"]))]
+        F = subtract(moved[known:], multiply(L, moved[:known]))
         assert answer["F"] == F
-        return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": hidden}
+        fixed = hidden_at(moved[known:], moved[:known], s)
+        return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": fixed}
+    if part.task in {"feedforward", "tracking"}:
+        return errors_of(part, point, A, B, C, s)
     assert part.task == "compensator"
     if "F" not in answer:
         return {}
@@ -178,15 +177,28 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
     BK, LC, zero = multiply(B, K), multiply(L, C), [[Fraction(0)] * len(A) for _ in A]
     own = subtract(subtract(A, BK), subtract(LC, multiply(L, multiply(D, K))))
     loop = blocks((subtract(A, BK), BK), (zero, subtract(A, LC)))
-    ((P,),) = multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B))
-    P += D[0][0]
     return {
         "compensator_matrix": own,
         "closed_loop_matrix": loop,
         "closed_loop_matrix_estimate": blocks((A, subtract(zero, BK)), (LC, subtract(subtract(A, BK), LC))),
         "closed_loop_polynomial": characteristic_at(loop, s),
-        "closed_loop": P / (1 + P * answer["F"]),
+        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
     }
+
+
+def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -> dict[str, Any]:
+    """Return the loop in state and estimation error (of full order), or tracking and estimation error (of minimal order)."""
+    K, L = (at(part.loop.answer[name], point) for name in "KL")
+    closed = subtract(A, multiply(B, K))
+    if part.task == "feedforward":
+        whole = blocks((closed, multiply(B, K)), ([[Fraction(0)] * len(A) for _ in A], subtract(A, multiply(L, C))))
+        return {"closed_loop_matrix": whole, "polynomial": characteristic_at(whole, s), "K": K, "L": L}
+    T, known = at(part.loop.estimator.answer["T"], point), len(C)
+    moved = [row[known:] for row in multiply(multiply(T, A), inverse(T))]
+    through = times(Fraction(-1), multiply(B, [row[known:] for row in multiply(K, inverse(T))]))
+    own = subtract(moved[known:], multiply(L, moved[:known]))
+    errors = blocks((closed, through), ([[Fraction(0)] * len(A) for _ in own], own))
+    return {"error_matrix": errors, "polynomial": characteristic_at(errors, s), "K": K, "L": L}
 
 
 def minimal_order(
@@ -198,27 +210,33 @@ def minimal_order(
     T = at(part.estimator.answer["T"], point)
     known = {name: at(part.estimator.answer[name], point) for name in "FGH"}
     moved = multiply(K, inverse(T))
-    rest = [moved[0][1:]]
-    direct = moved[0][0] + multiply(rest, L)[0][0]
-    solvable = 1 - direct * D[0][0]
-    driven = [[g[0] + h[0] * D[0][0]] for g, h in zip(known["G"], known["H"], strict=True)]
+    rest = [row[len(C) :] for row in moved]
+    direct = plus([row[: len(C)] for row in moved], multiply(rest, L))
+    W = inverse(subtract(identity(len(K)), multiply(direct, D)))
+    driven = plus(known["G"], multiply(known["H"], D))
     zero = [[Fraction(0)] * len(A) for _ in L]
     loop = blocks((subtract(A, multiply(B, K)), multiply(B, rest)), (zero, known["F"]))
-    fed = multiply(subtract(known["H"], times(direct, driven)), C)
     in_z = blocks(
-        (subtract(A, times(direct, multiply(B, C))), times(Fraction(-1), multiply(B, rest))),
-        (fed, subtract(known["F"], multiply(driven, rest))),
+        (subtract(A, multiply(B, multiply(direct, C))), times(Fraction(-1), multiply(B, rest))),
+        (multiply(subtract(known["H"], multiply(driven, direct)), C), subtract(known["F"], multiply(driven, rest))),
     )
-    ((P,),) = multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B))
-    P += D[0][0]
     return {
-        "compensator_matrix": subtract(known["F"], times(1 / solvable, multiply(known["G"], rest))),
-        "direct_term": [[direct / solvable]],
+        "compensator_matrix": subtract(known["F"], multiply(known["G"], multiply(W, rest))),
+        "direct_term": multiply(W, direct),
         "closed_loop_matrix": loop,
         "closed_loop_matrix_estimate": in_z,
         "closed_loop_polynomial": characteristic_at(loop, s),
-        "closed_loop": P / (1 + P * answer["F"]),
+        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
     }
+
+
+def loop_at(plant: tuple[Rows, Rows, Rows, Rows], F: Any, s: Fraction) -> Any:
+    """Return (I + PF)⁻¹ P, of one input and one output a number."""
+    A, B, C, D = plant
+    P = plus(multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B)), D)
+    F = [[F]] if isinstance(F, Fraction) else F
+    found = multiply(inverse(plus(identity(len(P)), multiply(P, F))), P)
+    return found[0][0] if len(B[0]) == len(C) == 1 else found
 
 
 @pytest.mark.parametrize("part", parts())
@@ -308,7 +326,11 @@ def said_stable(part: Result) -> list[tuple[Scalar, str, list[str] | None]]:
     if "stable" in part.fields:
         found.append((part.answer["polynomial"], part.fields["stable"], part.fields["stable_if"]))
     if "F_stable" in part.fields:
-        found.append((part.answer["F"].denominator, part.fields["F_stable"], None))
+        F = part.answer["F"]
+        entries = F.entries if isinstance(F, Matrix) else [F]
+        found.append(
+            (prod((entry.denominator for entry in entries), start=Scalar.of(1)), part.fields["F_stable"], None)
+        )
     return found
 
 

@@ -18,9 +18,11 @@ from symobs.expression import parse_scalar
 from symobs.face import to_sympy
 from tests.problems_by_hand import (
     FAMILIES,
+    FREE_ENTRIES,
     PROBLEMS,
     canonical_transformation,
     characteristic,
+    common_denominator,
     compare,
     fixed,
     inverse,
@@ -28,10 +30,12 @@ from tests.problems_by_hand import (
     is_zero,
     modes,
     observability_matrix,
-    points,
-    s,
+    sylvester_letters,
 )
+from tests.problems_by_hand import points as points_of
 from tests.problems_in_time import PROBLEMS_IN_TIME, VARYING
+from tests.problems_of_minimal_order import PROBLEMS_OF_MINIMAL_ORDER, PROBLEMS_OF_SEVERAL, MinimalOrder, entries
+from tests.problems_of_tracking import PROBLEMS_OF_TRACKING
 from tests.second_reader import Reader, facts_in, sympy_scalar, values_of
 
 if TYPE_CHECKING:
@@ -41,6 +45,7 @@ if TYPE_CHECKING:
     from tests.problems_by_hand import Hand
 
 FOLDER = Path(__file__).parents[1] / "worked_examples"
+BY_HAND: dict[str, Hand] = {**PROBLEMS, **PROBLEMS_OF_MINIMAL_ORDER, **PROBLEMS_OF_SEVERAL, **PROBLEMS_OF_TRACKING}
 
 
 @cache
@@ -49,8 +54,14 @@ def results(name: str) -> tuple[Result, ...]:
     return problem.read(text, name).solve()
 
 
+def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
+    return points_of(name, BY_HAND[name], count)
+
+
 def known_letters(hand: Hand) -> dict[str, Any]:
     """Return what the letters of a derivation must be worth."""
+    if isinstance(hand, MinimalOrder):
+        return hand.letters()
     A, B, C, s_ = hand.A, hand.B, hand.C, hand.variable
     known: dict[str, Any] = {"A": A, "chi": characteristic(A, s_), "D": hand.feedthrough}
     rates = {"x": A}
@@ -59,17 +70,21 @@ def known_letters(hand: Hand) -> dict[str, Any]:
         known |= {"B": B, "Ctr": reach}
         rates["u"] = B
         if hand.control is not None or hand.K is not None:
-            known |= {"K": hand.feedback_gain, "V_c": canonical_transformation(A, reach, s_)}
-            known["q_c"] = inverse(reach)[-1, :]
-            known |= entries("k", hand.feedback_gain)
+            known |= {"K": hand.feedback_gain, **entries("k", hand.feedback_gain)}
+            if B.cols > 1:
+                known |= sylvester_letters(A, B, hand.feedback_gain, hand.control, s_, "c")
+            else:
+                known |= {"V_c": canonical_transformation(A, reach, s_), "q_c": inverse(reach)[-1, :]}
     if C is not None:
         seen = observability_matrix(A, C)
         known |= {"C": C, "O": seen}
         known["y"] = {"x": C, "u": hand.feedthrough} if hand.D is not None else {"x": C}
         if hand.observer is not None or hand.L is not None:
-            known |= {"L": hand.observer_gain, "V_o": canonical_transformation(A, seen.T, s_)}
-            known["q_o"] = inverse(seen)[:, -1]
-            known |= entries("l", hand.observer_gain)
+            known |= {"L": hand.observer_gain, **entries("l", hand.observer_gain)}
+            if C.rows > 1:
+                known |= sylvester_letters(A.T, C.T, hand.observer_gain.T, hand.observer, s_, "o")
+            else:
+                known |= {"V_o": canonical_transformation(A, seen.T, s_), "q_o": inverse(seen)[:, -1]}
             innovation = hand.observer_gain * C
             copy = {"x_hat": A - innovation, "x": innovation}
             known["x_hat'"] = copy if B is None else copy | {"u": B}
@@ -91,10 +106,11 @@ def known_letters(hand: Hand) -> dict[str, Any]:
             "G_r": hand.unity_loop,
             "u": {"x_hat": -hand.feedback_gain},
         }
-        above, below = (sympy.Poly(part, s_) for part in hand.compensator.as_numer_denom())
-        for stem, part in (("n", above), ("d", below)):
-            ascending = [value / below.LC() for value in reversed(part.all_coeffs())]
-            known |= {f"{stem}_{k}": value for k, value in enumerate(ascending)}
+        if B.cols == C.rows == 1:
+            above, below = (sympy.Poly(part, s_) for part in hand.compensator.as_numer_denom())
+            for stem, part in (("n", above), ("d", below)):
+                ascending = [value / below.LC() for value in reversed(part.all_coeffs())]
+                known |= {f"{stem}_{k}": value for k, value in enumerate(ascending)}
     if "L" in known and "K" not in known and B is not None:
         L = hand.observer_gain
         known |= {"F_x": A - L * C, "G_x": B - L * hand.feedthrough, "H_x": L}
@@ -106,19 +122,15 @@ def known_letters(hand: Hand) -> dict[str, Any]:
     return known
 
 
-def entries(stem: str, gain: Any) -> dict[str, Any]:
-    return {f"{stem}_{k}": value for k, value in enumerate(gain, 1)}
-
-
 def read(name: str, result: Result) -> list[Reader]:
     """Walk one derivation with symbols, or at two points of its parameters where these are many."""
-    hand = PROBLEMS[name]
+    hand = BY_HAND[name]
 
     def samples() -> Iterator[dict[Any, Any]]:
         return points(name, 60)
 
     if not hand.large:
-        return [Reader(result.derivation, known_letters(hand), samples)]
+        return [Reader(result.derivation, known_letters(hand), samples, FREE_ENTRIES if hand.is_several else {})]
     return [
         Reader(
             result.derivation,
@@ -130,7 +142,7 @@ def read(name: str, result: Result) -> list[Reader]:
     ]
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_every_line_of_every_derivation(name: str, record_property: Callable[[str, object], None]) -> None:
     lines = compared = 0
     for result in results(name):
@@ -140,7 +152,7 @@ def test_every_line_of_every_derivation(name: str, record_property: Callable[[st
             tally = reader.read()
             assert tally.compared + len(reader.assumed) + len(tally.unknown) == values_of(facts)
             assert set(tally.unknown) <= WITNESSES, "every other letter has an independent value"
-            said_and_assumed(PROBLEMS[name], reader)
+            said_and_assumed(BY_HAND[name], reader)
             compared += tally.compared + len(reader.assumed) + len(tally.unknown)
     record_property("lines", lines)
     record_property("values compared", compared)
@@ -155,8 +167,7 @@ def said_and_assumed(hand: Hand, reader: Reader) -> None:
         for polynomial in (hand.control, sympy.diff(hand.control, hand.variable)):
             assert polynomial.subs(hand.variable, value) == 0
     if reader.assumed:
-        test = observability_matrix(hand.A, hand.C).det()
-        above = sympy.Poly(sympy.fraction(sympy.cancel(test))[0], *sorted(test.free_symbols, key=str))
+        above = sympy.Poly(sympy.fraction(sympy.cancel(hand.decisive))[0], *sorted(hand.decisive.free_symbols, key=str))
         assert {sympy.Poly(a, *above.gens).monic() for a in reader.assumed} == {
             factor.monic() for factor, _ in above.factor_list()[1]
         }
@@ -180,6 +191,8 @@ def repairs(A: Any, C: Any) -> tuple[tuple[int, ...], ...]:
 
 def answers(hand: Hand, task: str) -> dict[str, Any]:
     """Return every field of a task's answer by the textbook's formula."""
+    if isinstance(hand, MinimalOrder):
+        return hand.answers(task)
     A, B, C, variable = hand.A, hand.B, hand.C, hand.variable
     match task:
         case "observability":
@@ -247,7 +260,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
                 "closed_loop_polynomial": characteristic(hand.loop_matrix, variable),
                 "closed_loop_matrix": hand.loop_matrix,
                 "closed_loop_matrix_estimate": hand.loop_matrix_estimate,
-                "family": None,
+                "family": hand.families,
             }
     return own | {"polynomial": polynomial, "poles": polynomial, "fixed_modes": (), "family": None}
 
@@ -280,9 +293,9 @@ FREE = {
 }
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_every_answer(name: str) -> None:
-    hand = PROBLEMS[name]
+    hand = BY_HAND[name]
     for result in results(name):
         for point in points(name, 2) if hand.large else [{}]:
             expected = answers(hand.at(point), result.task)
@@ -302,6 +315,10 @@ def same(field_name: str, found: Any, wanted: Any, variable: Any, point: Mapping
         return sorted(told, key=str) == sorted(((sympy.expand(v), r) for v, r in wanted), key=str)
     if field_name == "factors":
         return is_zero(sympy.prod(factor**power for factor, power in found) - wanted)
+    if field_name == "family" and found is not None:
+        return is_family(found, wanted, variable)
+    if isinstance(found, tuple) and isinstance(wanted, sympy.MatrixBase):
+        found = sympy.Matrix(found)
     if isinstance(found, sympy.MatrixBase):
         return found.shape == wanted.shape and all(map(is_zero, found.xreplace(point) - wanted))
     if isinstance(found, sympy.Expr):
@@ -309,14 +326,30 @@ def same(field_name: str, found: Any, wanted: Any, variable: Any, point: Mapping
     return bool(found == wanted)
 
 
+def is_family(found: Mapping[str, Any], wanted: Mapping[str, Any], variable: Any) -> bool:
+    """Tell whether members of the families of gains have the polynomials wanted: (A, B, polynomial) of each letter."""
+    for letter, (A, B, polynomial) in wanted.items():
+        general = found[letter][letter]
+        if general is None:  # too large to be given
+            continue
+        names = list(map(sympy.Symbol, found[letter]["parameters"]))
+        assert general.free_symbols == set(names)
+        for draw in range(3):
+            member = general.subs({name: sympy.Rational(7 * k + draw, 5 + 2 * draw) for k, name in enumerate(names)})
+            moved = B * (member if letter == "K" else member.T)
+            if not is_zero(characteristic(A - moved, variable) - polynomial):
+                return False
+    return set(found) == set(wanted)
+
+
 def test_attributes_are_never_of_the_kernel() -> None:
-    for name in PROBLEMS:
+    for name in BY_HAND:
         for result in results(name):
             for field_name in result.fields:
                 assert not type(getattr(result, field_name)).__module__.startswith("symobs"), field_name
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
+@pytest.mark.parametrize("name", BY_HAND)
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
     for result in results(name):
@@ -324,10 +357,10 @@ def test_verdicts_of_stability(name: str) -> None:
         if verdict is None:
             continue
         seen = set()
-        for point in points(name, 10 if PROBLEMS[name].large else 60):
-            hand = PROBLEMS[name].at(point)
+        for point in points(name, 10 if BY_HAND[name].large else 60):
+            hand = BY_HAND[name].at(point)
             if verdict == "F_stable":
-                polynomial = sympy.fraction(hand.compensator)[1]
+                polynomial = common_denominator(hand.compensator)
             else:
                 polynomial = answers(hand, result.task)["polynomial"]
             stable = is_stable(polynomial, hand.variable, discrete=hand.discrete)
@@ -345,67 +378,4 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
 
 
 def test_every_worked_example_is_written_out_here() -> None:
-    assert {path.stem for path in FOLDER.glob("*.toml")} == {*PROBLEMS, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES}
-
-
-# -- functions of time -------------------------------------------------------------------------------------------------
-
-#: Letters that a page in functions of time is free to choose, or that the lines which follow bind: a solution of
-#: Lyapunov's equation, a vector of the kernel, a basis of it.
-CHOSEN = {"P_l", "v", "N", "X"}
-
-
-def in_time(name: str, result: Result) -> Reader:
-    """Return the reader of a page in functions of time."""
-    hand = PROBLEMS_IN_TIME[name]
-
-    def samples() -> Iterator[dict[Any, Any]]:
-        return hand.points(name, 40)
-
-    return Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())
-
-
-@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
-def test_every_line_of_every_page_in_time(name: str) -> None:
-    for result in results(name):
-        facts, reader = list(facts_in(result.derivation.steps)), in_time(name, result)
-        tally = reader.read()
-        assert tally.compared + len(tally.unknown) >= values_of(facts)
-        assert set(tally.unknown) <= CHOSEN
-        print(f"{name}, {result.task}: {len(facts)} lines, {tally.compared} values")  # noqa: T201 - shown by pytest -s
-        assert tally.compared >= len(facts) > 0
-
-
-@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
-def test_every_answer_in_time(name: str) -> None:
-    hand = PROBLEMS_IN_TIME[name]
-    for result in results(name):
-        reader, expected = in_time(name, result), hand.answers(result.task)
-        assert set(result.fields) - VERDICTS - {"best_horizon"} == set(expected)
-        if result.answer.get("chosen"):
-            signs = [(to_sympy(c.expression, {}), c.operator) for c in result.holds_where]
-            reader.narrowed = signs
-        for field_name, wanted in expected.items():
-            found = to_sympy(result.fields[field_name], {})
-            if field_name in ROOTS or not isinstance(found, (sympy.MatrixBase, sympy.Expr)):
-                assert same(field_name, found, tuple(wanted) if field_name == "x0" else wanted, s, {}), field_name
-            else:
-                assert reader.agree(found, wanted), (name, field_name)
-
-
-@pytest.mark.parametrize("name", VARYING)
-def test_every_line_and_answer_where_the_plant_varies(name: str) -> None:
-    (result,), known = results(name), VARYING[name]
-    facts = list(facts_in(result.derivation.steps))
-    positive = [{sympy.Symbol("T"): sympy.Rational(k, 3)} for k in range(1, 6)]
-    tally = Reader(result.derivation, known, lambda: iter(positive)).read()
-    assert tally.compared + len(tally.unknown) >= values_of(facts)
-    assert tally.unknown == []
-    fields = {"matrix": "O", "transition_matrix": "Phi", "gramian": "W", "x0": "x_0"}
-    for field_name, letter in fields.items():
-        if field_name in result.fields:
-            found = to_sympy(result.fields[field_name], {})
-            assert all(map(is_zero, sympy.Matrix(found) - known[letter])), field_name
-    assert [to_sympy(block, {}) for block in result.fields["stack"]] == [known["N_0"], known["N_1"]]
-    assert is_zero(to_sympy(result.fields["determinant"], {}) - known["W"].det())
-    assert result.fields["rank"] == known["O"].rank() == 2 - len(result.fields["kernel"])
+    assert {path.stem for path in FOLDER.glob("*.toml")} == {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES}

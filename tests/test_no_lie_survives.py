@@ -128,8 +128,9 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         K, L = world.value(answer["K"]), world.value(answer["L"])
         own = [world.value(part.feedback.answer["K"]), world.value(part.estimator.answer["L"])]
         moved = plus(plus(multiply(B, K), multiply(L, C)), times(Fraction(-1), multiply(L, multiply(D, K))))
-        ((F,),) = multiply(K, multiply(inverse(plus(pencil(s, A), moved)), L))
-        return own == [K, L] and world.value(answer["F"]) == F
+        F = multiply(K, multiply(inverse(plus(pencil(s, A), moved)), L))
+        found = world.value(answer["F"])
+        return own == [K, L] and (found if isinstance(found, list) else [[found]]) == F
     if isinstance(part, TrackingDesign):
         return _is_followed(part, answer, A, B, world)
     return False
@@ -222,7 +223,9 @@ def _is_family(part: GainDesign, family: Mapping[str, Any]) -> bool:
     world = World(0, part.plant.variable, part.plant.symbols.signs)
 
     def member(chosen: str) -> list[Fraction]:
-        table = world.value(gain.substitute({name: Scalar.of(int(name == chosen)) for name in names}))
+        """Return the entries of the member at a point, one parameter moved on by 1."""
+        point = {name: world.number(name) + int(name == chosen) for name in names}
+        table = world.value(gain.substitute({name: Scalar.of(value) for name, value in point.items()}))
         return [entry for row in table for entry in row]
 
     directions = [[x - y for x, y in zip(member(name), member(""), strict=True)] for name in names]

@@ -10,7 +10,7 @@ import sympy
 
 from symobs.exact import Scalar
 from symobs.formula import Literal, Negative, Power, Product, Quotient
-from tests.plain_fractions import Compared, World, single
+from tests.plain_fractions import Compared, World, is_matrix, single
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -83,12 +83,32 @@ def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str])
 
 
 def _ratio(new: list[Any], old: list[Any]) -> Any:
-    """Return by what the first are multiples of the second, the same at all points; None where they are not."""
+    """Return by what the first are multiples of the second, the same at all points; None where they are not.
+
+    The entries of a table may be multiples by different numbers, and the first of them is returned.
+    """
+    if is_matrix(new[0]) or is_matrix(old[0]):
+        return _ratio_of_tables(new, old)
     values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
     if any(a == 0 or b == 0 for a, b in values):
         return None
     ratios = [a / b for a, b in values]
     return None if any(ratio != ratios[0] for ratio in ratios) else ratios[0]
+
+
+def _ratio_of_tables(new: list[Any], old: list[Any]) -> Any:
+    left, right = ([_entries(table) for table in side] for side in (new, old))
+    if any(len(a) != len(b) for a, b in zip(left, right, strict=True)):
+        return None
+    found = []
+    for above, below in zip(zip(*left, strict=True), zip(*right, strict=True), strict=True):
+        if any(above) or any(below):
+            found.append(_ratio(list(above), list(below)))
+    return None if not found or None in found else found[0]
+
+
+def _entries(value: Any) -> list[Any]:
+    return [entry for row in value for entry in row] if is_matrix(value) else [single(value)]
 
 
 def _compares(operator: str, compared: list[Compared], signs: Mapping[str, str]) -> bool:

@@ -240,7 +240,9 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 def _assume(relation: Relation, environment: Environment) -> Environment:
     """Let the factors of a difference, which there must be, be different from 0 from here on."""
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
-    factors = [factor for factor, _ in (left - right).numerator.factors()[1]] or _reject(f"{left} != {right}")
+    if left == right:
+        _reject(plain_relation(relation, environment.variable))
+    factors = [factor for factor, _ in (left - right).numerator.factors()[1]]
     return replace(environment, assumed=(*environment.assumed, *factors))
 
 
