@@ -1,0 +1,106 @@
+"""What an expert would warn of beside a choice of observer poles; each warning is a sentence of the page as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from symobs.exact import Factored, Scalar, apply_polynomial, roots_of
+from symobs.exact.enclosure import is_number, sign_of_number
+from symobs.phrases import PHRASES
+from symobs.stability import no_stable_compensator
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.design.assignment import Pair
+    from symobs.design.pole_places import Zeros
+    from symobs.system import StateSpace
+
+#: Zero and pole are near each other where they differ by less than this part of the zero.
+_NEAR = 10
+#: A gain is huge where an entry is more than this many times the largest of A, and of 1.
+_HUGE = 100
+
+
+@dataclass(frozen=True)
+class Warning_:
+    """A phrase and what stands in its slots: values of the kernel."""
+
+    key: str
+    slots: tuple[tuple[str, Scalar], ...] = ()
+
+    def __str__(self) -> str:
+        return PHRASES[self.key].replace("$", "").format(**dict(self.slots))
+
+
+def warnings_of(
+    plant: StateSpace, zeros: Zeros, polynomial: Factored, pair: Pair, missed: Scalar
+) -> tuple[Warning_, ...]:
+    """Return the warnings: of zeros that are no places for poles, cancellations, the compensator, the gain, fixed modes."""
+    return tuple(
+        [
+            *_of_zeros(zeros, plant.variable),
+            *_of_cancellations(plant, zeros),
+            *_of_compensator(plant),
+            *_of_gain(plant, polynomial, pair),
+            *([] if missed.is_one else [Warning_("modes_missed", (("polynomial", missed),))]),
+        ]
+    )
+
+
+def _of_zeros(zeros: Zeros, variable: str) -> Iterator[Warning_]:
+    if zeros.unit.is_zero:
+        yield Warning_("no_response")
+    for factor, _, reason in zeros.unused:
+        if reason == "zero_at_origin":
+            yield Warning_(reason)
+        elif factor.degree(variable) == 1:
+            yield Warning_(reason, (("zero", -factor.coefficients(variable)[1]),))
+        else:
+            yield Warning_(f"{reason}s", (("polynomial", factor),))
+
+
+def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Warning_]:
+    """Compare the rational zeros with the rational poles."""
+    chi = plant.matrices.A.characteristic_polynomial(plant.variable)
+    if zeros.unit.is_zero or chi.names != {plant.variable}:
+        return
+    factors = [f for f, *_ in (*zeros.used, *zeros.unused)]
+    at = [root.centre for f in factors for root in roots_of(f, plant.variable) if _is_rational(root.centre, f, plant)]
+    poles = {root.centre for root in roots_of(chi, plant.variable) if root.factor.degree(plant.variable) == 1}
+    for zero in at:
+        for pole in sorted(poles, key=lambda p: p.fraction()):
+            if zero == pole:
+                yield Warning_("cancels", (("zero", zero),))
+            elif _NEAR * abs(zero.fraction() - pole.fraction()) < abs(zero.fraction()):
+                yield Warning_("nearly_cancels", (("zero", zero), ("pole", pole)))
+
+
+def _is_rational(centre: Scalar, factor: Scalar, plant: StateSpace) -> bool:
+    return centre.is_constant and factor.degree(plant.variable) == 1
+
+
+def _of_compensator(plant: StateSpace) -> Iterator[Warning_]:
+    """Warn where no compensator that is stable itself can stabilise the plant."""
+    from symobs.design.pole_advice import numerator_of  # noqa: PLC0415 - the two tell of each other
+
+    P = numerator_of(plant) / plant.matrices.A.characteristic_polynomial(plant.variable)
+    if P and no_stable_compensator(P, plant.variable, plant.symbols.signs):
+        yield Warning_("always_unstable")
+
+
+def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Warning_]:
+    """Warn of a gain with an entry far beyond those of the plant, where all are numbers."""
+    A = plant.matrices.A
+    if A.names or plant.matrices.C.names or not pair.is_observable:
+        return
+    factors = [factor for factor, power in polynomial.factors for _ in range(power)]
+    if any(not is_number(c) for factor in factors for c in factor.coefficients(plant.variable)):
+        return
+    gain = apply_polynomial(factors, plant.variable, A, pair.krylov.solve_last())
+    limit = _HUGE * max(1, *(abs(entry.fraction()) for entry in A.entries))
+    for entry in gain.entries:
+        if "positive" in (sign_of_number(entry - limit), sign_of_number(-entry - limit)):
+            yield Warning_("huge_gain", (("limit", Scalar.of(limit)),))
+            return
