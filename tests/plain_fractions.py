@@ -303,7 +303,12 @@ class World:
         """Return the world where a generator is a given number."""
         return replace(self, meanings={**self.meanings, name: instant})
 
-    def apply(self, function: str, table: Rows) -> Any:
+    def apply(self, function: str, table: Any) -> Any:
+        if function.endswith("_at") and is_number(table):
+            number = Fraction(0)
+            for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):
+                number = number * table + coefficient
+            return number
         if function.endswith("_at"):
             total = [[Fraction(0)] * len(table) for _ in table]
             for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):

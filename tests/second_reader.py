@@ -446,6 +446,8 @@ class Reader:
                 point = next(iter(self.samples()))
                 return sympy.Integer(value.subs(point).rank())
         polynomial = self.known[name] if name in self.known else self.letters[name.removesuffix("_at")]
+        if not isinstance(value, sympy.MatrixBase):
+            return polynomial.subs(self.symbol, value)
         return polynomial_at(polynomial, self.symbol, value)
 
     def rate(self, signal: dict[str, Value]) -> Value:

@@ -18,6 +18,7 @@ from symobs.formula import Literal
 from symobs.problem import read
 from tests.claims import Setting, conditions_hold
 from tests.claims_in_time import FUNCTIONS_OF_TIME
+from tests.claims_of_advice import advice_holds
 from tests.mutations import parts_of
 from tests.plain import (
     eliminated,
@@ -169,6 +170,9 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         F = subtract([row[1:] for row in unmeasured[1:]], multiply(L, [unmeasured[0][1:]]))
         assert answer["F"] == F
         return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": hidden}
+    if part.task == "pole_advice":
+        advice_holds(part, Setting.of(part.plant, {}, point))
+        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)}
     assert part.task == "compensator"
     if "F" not in answer:
         return {}

@@ -26,7 +26,7 @@ from symobs.stability import stability
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.design.pole_warnings import Warning_
+    from symobs.design.pole_warnings import Beware
     from symobs.specification import Name, Quantity
     from symobs.system import StateSpace
 
@@ -71,7 +71,7 @@ class PoleAdvice(Result):
             omega_d = sigma * pair_ratio(wish.overshoot) if count > 1 else None
             rest = dominated(count, sigma, omega_d, plant.variable)
         one = Scalar.of(1)
-        answer = {"zeros": zeros.polynomial, "sigma": sigma, "omega_d": omega_d}
+        answer: dict[str, Any] = {"zeros": zeros.polynomial, "sigma": sigma, "omega_d": omega_d}
         answer["rest"] = Factored(one, tuple((factor, 1) for factor in rest))
         answer["polynomial"] = Factored(one, (*zeros.used, *((factor, 1) for factor in rest)))
         return cls(plant, method_name, answer, wish)
@@ -101,7 +101,9 @@ class PoleAdvice(Result):
         z, r, s = (letter(name, e) for name in ("phi_z", "phi_r", "s"))
         yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
         yield Claim(relation(letter("phi_o", e), z @ r), e)
-        if self.wish.radius is not None:
+        if not self.count:
+            yield Claim(relation(r, 1), e)
+        elif self.wish.radius is not None:
             yield Claim(relation(r @ (-s).apply("phi_r_at"), self.circle), e, "phi_r(s) phi_r(-s) is Butterworth's")
         else:
             yield from self._claims_of_pair(e)
@@ -110,9 +112,10 @@ class PoleAdvice(Result):
     @property
     def circle(self) -> Scalar:
         """ω₀^{2N} + (−1)^N s^{2N}."""
-        radius = self.wish.radius
+        radius, count = self.wish.radius, self.count
         assert radius is not None  # noqa: S101 - asked only where there is one
-        return radius ** (2 * self.count) + (-1) ** self.count * Scalar.symbol(self.plant.variable) ** (2 * self.count)
+        power = Scalar.symbol(self.plant.variable) ** (2 * count)
+        return radius ** (2 * count) + (power if count % 2 == 0 else -power)
 
     def _hold_to_the_left(self, rest: Scalar) -> None:
         """Reject poles in the right half-plane: of zeros, and of φ_r in units of the radius."""
@@ -186,16 +189,16 @@ class PoleAdvice(Result):
         return (*own, Condition("claim", radius.numerator * radius.denominator, ">"))
 
     @cached_property
-    def poles(self) -> tuple[Complex | Root, ...]:
+    def places(self) -> tuple[Complex | Root, ...]:
         """All n poles, with multiplicity: the zeros first."""
         radius, sigma = self.wish.radius, self.answer["sigma"]
         if radius is not None:
-            return (*self.zeros_used, *poles_of(self.count, radius))
+            return (*self.places_used, *poles_of(self.count, radius))
         pair = pair_poles(self.count, sigma, self.answer["omega_d"])
-        return (*self.zeros_used, *pair, *(Complex.of(-place) for place in further_left(self.count, sigma)))
+        return (*self.places_used, *pair, *(Complex.of(-place) for place in further_left(self.count, sigma)))
 
     @cached_property
-    def zeros_used(self) -> tuple[Complex | Root, ...]:
+    def places_used(self) -> tuple[Complex | Root, ...]:
         """The zeros at which poles are put, with multiplicity."""
         return tuple(
             as_number(root)
@@ -205,15 +208,15 @@ class PoleAdvice(Result):
         )
 
     @cached_property
-    def cautions(self) -> tuple[Warning_, ...]:
+    def cautions(self) -> tuple[Beware, ...]:
         """What an expert would warn of."""
         return warnings_of(self.plant, self.zeros, self.answer["polynomial"], self.pair, self.missed)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The fields of the contract; σ and ω of the pair where there is one."""
-        found = {"poles": list(self.poles), "polynomial": self.answer["polynomial"]}
-        found |= {"zeros_used": list(self.zeros_used), "warnings": [str(warning) for warning in self.cautions]}
+        found = {"poles": list(self.places), "polynomial": self.answer["polynomial"]}
+        found |= {"zeros_used": list(self.places_used), "warnings": [str(warning) for warning in self.cautions]}
         if self.wish.radius is None:
             found |= {"sigma": self.answer["sigma"], "omega_d": self.answer["omega_d"]}
         return found
@@ -273,7 +276,10 @@ def on_a_circle(plant: StateSpace, wish: Wish) -> PoleAdvice:
 def with_a_pair(plant: StateSpace, wish: Wish) -> PoleAdvice:
     """Stable zeros that are fast enough, a pair for settling time and overshoot, the others further left."""
     if wish.settling_time is None:
-        message, repair = "dominant_pair needs settling_time and overshoot", 'give settling_time = 2, overshoot = "0.05"'
+        message, repair = (
+            "dominant_pair needs settling_time and overshoot",
+            'give settling_time = 2, overshoot = "0.05"',
+        )
         raise InputError(message, where="specification.settling_time", repair=repair)
     return PoleAdvice.of(plant, wish, "dominant_pair")
 
@@ -304,7 +310,9 @@ def pole_advice(
         raise InputError(message, where="plant", repair="keep one input and one output")
     if plant.is_discrete:
         message = "a Butterworth circle and a settling time 4/σ are of continuous time"
-        raise InputError(message, where="plant.dt", repair="leave dt out, or take observer with all poles at 0 (deadbeat)")
+        raise InputError(
+            message, where="plant.dt", repair="leave dt out, or take observer with all poles at 0 (deadbeat)"
+        )
     wish = _wish(plant, radius, settling_time, overshoot)
     plant = plant.knowing(radius)
     found: Result = choose("pole_advice", method, "dominant_pair" if wish.radius is None else "butterworth").solve(
@@ -318,7 +326,9 @@ def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: o
     where = "specification.radius"
     if radius is not None:
         if settling_time is not None or overshoot is not None:
-            raise InputError("a radius is given beside settling_time or overshoot", where=where, repair="keep one of them")
+            raise InputError(
+                "a radius is given beside settling_time or overshoot", where=where, repair="keep one of them"
+            )
         return Wish(read_quantity(radius, plant, "radius"))
     if settling_time is None or overshoot is None:
         message = "radius is missing" if settling_time is overshoot else "settling_time and overshoot belong together"

@@ -12,11 +12,12 @@ from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import function
 from symobs.formula import Literal, Power, Quotient, Roots, Sum
+from symobs.formula.term import product
 from symobs.page import Page, predicate, relation
 
 if TYPE_CHECKING:
     from symobs.design.pole_advice import PoleAdvice
-    from symobs.design.pole_warnings import Warning_
+    from symobs.design.pole_warnings import Beware
     from symobs.formula.term import Term
 
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
@@ -24,7 +25,10 @@ _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 
 def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
-    page.with_roots(advice.answer["zeros"], advice.answer["rest"].value)
+    written = [advice.answer["zeros"], advice.answer["rest"].value]
+    if advice.wish.radius is not None:
+        written += [twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count)]
+    page.with_roots(*written)
     given(page)
     with page.section("pole_advice"):
         _zeros(page, advice)
@@ -52,16 +56,22 @@ def _zeros(page: Page, advice: PoleAdvice) -> None:
     page.define(
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
     )
+    if not page.knows("P"):
+        chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
+        P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
+        page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)
     zeros = roots_of(b, plant.variable) if b.degree(plant.variable) > 0 else ()
     if not zeros and b:
         page.conclude("no_zeros", relation(page["b_P"], b))
     elif zeros and all(root.is_closed for root in zeros):
-        page.conclude("advice_zeros", roots=Roots(page["b_P"].inverse.formula, zeros))
+        page.conclude(
+            "advice_zeros" if len(zeros) > 1 else "advice_zero", roots=Roots(page["b_P"].inverse.formula, zeros)
+        )
     if advice.zeros.used:
         page.define("phi_z", _product(page, advice.zeros.used), say="zeros_taken", closing=False)
     else:
         page.set("phi_z", Scalar.of(1))
-        page.conclude("no_zeros_taken", relation(page["phi_z"], 1), count=_in_words(advice.count))
+        page.conclude("no_zeros_taken", relation(page["phi_z"], 1))
 
 
 def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
@@ -71,9 +81,11 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
         _nothing(page)
         return
     factors = advice.answer["rest"].factors
-    key = "one_on_circle" if count == 1 else "some_on_circle"
-    slots = {"radius": page.value(radius)} | ({} if count == 1 else {"count": _in_words(count)})
-    page.define("phi_r", _product(page, factors), say=key, closing=False, **slots)
+    whole, far = _product(page, factors), page.value(radius)
+    if count == 1:
+        page.define("phi_r", whole, say="one_on_circle", closing=False, radius=far)
+    else:
+        page.define("phi_r", whole, say="some_on_circle", closing=False, radius=far, count=_in_words(count))
     identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), advice.circle)
     if count == 1:
         page.conclude_silently(identity)
@@ -128,18 +140,18 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
 
 def _polynomial(page: Page, advice: PoleAdvice) -> None:
     """φ, boxed, and where the gain tends."""
-    whole = formula_of_factored(advice.answer["polynomial"])
-    members = [page["phi_z"] @ page["phi_r"], page.term(whole)]
-    page.define("phi_o", *members, say="advised_polynomial", answer=True, closing=False)
-    zeros, plant = advice.zeros, page.plant
-    if advice.wish.radius is None or zeros.unused or not zeros.used or plant.matrices.has_feedthrough:
+    zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
+    parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
+    page.define("phi_o", product(parts), page.term(whole), say="advised_polynomial", answer=True, closing=False)
+    if advice.wish.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
-    pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
-    tends = page["C"] @ pencil @ (page["B"] / zeros.unit if not zeros.unit.is_one else page["B"])
-    page.equal(relation(tends, page["phi_z"]), say="recovery", lead=page.value(zeros.unit))
+    if not plant.matrices.has_feedthrough:
+        pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
+        multiple = page["phi_z"] if zeros.unit.is_one else page.value(zeros.unit) @ page["phi_z"]
+        page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
 
 
-def _caution(page: Page, advice: PoleAdvice, warning: Warning_) -> None:
+def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
     """Say a warning, with what can be checked of it."""
     plant = page.plant
     slots = {name: page.value(value) for name, value in warning.slots}

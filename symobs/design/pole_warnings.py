@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact import Factored, Scalar, apply_polynomial, roots_of
@@ -24,7 +25,7 @@ _HUGE = 100
 
 
 @dataclass(frozen=True)
-class Warning_:
+class Beware:
     """A phrase and what stands in its slots: values of the kernel."""
 
     key: str
@@ -36,61 +37,59 @@ class Warning_:
 
 def warnings_of(
     plant: StateSpace, zeros: Zeros, polynomial: Factored, pair: Pair, missed: Scalar
-) -> tuple[Warning_, ...]:
+) -> tuple[Beware, ...]:
     """Return the warnings: of zeros that are no places for poles, cancellations, the compensator, the gain, fixed modes."""
-    return tuple(
-        [
-            *_of_zeros(zeros, plant.variable),
-            *_of_cancellations(plant, zeros),
-            *_of_compensator(plant),
-            *_of_gain(plant, polynomial, pair),
-            *([] if missed.is_one else [Warning_("modes_missed", (("polynomial", missed),))]),
-        ]
+    return (
+        *_of_zeros(zeros, plant.variable),
+        *_of_cancellations(plant, zeros),
+        *_of_compensator(plant),
+        *_of_gain(plant, polynomial, pair),
+        *([] if missed.is_one else [Beware("modes_missed", (("polynomial", missed),))]),
     )
 
 
-def _of_zeros(zeros: Zeros, variable: str) -> Iterator[Warning_]:
+def _of_zeros(zeros: Zeros, variable: str) -> Iterator[Beware]:
     if zeros.unit.is_zero:
-        yield Warning_("no_response")
+        yield Beware("no_response")
     for factor, _, reason in zeros.unused:
         if reason == "zero_at_origin":
-            yield Warning_(reason)
+            yield Beware(reason)
         elif factor.degree(variable) == 1:
-            yield Warning_(reason, (("zero", -factor.coefficients(variable)[1]),))
+            yield Beware(reason, (("zero", -factor.coefficients(variable)[1]),))
         else:
-            yield Warning_(f"{reason}s", (("polynomial", factor),))
+            yield Beware(f"{reason}s", (("polynomial", factor),))
 
 
-def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Warning_]:
+def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
     """Compare the rational zeros with the rational poles."""
     chi = plant.matrices.A.characteristic_polynomial(plant.variable)
     if zeros.unit.is_zero or chi.names != {plant.variable}:
         return
-    factors = [f for f, *_ in (*zeros.used, *zeros.unused)]
+    factors = [*(f for f, _ in zeros.used), *(f for f, _, _ in zeros.unused)]
     at = [root.centre for f in factors for root in roots_of(f, plant.variable) if _is_rational(root.centre, f, plant)]
     poles = {root.centre for root in roots_of(chi, plant.variable) if root.factor.degree(plant.variable) == 1}
     for zero in at:
         for pole in sorted(poles, key=lambda p: p.fraction()):
             if zero == pole:
-                yield Warning_("cancels", (("zero", zero),))
+                yield Beware("cancels", (("zero", zero),))
             elif _NEAR * abs(zero.fraction() - pole.fraction()) < abs(zero.fraction()):
-                yield Warning_("nearly_cancels", (("zero", zero), ("pole", pole)))
+                yield Beware("nearly_cancels", (("zero", zero), ("pole", pole)))
 
 
 def _is_rational(centre: Scalar, factor: Scalar, plant: StateSpace) -> bool:
     return centre.is_constant and factor.degree(plant.variable) == 1
 
 
-def _of_compensator(plant: StateSpace) -> Iterator[Warning_]:
+def _of_compensator(plant: StateSpace) -> Iterator[Beware]:
     """Warn where no compensator that is stable itself can stabilise the plant."""
     from symobs.design.pole_advice import numerator_of  # noqa: PLC0415 - the two tell of each other
 
     P = numerator_of(plant) / plant.matrices.A.characteristic_polynomial(plant.variable)
     if P and no_stable_compensator(P, plant.variable, plant.symbols.signs):
-        yield Warning_("always_unstable")
+        yield Beware("always_unstable")
 
 
-def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Warning_]:
+def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Beware]:
     """Warn of a gain with an entry far beyond those of the plant, where all are numbers."""
     A = plant.matrices.A
     if A.names or plant.matrices.C.names or not pair.is_observable:
@@ -99,8 +98,8 @@ def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Wa
     if any(not is_number(c) for factor in factors for c in factor.coefficients(plant.variable)):
         return
     gain = apply_polynomial(factors, plant.variable, A, pair.krylov.solve_last())
-    limit = _HUGE * max(1, *(abs(entry.fraction()) for entry in A.entries))
+    limit = _HUGE * max(Fraction(1), *(abs(entry.fraction()) for entry in A.entries))
     for entry in gain.entries:
         if "positive" in (sign_of_number(entry - limit), sign_of_number(-entry - limit)):
-            yield Warning_("huge_gain", (("limit", Scalar.of(limit)),))
+            yield Beware("huge_gain", (("limit", Scalar.of(limit)),))
             return

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "pole_advice": "Where to put the observer's poles.",
+    "pole_advice": "Zeros first.",
     "numerator_of_plant": "The zeros of the plant are the roots of the numerator",
+    "transfer_from_numerator": "of the transfer function",
     "advice_zeros": "They are {roots}.",
+    "advice_zero": "There is one, {roots}.",
     "no_zeros": "The plant has no finite zeros.",
     "zeros_taken": "The fastest observer is not the most robust one: its eigenvalues belong first at the stable zeros. Those used here are the roots of",
-    "no_zeros_taken": "No stable zero is there to be used, so {count} eigenvalues remain to be placed.",
+    "no_zeros_taken": "No stable zero is there to be used.",
     "none_remains": "They take all of the eigenvalues: none remains to be placed.",
     "one_on_circle": "One eigenvalue remains. It goes far to the left, to the distance {radius} from the origin:",
     "some_on_circle": "The remaining {count} eigenvalues go far to the left, all at the distance {radius} from the origin and spread evenly: to the "
@@ -22,8 +24,8 @@ PHRASES: dict[str, str] = {
     "little as asked for with",
     "pair_dominates": "The remaining {count} eigenvalues begin with this pair. The others, if any, lie at least {factor} times as far to the left:",
     "advised_polynomial": "So the polynomial of the observer is advised to be",
-    "recovery": "All zeros are used. As the radius grows the polynomial tends to a power of it times that of the zeros, and so the gain to a "
-    "multiple of $B$: with the plant's leading coefficient {lead},",
+    "recovery": "All zeros are used. For a large radius the polynomial is nearly that of the zeros times a power of the radius, and the gain nearly a "
+    "multiple of $B$, since",
     "no_response": "The transfer function is zero, so every number is a zero and none is a place for a pole.",
     "zero_at_origin": "The plant has a zero at 0. It is not used: an observer pole at 0 would keep its error for ever.",
     "zero_on_axis": "The zero {zero} lies on the imaginary axis and is not used: an error would not decay.",
@@ -52,7 +54,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {"always_unstable": ("no_stable_compensato
 #: Slots of warnings name a zero, a pole or a factor that the page shows as such.
 NAMING = (
     *(key for key in PHRASES if key.startswith("zero_")),
-    *("cancels", "nearly_cancels", "huge_gain", "one_on_circle", "some_on_circle", "rate_from_settling", "recovery"),
+    *("cancels", "nearly_cancels", "huge_gain", "one_on_circle", "some_on_circle", "rate_from_settling"),
 )
 
 RESTS_ON: dict[str, str] = {"zeros_taken": "zeros_first", "some_on_circle": "butterworth"}
