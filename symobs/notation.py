@@ -92,6 +92,8 @@ LETTERS: dict[str, LetterForm] = {
     "phi_r": LetterForm(r"\varphi_{\mathrm r}({v})", "φ_r({v})", "polynomial of the remaining poles"),
     "sigma_d": LetterForm(r"\sigma", "σ", "distance of a dominant pair from the imaginary axis"),
     "omega_d": LetterForm(r"\omega_{\mathrm d}", "ω_d", "imaginary part of a dominant pair"),
+    "T_s": LetterForm(r"T_{\mathrm s}", "T_s", "settling time"),
+    "M_p": LetterForm(r"M_{\mathrm p}", "M_p", "overshoot"),
     "b_P": LetterForm("b({v})", "b({v})", "numerator of the plant"),
     "F": LetterForm("F({v})", "F({v})", "compensator"),
     "T": LetterForm("T", "T", "change of coordinates"),
@@ -184,6 +186,7 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
     "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
     "phi_r_at": (r"\varphi_{\mathrm r}", "φ_r"),
+    "b_P_at": ("b", "b"),
 }
 
 OPERATORS: dict[str, tuple[str, str]] = {

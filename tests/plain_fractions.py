@@ -305,10 +305,7 @@ class World:
 
     def apply(self, function: str, table: Any) -> Any:
         if function.endswith("_at") and is_number(table):
-            number = Fraction(0)
-            for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):
-                number = number * table + coefficient
-            return number
+            return single(self.at(self.variable, table).value(Letter(function.removesuffix("_at"))))
         if function.endswith("_at"):
             total = [[Fraction(0)] * len(table) for _ in table]
             for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):

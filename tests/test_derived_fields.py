@@ -64,7 +64,7 @@ def parts(*tasks: str) -> list[ParameterSet]:
 
 def points(part: Result, count: int) -> Iterator[Point]:
     """Yield values for every name, small ones with the declared signs, at which the answer exists."""
-    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix, Factored))]
     names = {part.plant.variable, *part.plant.field.names}.union(*(value.names for value in values))
     for seed in range(count):
         draw = seeded((seed, part.task))

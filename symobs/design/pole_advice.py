@@ -73,7 +73,10 @@ class PoleAdvice(Result):
         one = Scalar.of(1)
         answer: dict[str, Any] = {"zeros": zeros.polynomial, "sigma": sigma, "omega_d": omega_d}
         answer["rest"] = Factored(one, tuple((factor, 1) for factor in rest))
-        answer["polynomial"] = Factored(one, (*zeros.used, *((factor, 1) for factor in rest)))
+        together = dict(zeros.used)
+        for factor in rest:
+            together[factor] = together.get(factor, 0) + 1
+        answer["polynomial"] = Factored(one, tuple(together.items()))
         return cls(plant, method_name, answer, wish)
 
     @cached_property

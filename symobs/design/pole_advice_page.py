@@ -6,18 +6,20 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
+from symobs.derivation import Given
 from symobs.design.pole_advice import FURTHER_LEFT, numerator_of, numerator_term
 from symobs.design.pole_places import overshoot_of
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import function
-from symobs.formula import Literal, Power, Quotient, Roots, Sum
+from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product
-from symobs.page import Page, predicate, relation
+from symobs.page import Page, predicate, relation, sentence
 
 if TYPE_CHECKING:
     from symobs.design.pole_advice import PoleAdvice
     from symobs.design.pole_warnings import Beware
+    from symobs.formula import Relation
     from symobs.formula.term import Term
 
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
@@ -25,11 +27,13 @@ _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 
 def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
-    written = [advice.answer["zeros"], advice.answer["rest"].value]
+    written = [advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value]
     if advice.wish.radius is not None:
         written += [twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count)]
     page.with_roots(*written)
     given(page)
+    if advice.wish.radius is None:
+        _asked(page, advice)
     with page.section("pole_advice"):
         _zeros(page, advice)
         if advice.wish.radius is not None:
@@ -39,6 +43,15 @@ def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
         _polynomial(page, advice)
         for warning in advice.cautions:
             _caution(page, advice, warning)
+
+
+def _asked(page: Page, advice: PoleAdvice) -> None:
+    """State settling time and overshoot."""
+    time, overshoot = advice.wish.settling_time, advice.wish.overshoot
+    assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+    data = [relation(page["T_s"], time), relation(page["M_p"], overshoot)]
+    page.steps.append(Given(tuple(data), sentence("step_asked_for", {})))
+    page.environment = page.environment.having(values={"T_s": time, "M_p": overshoot})
 
 
 def _in_words(count: int) -> str:
@@ -81,11 +94,11 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
         _nothing(page)
         return
     factors = advice.answer["rest"].factors
-    whole, far = _product(page, factors), page.value(radius)
+    whole = _product(page, factors)
     if count == 1:
-        page.define("phi_r", whole, say="one_on_circle", closing=False, radius=far)
+        page.define("phi_r", whole, say="one_on_circle", closing=False)
     else:
-        page.define("phi_r", whole, say="some_on_circle", closing=False, radius=far, count=_in_words(count))
+        page.define("phi_r", whole, say="some_on_circle", closing=False, count=_in_words(count))
     identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), advice.circle)
     if count == 1:
         page.conclude_silently(identity)
@@ -109,8 +122,7 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     answer, wish, count = advice.answer, advice.wish, advice.count
     assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     sigma, omega_d, time = answer["sigma"], answer["omega_d"], wish.settling_time
-    quotient = page.term(Quotient(Literal(Scalar.of(4)), Literal(time)))
-    page.define("sigma_d", quotient, say="rate_from_settling", time=page.value(time))
+    page.define("sigma_d", page.value(4) / page["T_s"], say="rate_from_settling")
     page.conclude("decayed", bound=relation(function("exp", -sigma * time), "<=", Scalar.of(1) / 50))
     if not count:
         _nothing(page)
@@ -119,7 +131,7 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     if omega_d is None:
         page.define("phi_r", _product(page, factors), say="one_from_settling", closing=False)
         return
-    bound = relation(overshoot_of(omega_d / sigma), "<=", wish.overshoot)
+    bound = relation(overshoot_of(omega_d / sigma), "<=", page["M_p"])
     page.define("omega_d", page.value(omega_d), say="overshoot_held", bound=bound)
     s = page.s
     first = (s + page["sigma_d"]) ** 2 + page["omega_d"] ** 2
@@ -153,15 +165,30 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
 
 def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
     """Say a warning, with what can be checked of it."""
-    plant = page.plant
-    slots = {name: page.value(value) for name, value in warning.slots}
+    slots, n = dict(warning.slots), page.plant.order
     if warning.key == "always_unstable":
-        chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
-        page.caution(warning.key, predicate("no_stable_compensator", page["b_P"] / chi), **slots)
+        chi = (page.s @ page.identity(n) - page["A"]).apply("det")
+        page.caution(warning.key, predicate("no_stable_compensator", page["b_P"] / chi))
     elif warning.key == "modes_missed":
         page.set("N", advice.pair.kernel)
         page.set("X", advice.pair.restricted)
         unseen = hidden_polynomial(page, advice.pair.kernel.shape[1])
         page.caution(warning.key, *hidden(page, True), polynomial=relation(unseen, advice.missed))  # noqa: FBT003
-    else:
-        page.caution(warning.key, **slots)
+    elif warning.key == "huge_gain":
+        page.caution(warning.key, limit=str(slots["limit"]))
+    elif "pole" in slots:
+        root = (page.value(slots["pole"]) @ page.identity(n) - page["A"]).apply("det")
+        page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]), pole=relation(root, 0))
+    elif "zero" in slots:
+        page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]))
+    elif warning.key == "no_response":
+        page.caution(warning.key, relation(page["b_P"], 0))
+
+
+def _vanishing(page: Page, advice: PoleAdvice, factor: Scalar) -> Relation:
+    """Return b(z) = 0 for the root z of a linear factor, b(s) = factor · rest for another."""
+    variable = page.plant.variable
+    if factor.degree(variable) == 1:
+        return relation(page.value(-factor.coefficients(variable)[1]).apply("b_P_at"), 0)
+    rest = advice.zeros.others * advice.zeros.polynomial / factor
+    return relation(page["b_P"], factor if rest.is_one else page.value(factor) @ page.value(rest))

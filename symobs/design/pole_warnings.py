@@ -26,13 +26,21 @@ _HUGE = 100
 
 @dataclass(frozen=True)
 class Beware:
-    """A phrase and what stands in its slots: values of the kernel."""
+    """A phrase with what stands in its slots: a factor of the numerator, a pole of the plant, a number."""
 
     key: str
     slots: tuple[tuple[str, Scalar], ...] = ()
+    variable: str = "s"
 
     def __str__(self) -> str:
-        return PHRASES[self.key].replace("$", "").format(**dict(self.slots))
+        return PHRASES[self.key].replace("$", "").format(**{name: self._text(name, v) for name, v in self.slots})
+
+    def _text(self, name: str, value: Scalar) -> str:
+        if name == "pole":
+            return f"{self.variable} = {value}"
+        if name == "zero" and value.degree(self.variable) == 1:
+            return f"{self.variable} = {-value.coefficients(self.variable)[1]}"
+        return f"{value} = 0" if name == "zero" else str(value)
 
 
 def warnings_of(
@@ -52,12 +60,8 @@ def _of_zeros(zeros: Zeros, variable: str) -> Iterator[Beware]:
     if zeros.unit.is_zero:
         yield Beware("no_response")
     for factor, _, reason in zeros.unused:
-        if reason == "zero_at_origin":
-            yield Beware(reason)
-        elif factor.degree(variable) == 1:
-            yield Beware(reason, (("zero", -factor.coefficients(variable)[1]),))
-        else:
-            yield Beware(f"{reason}s", (("polynomial", factor),))
+        alone = reason == "zero_at_origin" or factor.degree(variable) == 1
+        yield Beware(reason if alone else f"{reason}s", (("zero", factor),), variable)
 
 
 def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
@@ -66,18 +70,16 @@ def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
     if zeros.unit.is_zero or chi.names != {plant.variable}:
         return
     factors = [*(f for f, _ in zeros.used), *(f for f, _, _ in zeros.unused)]
-    at = [root.centre for f in factors for root in roots_of(f, plant.variable) if _is_rational(root.centre, f, plant)]
     poles = {root.centre for root in roots_of(chi, plant.variable) if root.factor.degree(plant.variable) == 1}
-    for zero in at:
+    for factor in factors:
+        zero = -factor.coefficients(plant.variable)[1]
+        if factor.degree(plant.variable) != 1 or not zero.is_constant:
+            continue
         for pole in sorted(poles, key=lambda p: p.fraction()):
-            if zero == pole:
-                yield Beware("cancels", (("zero", zero),))
-            elif _NEAR * abs(zero.fraction() - pole.fraction()) < abs(zero.fraction()):
-                yield Beware("nearly_cancels", (("zero", zero), ("pole", pole)))
-
-
-def _is_rational(centre: Scalar, factor: Scalar, plant: StateSpace) -> bool:
-    return centre.is_constant and factor.degree(plant.variable) == 1
+            distance = abs(zero.fraction() - pole.fraction())
+            if _NEAR * distance < abs(zero.fraction()) or not distance:
+                key = "nearly_cancels" if distance else "cancels"
+                yield Beware(key, (("zero", factor), ("pole", pole)), plant.variable)
 
 
 def _of_compensator(plant: StateSpace) -> Iterator[Beware]:

@@ -340,6 +340,7 @@ def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
 
 def _polynomial_at(polynomial: object, value: Any, environment: Environment, arithmetic: Arithmetic) -> Any:
     """Return the polynomial of the variable at a square matrix or a scalar, by Horner's rule."""
+    polynomial = polynomial[0, 0] if isinstance(polynomial, Matrix) else polynomial
     assert isinstance(polynomial, Scalar)  # noqa: S101 - an invariant of the letters φ
     shape = arithmetic.shape(value)
     if shape is None:
