@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.functions import known
+from symobs.exact.functions import PI, known
 from symobs.formula import (
     Apply,
     At,
@@ -210,6 +210,8 @@ class World:
         function = known(name)
         if function is not None:
             return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
+        if name == PI:
+            return series.Series.make([+series.CONTEXT.pi])
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)

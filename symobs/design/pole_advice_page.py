@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
 from symobs.derivation import Given
 from symobs.design.pole_advice import FURTHER_LEFT, numerator_of, numerator_term
-from symobs.design.pole_places import overshoot_of
+from symobs.design.pole_places import overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import function
@@ -133,6 +133,8 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
         return
     bound = relation(overshoot_of(omega_d / sigma), "<=", page["M_p"])
     page.define("omega_d", page.value(omega_d), say="overshoot_held", bound=bound)
+    more = overshoot_of(omega_d / sigma + third_digit((omega_d / sigma).fraction()))
+    page.conclude("overshoot_close", more=relation(more, ">", page["M_p"]))
     s = page.s
     first = (s + page["sigma_d"]) ** 2 + page["omega_d"] ** 2
     others = [s + page.value(k) @ page["sigma_d"] for k in range(FURTHER_LEFT, FURTHER_LEFT + count - 2)]

@@ -114,12 +114,16 @@ def pair_ratio(overshoot: Scalar) -> Scalar:
 
     With ω = qσ the overshoot exp(−πσ/ω) is at most M.
     """
-    found = pi / -log(overshoot.fraction())
-    unit = Fraction(10) ** (floor(log10(found)) - 2)
-    steps = floor(found / unit)
+    unit = third_digit(pi / -log(overshoot.fraction()))
+    steps = floor(pi / -log(overshoot.fraction()) / unit)
     while sign_of(overshoot - overshoot_of(Scalar.of(steps * unit)), {}) != "positive":
         steps -= 1
     return Scalar.of(steps * unit)
+
+
+def third_digit(value: float | Fraction) -> Fraction:
+    """Return what one unit in the third digit of a positive number is worth."""
+    return Fraction(10) ** (floor(log10(value)) - 2)
 
 
 def overshoot_of(ratio: Scalar) -> Scalar:

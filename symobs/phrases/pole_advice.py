@@ -22,6 +22,7 @@ PHRASES: dict[str, str] = {
     "decayed": "since {bound}.",
     "one_from_settling": "One eigenvalue remains, and a real one has no overshoot:",
     "overshoot_held": "The step response of a pair of poles with real part $-sigma_d$ and imaginary part $omega_d$ overshoots by {bound} with",
+    "overshoot_close": "With the third digit of the ratio of $omega_d$ to $sigma_d$ one higher it would be {more}.",
     "pair_dominates": "The remaining {count} eigenvalues begin with this pair. Any others lie at least {factor} times as far to the left:",
     "advised_polynomial": "So the polynomial of the observer is advised to be",
     "recovery": "All zeros are used. For a large radius the polynomial is nearly that of the zeros times a power of the radius, and the gain nearly a "
