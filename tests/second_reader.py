@@ -95,6 +95,8 @@ def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
 def sympy_generator(name: str, names: Mapping[str, Any]) -> Any:
     """Return what a generator means: a function of time by its name, any other what `names` says, else a symbol."""
     function = function_named(name)
+    if name == "pi":
+        return sympy.pi
     if function is None:
         return names.get(name, sympy.Symbol(name))
     return getattr(sympy, function.kind)(sympy_scalar(function.argument, names))
