@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.functions import PI
+from symobs.exact.enclosure import sign_of_number
+from symobs.exact.functions import PI, known
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -78,12 +79,20 @@ def _power_sign(sign: str, exponent: int) -> str:
     return "positive" if sign in {"positive", "negative", "nonzero"} else "nonnegative"
 
 
+def _sign_of_undeclared(name: str) -> str:
+    """Return the sign of a generator that is no parameter: of π, and of the square root of a number."""
+    found = known(name)
+    if found is None:
+        return "positive" if name == PI else "real"
+    return "positive" if found.kind == "sqrt" and sign_of_number(found.argument) == "positive" else "real"
+
+
 def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     total = "zero"
     for coefficient, powers in polynomial.each_term():
         sign = "positive" if coefficient > 0 else "negative"
         for name, exponent in powers:
-            sign = _product_sign(sign, _power_sign(signs.get(name, "positive" if name == PI else "real"), exponent))
+            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break
@@ -103,7 +112,9 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     unit, factors = value.factors()
     sign = "positive" if unit.fraction() > 0 else "negative"
     for factor, power in factors:
-        sign = _product_sign(sign, _power_sign(_sum_of_terms(factor, signs), power))
+        of_factor = _sum_of_terms(factor, signs)
+        of_factor = sign_of_number(factor) if of_factor == "real" else of_factor
+        sign = _product_sign(sign, _power_sign(of_factor, power))
     return whole if sign == "real" else sign
 
 

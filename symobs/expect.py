@@ -11,7 +11,7 @@ from symobs.certificate import verify
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank, root_of_pole
-from symobs.exact.functions import identities
+from symobs.exact.functions import identities, roots_in
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
 from symobs.formula import Environment, Literal, Relation
@@ -168,6 +168,8 @@ def met(result: Result, name: str, expected: Any, where: str) -> bool:
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
+        if roots_in(value):
+            return functions_agree(parse_scalar(expected, names, variable=free, where=where, functions=True), value)
         return parse_scalar(expected, names, variable=free, where=where) == value
     if isinstance(found, int) and not isinstance(found, bool):
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
@@ -191,6 +193,8 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return not found and not expected
     if all(isinstance(entry, Root) for entry in found):
         return Counter(map(_key, found)) == Counter(map(_key, _roots(expected, names, variable, where)))
+    if all(isinstance(entry, (Complex, Root)) for entry in found):
+        return _numbers_agree(found, expected, names, where)
     if all(isinstance(entry, (Condition, str)) for entry in found):
         return {_relation(entry, names, where) for entry in expected} == {
             _relation(str(entry), names, where) for entry in found
@@ -298,6 +302,25 @@ def _in_powers(value: Scalar, q: str, text: str, where: str) -> tuple[Scalar, Sc
 
 def _no_surd(text: str, where: str) -> InputError:
     return InputError(f'"{shown(text)}" is not of the form a + b sqrt(c)', where=where, repair="leave it out")
+
+
+def _numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str) -> bool:
+    """Tell whether complex numbers with square roots, and roots without a form, are those expected, each once."""
+    waiting = list(found)
+    for i, entry in enumerate(expected):
+        counted = isinstance(entry, str) and "CRootOf" in entry
+        read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True)
+        match = next((n for n in waiting if (str(n) == entry if counted else _is_number(n, read[0]))), None)
+        if match is None:
+            return False
+        waiting.remove(match)
+    return not waiting
+
+
+def _is_number(found: Complex | Root, expected: Complex) -> bool:
+    if isinstance(found, Root):
+        return False
+    return functions_agree(found.real, expected.real) and functions_agree(found.imaginary, expected.imaginary)
 
 
 # -- modes ----------------------------------------------------------------------------------------------------------

@@ -88,6 +88,13 @@ LETTERS: dict[str, LetterForm] = {
     "phi": LetterForm(r"\varphi({v})", "φ({v})", "desired polynomial"),
     "phi_c": LetterForm(r"\varphi_{\mathrm c}({v})", "φ_c({v})", "desired control polynomial"),
     "phi_o": LetterForm(r"\varphi_{\mathrm o}({v})", "φ_o({v})", "desired observer polynomial"),
+    "phi_z": LetterForm(r"\varphi_{\mathrm z}({v})", "φ_z({v})", "polynomial of the stable zeros"),
+    "phi_r": LetterForm(r"\varphi_{\mathrm r}({v})", "φ_r({v})", "polynomial of the remaining poles"),
+    "sigma_d": LetterForm(r"\sigma", "σ", "distance of a dominant pair from the imaginary axis"),
+    "omega_d": LetterForm(r"\omega_{\mathrm d}", "ω_d", "imaginary part of a dominant pair"),
+    "T_s": LetterForm(r"T_{\mathrm s}", "T_s", "settling time"),
+    "M_p": LetterForm(r"M_{\mathrm p}", "M_p", "overshoot"),
+    "b_P": LetterForm("b({v})", "b({v})", "numerator of the plant"),
     "F": LetterForm("F({v})", "F({v})", "compensator"),
     "T": LetterForm("T", "T", "change of coordinates"),
     "R": LetterForm("R", "R", "rows that complete the output matrix"),
@@ -189,6 +196,8 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "phi_at": (r"\varphi", "φ"),
     "phi_c_at": (r"\varphi_{\mathrm c}", "φ_c"),
     "phi_o_at": (r"\varphi_{\mathrm o}", "φ_o"),
+    "phi_r_at": (r"\varphi_{\mathrm r}", "φ_r"),
+    "b_P_at": ("b", "b"),
 }
 
 OPERATORS: dict[str, tuple[str, str]] = {
@@ -332,6 +341,8 @@ THEOREMS: dict[str, Theorem] = {
     "existence": Theorem("existence of an asymptotic observer", "S4"),
     "tracking": Theorem("tracking of a reference", "S2"),
     "feedforward": Theorem("feedforward for unit gain at rest", "S3, section G and (12)"),
+    "zeros_first": Theorem("observer eigenvalues at the plant's zeros", "S3, section F"),
+    "butterworth": Theorem("Butterworth configuration", "W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532-533"),
     "minimal_order": Theorem("compensator with a minimal-order observer", "S0, section 4.6"),
     "separation": Theorem("separation principle", "S0, (4.23)-(4.24)"),
     "compensator": Theorem("compensator in transfer form", "S0, (4.25)"),

@@ -119,6 +119,11 @@ class Page:
         self.steps: list[Step] = []
         self.forms: dict[str, str] = {}
 
+    def with_roots(self, *values: Scalar | Matrix) -> None:
+        """Let the page speak of these square roots: that each squared is its radicand is known from the start."""
+        vanishing = identities(values)[1]
+        self.start, self.environment = self.start.under(vanishing), self.environment.under(vanishing)
+
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these functions of time: how they depend on each other is known from the start."""
         meanings, vanishing = identities(values)

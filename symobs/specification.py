@@ -31,6 +31,7 @@ TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
 Intensity: TypeAlias = Annotated[Any, "Intensity"]
 Sign: TypeAlias = Annotated[Any, "Sign"]
 Entries: TypeAlias = Annotated[Any, "Entries"]
+Quantity: TypeAlias = Annotated[Any, "Quantity"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -58,6 +59,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "description": 'entries of a matrix: (row, column) counted from 1, "(1, 2), (3, 1)", or a pattern, "[* 0; * *]"',
         "oneOf": [{"type": "string"}, {"type": "array"}],
     },
+    "Quantity": {"description": 'a positive quantity: "omega_0", 10, "1/2"', "type": ["string", "number"]},
     "Sign": {"description": "1 or -1", "enum": [1, -1]},
     "Name": {"description": "a name", "type": "string"},
     "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
@@ -222,6 +224,19 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
     return gain
+
+
+def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
+    """Return a real quantity free of the variable; raises `InputError` where it is surely not positive."""
+    where = f"specification.{name}"
+    quantity = read_scalar(value, plant.symbols.seen(value), where)
+    if plant.variable in quantity.names:
+        message = f"{name} contains {plant.variable}, the variable of the polynomials"
+        raise InputError(message, where=where, repair="write another name")
+    if sign_of(quantity, plant.symbols.signs) in {"zero", "negative", "nonpositive"}:
+        message = f"{name} is {quantity}, which is not positive"
+        raise InputError(message, where=where, repair=f"give a positive {name}")
+    return quantity
 
 
 def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:

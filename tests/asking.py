@@ -20,7 +20,10 @@ FEWER = {
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
 OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
 #: Methods that answer another question than the other methods of their task.
-OTHER_QUESTIONS = {"compensator/minimal_order"}
+OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
+#: Which of a task's keywords for quantities are asked for, and with what: not all of them go together.
+QUANTITIES = {"pole_advice/dominant_pair": {"settling_time": "2", "overshoot": "1/20"}}
+QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}
 
 
 def fewer(asked: str, keyword: str) -> int:
@@ -34,7 +37,8 @@ def specification(asked: str, poles: Any) -> dict[str, Any]:
     values = {"Poles": poles, "TimeFunctions": "0", "Intensity": "1"}
     kinds = tasks()[asked.partition("/")[0]].keywords.items()
     given = {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
-    return {name: factors(asked, name, value) if value is poles and poles else value for name, value in given.items()}
+    asked_for = {name: factors(asked, name, v) if v is poles and poles else v for name, v in given.items()}
+    return asked_for | QUANTITIES.get(asked, {})
 
 
 def factors(asked: str, keyword: str, listed: Sequence[Any]) -> Sequence[Any]:

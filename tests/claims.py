@@ -10,6 +10,7 @@ from symobs.exact import Factored, Matrix, Scalar
 from symobs.expression import parse_polynomial
 from symobs.specification import read_poles
 from tests.claims_in_time import FUNCTIONS_OF_TIME
+from tests.claims_of_advice import advice_holds
 from tests.claims_of_modes import MODES
 from tests.plain import (
     Point,
@@ -411,6 +412,7 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "characteristic_polynomial": polynomial_holds,
     "transfer_function": transfer_holds,
     "reduced_order_observer": reduced_order_holds,
+    "pole_advice": advice_holds,
     **FUNCTIONS_OF_TIME,
     **MODES,
 }

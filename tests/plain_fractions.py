@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.functions import known
+from symobs.exact.functions import PI, known
 from symobs.exact.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -214,6 +214,8 @@ class World:
             return series.root_sum(q, function.power, self.scalar(function.argument))  # type: ignore[no-any-return]
         if function is not None:
             return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
+        if name == PI:
+            return series.Series.make([+series.CONTEXT.pi])
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)
@@ -307,7 +309,9 @@ class World:
         """Return the world where a generator is a given number."""
         return replace(self, meanings={**self.meanings, name: instant})
 
-    def apply(self, function: str, table: Rows) -> Any:
+    def apply(self, function: str, table: Any) -> Any:
+        if function.endswith("_at") and is_number(table):
+            return single(self.at(self.variable, table).value(Letter(function.removesuffix("_at"))))
         if function.endswith("_at"):
             total = [[Fraction(0)] * len(table) for _ in table]
             for coefficient in reversed(self.coefficients(self.letters[function.removesuffix("_at")])):

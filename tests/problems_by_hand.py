@@ -171,6 +171,17 @@ p1, p2, p3, p4, q1, q2, q3, q4 = symbols("p1:5 q1:5")
 
 
 @dataclass(frozen=True)
+class Advice:
+    """Where poles are put by hand: the polynomials of the zeros used and of the rest; with a pair what was asked for."""
+
+    zeros: Any
+    rest: Any
+    settling_time: Any = None
+    overshoot: Any = None
+    omega_d: Any = None
+
+
+@dataclass(frozen=True)
 class Hand:
     """One worked example by hand: the plant, and the polynomials or gains its specification asks for."""
 
@@ -188,6 +199,7 @@ class Hand:
     sign: int = 1
     follows: bool = False
     shrunk: int = 1  # by what sample points are divided
+    advice: Advice | None = None
 
     @property
     def discrete(self) -> bool:
@@ -278,6 +290,17 @@ class Hand:
         return Matrix([[self.A, -BK], [LC, self.A - BK - LC]])
 
 
+def canonical(numerator: Any, denominator: Any) -> dict[str, Any]:
+    """Return the controllable canonical form of a strictly proper function with a monic denominator."""
+    above, below = (sympy.Poly(sympy.expand(part), s).all_coeffs() for part in (numerator, denominator))
+    order = len(below) - 1
+    A = sympy.zeros(order, order)
+    A[:-1, 1:] = sympy.eye(order - 1)
+    A[-1, :] = sympy.Matrix([[-c for c in reversed(below[1:])]])
+    ascending = [*reversed(above), *([0] * (order - len(above)))]
+    return {"A": A, "B": sympy.eye(order)[:, -1], "C": sympy.Matrix([ascending])}
+
+
 third_order = {"A": Matrix([[-7, 1, 15], [-2, 0, 5], [-2, 0, 4]]), "B": Matrix([65, -5, 30]), "C": Matrix([[1, 0, -2]])}
 servo = {"A": Matrix([[0, 1], [0, -1]]), "B": Matrix([0, 1]), "C": Matrix([[1, 0]])}
 mass = {"A": Matrix([[0, 1], [0, 0]]), "B": Matrix([0, 1]), "C": Matrix([[1, 0]])}
@@ -326,6 +349,33 @@ PROBLEMS = {
     "third_order_matching": Hand(**third_order, observer=(s + 5) * (s + 6) * (s + 7)),
     "third_order_at_zeros": Hand(
         **third_order, observer=(s + 2) * (s + 3) * (s + omega_0), signs={"omega_0": "positive"}
+    ),
+    "third_order_pole_advice": Hand(
+        **third_order, advice=Advice((s + 2) * (s + 3), s + omega_0), signs={"omega_0": "positive"}
+    ),
+    "butterworth_pole_advice": Hand(
+        **canonical(s + 2, s * (s + 1) * (s + 4)),
+        advice=Advice(s + 2, s**2 + sympy.sqrt(2) * omega_0 * s + omega_0**2),
+        signs={"omega_0": "positive"},
+    ),
+    "four_on_a_circle_pole_advice": Hand(
+        **canonical(s - 1, s**4),
+        advice=Advice(
+            sympy.Integer(1),
+            (s**2 + 2 * sympy.sin(sympy.pi / 8).rewrite(sympy.sqrt) * omega_0 * s + omega_0**2)
+            * (s**2 + 2 * sympy.cos(sympy.pi / 8).rewrite(sympy.sqrt) * omega_0 * s + omega_0**2),
+        ),
+        signs={"omega_0": "positive"},
+    ),
+    "dominant_pair_pole_advice": Hand(
+        **canonical((s + 1) * (s + 10), s**2 * (s**2 + 4) * (s + 3)),
+        advice=Advice(
+            s + 10,
+            ((s + 2) ** 2 + Rational(52, 25) ** 2) * (s + 10) * (s + 12),
+            settling_time=sympy.Integer(2),
+            overshoot=Rational(1, 20),
+            omega_d=2 * sympy.floor(100 * sympy.pi / sympy.log(20)) / 100,
+        ),
     ),
     "double_integrator_companion": Hand(**mass, observer=(s + 1) * (s + 2)),
     "double_integrator_pole_placement": Hand(

@@ -95,6 +95,8 @@ def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
 def sympy_generator(name: str, names: Mapping[str, Any]) -> Any:
     """Return what a generator means: a function of time by its name, any other what `names` says, else a symbol."""
     function = function_named(name)
+    if name == "pi":
+        return sympy.pi
     if function is None:
         return names.get(name, sympy.Symbol(name))
     return getattr(sympy, function.kind)(sympy_scalar(function.argument, names))
@@ -464,6 +466,8 @@ class Reader:
                 point = next(iter(self.samples()))
                 return sympy.Integer(value.subs(point).rank())
         polynomial = self.known[name] if name in self.known else self.letters[name.removesuffix("_at")]
+        if not isinstance(value, sympy.MatrixBase):
+            return polynomial.subs(self.symbol, value)
         return polynomial_at(polynomial, self.symbol, value)
 
     def rate(self, signal: dict[str, Value]) -> Value:

@@ -18,6 +18,7 @@ from symobs.formula import Literal
 from symobs.problem import read
 from tests.claims import Setting, conditions_hold
 from tests.claims_in_time import FUNCTIONS_OF_TIME
+from tests.claims_of_advice import advice_holds
 from tests.mutations import parts_of
 from tests.plain import (
     at_number,
@@ -64,7 +65,7 @@ def parts(*tasks: str) -> list[ParameterSet]:
 
 def points(part: Result, count: int) -> Iterator[Point]:
     """Yield values for every name, small ones with the declared signs, at which the answer exists."""
-    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix, Factored))]
     names = {part.plant.variable, *part.plant.field.names}.union(*(value.names for value in values))
     for seed in range(count):
         draw = seeded((seed, part.task))
@@ -168,6 +169,9 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": fixed}
     if part.task in {"feedforward", "tracking"}:
         return errors_of(part, point, A, B, C, s)
+    if part.task == "pole_advice":
+        advice_holds(part, Setting.of(part.plant, {}, point))
+        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)}
     assert part.task == "compensator"
     if "F" not in answer:
         return {}

@@ -97,20 +97,10 @@ def known_letters(hand: Hand) -> dict[str, Any]:
             known |= {f"{stem}{k}": coefficients[k] for k in range(1, len(coefficients))}
     if B is not None and C is not None:
         known["P"] = hand.plant_transfer
+    if hand.advice is not None:
+        known |= advised_letters(hand)
     if "K" in known and "L" in known:
-        known |= {
-            "A_c": hand.compensator_matrix,
-            "F": hand.compensator,
-            "A_cl": hand.loop_matrix,
-            "G_cl": hand.loop,
-            "G_r": hand.unity_loop,
-            "u": {"x_hat": -hand.feedback_gain},
-        }
-        if B.cols == C.rows == 1:
-            above, below = (sympy.Poly(part, s_) for part in hand.compensator.as_numer_denom())
-            for stem, part in (("n", above), ("d", below)):
-                ascending = [value / below.LC() for value in reversed(part.all_coeffs())]
-                known |= {f"{stem}_{k}": value for k, value in enumerate(ascending)}
+        known |= letters_of_loop(hand)
     if "L" in known and "K" not in known and B is not None:
         L = hand.observer_gain
         known |= {"F_x": A - L * C, "G_x": B - L * hand.feedthrough, "H_x": L}
@@ -119,6 +109,38 @@ def known_letters(hand: Hand) -> dict[str, Any]:
         F = hand.gain_at_rest.inv()
         known |= {"F_v": F, "G_0": hand.gain_at_rest, "T_v": hand.followed}
         known["u"] = {"x_hat": -hand.feedback_gain, "v_r": F}
+    return known
+
+
+def letters_of_loop(hand: Hand) -> dict[str, Any]:
+    """Return the letters of compensator and loop."""
+    B, C, s_ = hand.B, hand.C, hand.variable
+    known: dict[str, Any] = {
+        "A_c": hand.compensator_matrix,
+        "F": hand.compensator,
+        "A_cl": hand.loop_matrix,
+        "G_cl": hand.loop,
+        "G_r": hand.unity_loop,
+        "u": {"x_hat": -hand.feedback_gain},
+    }
+    if B.cols == C.rows == 1:
+        above, below = (sympy.Poly(part, s_) for part in hand.compensator.as_numer_denom())
+        for stem, part in (("n", above), ("d", below)):
+            ascending = [value / below.LC() for value in reversed(part.all_coeffs())]
+            known |= {f"{stem}_{k}": value for k, value in enumerate(ascending)}
+    return known
+
+
+def advised_letters(hand: Hand) -> dict[str, Any]:
+    """Return the letters of a page on where to put poles."""
+    advice = hand.advice
+    assert advice is not None
+    known = {"b_P": sympy.cancel(hand.plant_transfer * characteristic(hand.A, hand.variable))}
+    known |= {"phi_z": advice.zeros, "phi_r": advice.rest, "phi_o": advice.zeros * advice.rest}
+    known |= {"b_P_at": known["b_P"], "phi_r_at": known["phi_r"]}
+    if advice.settling_time is not None:
+        known |= {"T_s": advice.settling_time, "M_p": advice.overshoot}
+        known |= {"sigma_d": 4 / advice.settling_time, "omega_d": advice.omega_d}
     return known
 
 
@@ -238,6 +260,10 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
         case "transfer_function":
             above, below = hand.plant_transfer.as_numer_denom()
             return {"transfer_function": hand.plant_transfer, "poles": below, "zeros": above}
+        case "pole_advice":
+            known = advised_letters(hand)
+            found = {"polynomial": known["phi_o"], "poles": known["phi_o"], "zeros_used": known["phi_z"]}
+            return found | {{"sigma_d": "sigma"}.get(n, n): known[n] for n in ("sigma_d", "omega_d") if n in known}
         case "observer":
             polynomial = characteristic(A - hand.observer_gain * C, variable)
             driven = None if B is None else B - hand.observer_gain * hand.feedthrough
@@ -276,7 +302,7 @@ def dual_answers(hand: Hand) -> dict[str, Any]:
 
 
 #: Fields that list the roots of the polynomial (or rational function's part) that stands in `answers`.
-ROOTS = {"roots", "poles", "zeros"}
+ROOTS = {"roots", "poles", "zeros", "zeros_used"}
 #: Verdicts about stability, which `test_verdicts_of_stability` decides by numeric roots.
 #: Letters of a case that are free to choose: a basis N of the kernel and X with A N = N X, which the page states.
 #: With row reduction the null vectors, of which f Psi^-1 is the gain.
@@ -284,12 +310,14 @@ WITNESSES = {"N", "X", "mu", "S", "T", *(f"{part}_{of}" for part in "ABCO" for o
 WITNESSES |= {"Psi", "f_psi", *(f"xi_{k}{i}" for k in range(1, 5) for i in ("", *range(1, 9)))}
 VERDICTS = {"stable", "stable_if", "F_stable"}
 #: What was asked for, the basis of a decomposition and what it makes of the plant: `test_modes` holds these to identities.
+#: Warnings are texts, which `test_pole_advice` holds to plants that call for them.
 FREE = {
     "pbh": {"of"},
     "detectability": {"meaning", "rank"},
     "stabilizability": {"meaning", "rank"},
     "canonical_form": {"kind"},
     "decomposition": {*"TABCD", "sizes"},
+    "pole_advice": {"warnings"},
 }
 
 

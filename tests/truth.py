@@ -115,7 +115,9 @@ def _compares(operator: str, compared: list[Compared], signs: Mapping[str, str])
     """Prove an inequality: between constants, or from declared signs where no letter stands in it."""
     difference, *others = (single(content.difference) for content in compared)
     if all(other == difference for other in others):
-        return bool(_HOLDS[operator](sympy.Rational(*difference.as_integer_ratio())))
+        parts = getattr(difference, "parts", None)
+        exact = sympy.Rational(*difference.as_integer_ratio()) if parts is None else sympy.Float(str(parts[0]), 50)
+        return bool(_HOLDS[operator](exact))
     try:
         left, right = (_symbolic(member, signs) for member in compared[0].members)
     except KeyError:

@@ -29,6 +29,11 @@ class Factored:
             product = product * factor**power
         return product
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The generators that occur."""
+        return self.unit.names.union(*(factor.names for factor, _ in self.factors))
+
     def __str__(self) -> str:
         above = [_power_text(f, p) for f, p in self.factors if p > 0]
         below = [_power_text(f, -p) for f, p in self.factors if p < 0]

@@ -63,12 +63,12 @@ def parse_matrix(
     return Matrix.of(real)
 
 
-def parse_poles(value: object, names: Names = None, *, where: str = "") -> tuple[Complex, ...]:
+def parse_poles(value: object, names: Names = None, *, where: str = "", functions: bool = False) -> tuple[Complex, ...]:
     """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
 
-    Raises as `parse_scalar` does.
+    With `functions` square roots are read as generators.  Raises as `parse_scalar` does.
     """
-    scope = Scope.of(names, None, where)
+    scope = Scope.of(names, None, where, functions=functions)
     if isinstance(value, str):
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)

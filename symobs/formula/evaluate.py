@@ -339,9 +339,15 @@ def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
 
 
 def _polynomial_at(polynomial: object, value: Any, environment: Environment, arithmetic: Arithmetic) -> Any:
-    """Return the polynomial of the variable at a square matrix, by Horner's rule."""
+    """Return the polynomial of the variable at a square matrix or a scalar, by Horner's rule."""
+    polynomial = polynomial[0, 0] if isinstance(polynomial, Matrix) else polynomial
     assert isinstance(polynomial, Scalar)  # noqa: S101 - an invariant of the letters φ
-    shape = arithmetic.shape(value) or (1, 1)
+    shape = arithmetic.shape(value)
+    if shape is None:
+        number = arithmetic.leaf(Scalar.of(0))
+        for coefficient in polynomial.coefficients(environment.variable):
+            number = arithmetic.add(arithmetic.scale(number, value), arithmetic.leaf(coefficient))
+        return number
     identity = arithmetic.leaf(Matrix.identity(shape[0]))
     total = arithmetic.leaf(Matrix.zeros(*shape))
     for coefficient in polynomial.coefficients(environment.variable):

@@ -20,6 +20,7 @@ from symobs.phrases import (
     gains,
     minimal_order,
     modes,
+    pole_advice,
     polynomials,
     rank,
     reduced_order,
@@ -31,6 +32,7 @@ from symobs.phrases import (
 
 _MODULES = (
     titles,
+    pole_advice,
     polynomials,
     rank,
     modes,

@@ -1,0 +1,196 @@
+"""The page of the advice: zeros, which of them are used and why, the circle or the pair, the polynomial."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
+from symobs.derivation import Given
+from symobs.design.pole_advice import FURTHER_LEFT, numerator_of, numerator_term
+from symobs.design.pole_places import overshoot_of, third_digit
+from symobs.exact import Factored, Scalar, roots_of
+from symobs.exact.circle import butterworth_angles, twice_cosine
+from symobs.exact.functions import function
+from symobs.formula import Literal, Power, Roots, Sum
+from symobs.formula.term import product
+from symobs.page import Page, predicate, relation, sentence
+
+if TYPE_CHECKING:
+    from symobs.design.pole_advice import PoleAdvice
+    from symobs.design.pole_warnings import Beware
+    from symobs.formula import Relation
+    from symobs.formula.term import Term
+
+_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
+    """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
+    written = [advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value]
+    if advice.wish.radius is not None:
+        written += [twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count)]
+    page.with_roots(*written)
+    given(page)
+    if advice.wish.radius is None:
+        _asked(page, advice)
+    with page.section("pole_advice"):
+        _zeros(page, advice)
+        if advice.wish.radius is not None:
+            _circle(page, advice, advice.wish.radius)
+        else:
+            _pair(page, advice)
+        _polynomial(page, advice)
+        for warning in advice.cautions:
+            _caution(page, advice, warning)
+
+
+def _asked(page: Page, advice: PoleAdvice) -> None:
+    """State settling time and overshoot."""
+    time, overshoot = advice.wish.settling_time, advice.wish.overshoot
+    assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+    data = [relation(page["T_s"], time), relation(page["M_p"], overshoot)]
+    page.steps.append(Given(tuple(data), sentence("step_asked_for", {})))
+    page.environment = page.environment.having(values={"T_s": time, "M_p": overshoot})
+
+
+def _in_words(count: int) -> str:
+    return _COUNTS[count] if count < len(_COUNTS) else str(count)
+
+
+def _product(page: Page, factors: tuple[tuple[Scalar, int], ...]) -> Term:
+    """Return a product of factors as they are."""
+    return page.term(formula_of_factored(Factored(Scalar.of(1), factors)))
+
+
+def _zeros(page: Page, advice: PoleAdvice) -> None:
+    """The numerator, its roots, and those of them that are used."""
+    plant, b = page.plant, numerator_of(page.plant)
+    page.define(
+        "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
+    )
+    if not page.knows("P"):
+        chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
+        P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
+        page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)
+    zeros = roots_of(b, plant.variable) if b.degree(plant.variable) > 0 else ()
+    if not zeros and b:
+        page.conclude("no_zeros", relation(page["b_P"], b))
+    elif zeros and all(root.is_closed for root in zeros):
+        page.conclude(
+            "advice_zeros" if len(zeros) > 1 else "advice_zero", roots=Roots(page["b_P"].inverse.formula, zeros)
+        )
+    if advice.zeros.used:
+        page.define("phi_z", _product(page, advice.zeros.used), say="zeros_taken", closing=False)
+    else:
+        page.set("phi_z", Scalar.of(1))
+        page.conclude("no_zeros_taken", relation(page["phi_z"], 1))
+
+
+def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
+    """φ_r with φ_r(s) φ_r(−s), and the pairs."""
+    count, variable = advice.count, page.plant.variable
+    if not count:
+        _nothing(page)
+        return
+    factors = advice.answer["rest"].factors
+    whole = _product(page, factors)
+    if count == 1:
+        page.define("phi_r", whole, say="one_on_circle", closing=False)
+    else:
+        page.define("phi_r", whole, say="some_on_circle", closing=False, count=_in_words(count))
+    identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), advice.circle)
+    if count == 1:
+        page.conclude_silently(identity)
+        return
+    page.verified("is_butterworth", identity=identity)
+    shown = []
+    for turns, (factor, _) in zip(butterworth_angles(count), factors[count % 2 :], strict=True):
+        real, imaginary = radius * twice_cosine(turns) / 2, (radius * twice_cosine(Fraction(1, 2) - turns) / 2)
+        square = Sum((Power(Literal(Scalar.symbol(variable) + real), 2), Power(Literal(imaginary), 2)))
+        shown.append(relation(factor, page.term(square)))
+    page.equal(*shown, say="circle_pairs")
+
+
+def _nothing(page: Page) -> None:
+    page.set("phi_r", Scalar.of(1))
+    page.conclude("none_remains", relation(page["phi_r"], 1))
+
+
+def _pair(page: Page, advice: PoleAdvice) -> None:
+    """σ from the settling time, ω from the overshoot, and φ_r."""
+    answer, wish, count = advice.answer, advice.wish, advice.count
+    assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+    sigma, omega_d, time = answer["sigma"], answer["omega_d"], wish.settling_time
+    page.define("sigma_d", page.value(4) / page["T_s"], say="rate_from_settling")
+    page.conclude("decayed", bound=relation(function("exp", -sigma * time), "<=", Scalar.of(1) / 50))
+    if not count:
+        _nothing(page)
+        return
+    factors = answer["rest"].factors
+    if omega_d is None:
+        page.define("phi_r", _product(page, factors), say="one_from_settling", closing=False)
+        return
+    bound = relation(overshoot_of(omega_d / sigma), "<=", page["M_p"])
+    page.define("omega_d", page.value(omega_d), say="overshoot_held", bound=bound)
+    more = overshoot_of(omega_d / sigma + third_digit((omega_d / sigma).fraction()))
+    page.conclude("overshoot_close", more=relation(more, ">", page["M_p"]))
+    s = page.s
+    first = (s + page["sigma_d"]) ** 2 + page["omega_d"] ** 2
+    others = [s + page.value(k) @ page["sigma_d"] for k in range(FURTHER_LEFT, FURTHER_LEFT + count - 2)]
+    whole = first
+    for other in others:
+        whole = whole @ other
+    page.define(
+        "phi_r",
+        whole,
+        _product(page, factors),
+        say="pair_dominates",
+        closing=False,
+        count=_in_words(count),
+        factor=_in_words(FURTHER_LEFT),
+    )
+
+
+def _polynomial(page: Page, advice: PoleAdvice) -> None:
+    """φ, boxed, and where the gain tends."""
+    zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
+    parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
+    page.define("phi_o", product(parts), page.term(whole), say="advised_polynomial", answer=True, closing=False)
+    if advice.wish.radius is None or zeros.unused or not zeros.used or not advice.count:
+        return
+    if not plant.matrices.has_feedthrough:
+        pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
+        multiple = page["phi_z"] if zeros.unit.is_one else page.value(zeros.unit) @ page["phi_z"]
+        page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
+
+
+def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
+    """Say a warning, with what can be checked of it."""
+    slots, n = dict(warning.slots), page.plant.order
+    if warning.key == "always_unstable":
+        chi = (page.s @ page.identity(n) - page["A"]).apply("det")
+        page.caution(warning.key, predicate("no_stable_compensator", page["b_P"] / chi))
+    elif warning.key == "modes_missed":
+        page.set("N", advice.pair.kernel)
+        page.set("X", advice.pair.restricted)
+        unseen = hidden_polynomial(page, advice.pair.kernel.shape[1])
+        page.caution(warning.key, *hidden(page, True), polynomial=relation(unseen, advice.missed))  # noqa: FBT003
+    elif warning.key == "huge_gain":
+        page.caution(warning.key, limit=str(slots["limit"]))
+    elif "pole" in slots:
+        root = (page.value(slots["pole"]) @ page.identity(n) - page["A"]).apply("det")
+        page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]), pole=relation(root, 0))
+    elif "zero" in slots:
+        page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]))
+    elif warning.key == "no_response":
+        page.caution(warning.key, relation(page["b_P"], 0))
+
+
+def _vanishing(page: Page, advice: PoleAdvice, factor: Scalar) -> Relation:
+    """Return b(z) = 0 for the root z of a linear factor, b(s) = factor · rest for another."""
+    variable = page.plant.variable
+    if factor.degree(variable) == 1:
+        return relation(page.value(-factor.coefficients(variable)[1]).apply("b_P_at"), 0)
+    rest = advice.zeros.others * advice.zeros.polynomial / factor
+    return relation(page["b_P"], factor if rest.is_one else page.value(factor) @ page.value(rest))

@@ -1,0 +1,75 @@
+"""Certified enclosures of numbers made of square roots, exponentials and π, and the signs that follow (trusted)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flint import arb, ctx
+
+from symobs.exact.functions import PI, known, symbols_in
+
+if TYPE_CHECKING:
+    from symobs.exact.scalar import Scalar
+
+#: Bits that are tried in turn until an enclosure keeps clear of 0.
+_BITS = (64, 256, 1024)
+
+
+def is_number(value: Scalar) -> bool:
+    """Whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
+    kinds = {f.kind for name in value.names if (f := known(name)) is not None}
+    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp"}
+
+
+def sign_of_number(value: Scalar) -> str:
+    """Return `positive` or `negative`, and `real` where the value is no number or may be 0."""
+    if not is_number(value):
+        return "real"
+    for bits in _BITS:
+        found = _enclosed(value, bits)
+        if found > 0:
+            return "positive"
+        if found < 0:
+            return "negative"
+    return "real"
+
+
+def decimal(value: Scalar) -> float:
+    """Return a number near an exact one, for a choice that is proved afterwards or a warning."""
+    return float(_enclosed(value, _BITS[0]).mid())
+
+
+def _enclosed(value: Scalar, bits: int) -> arb:
+    """Return an interval that holds the number."""
+    before, ctx.prec = ctx.prec, bits
+    try:
+        return _ball(value)
+    finally:
+        ctx.prec = before
+
+
+def _ball(value: Scalar) -> arb:
+    if value.is_constant:
+        number = value.fraction()
+        return arb(number.numerator) / number.denominator
+    names = {name: _generator(name) for name in value.names}
+    above, below = (_polynomial(part, names) for part in (value.numerator, value.denominator))
+    return above / below
+
+
+def _polynomial(value: Scalar, names: dict[str, arb]) -> arb:
+    total = arb(0)
+    for coefficient, powers in value.terms():
+        term = arb(coefficient)
+        for name, power in powers:
+            term = term * names[name] ** power
+        total = total + term
+    return total
+
+
+def _generator(name: str) -> arb:
+    found = known(name)
+    if found is None:
+        return arb.pi()
+    inner = _ball(found.argument)
+    return inner.sqrt() if found.kind == "sqrt" else inner.exp()
