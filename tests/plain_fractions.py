@@ -210,6 +210,8 @@ class World:
         function = known(name)
         if function is not None:
             return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
+        if name == "pi":
+            return series.PI
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)

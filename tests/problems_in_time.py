@@ -186,6 +186,9 @@ states = plain | {"x10": "real", "x20": "real"}
 PROBLEMS_IN_TIME = {
     "servo_gramian": InTime(servo["A"], servo["C"], signs=plain),
     "third_order_gramian": InTime(Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), signs=plain),
+    "third_order_gramian_period": InTime(
+        Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
+    ),
     "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
     "pendulum_gramian": InTime(
         Matrix([[0, 1], [-(omega**2), -b]]),

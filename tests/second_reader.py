@@ -96,7 +96,7 @@ def sympy_generator(name: str, names: Mapping[str, Any]) -> Any:
     """Return what a generator means: a function of time by its name, any other what `names` says, else a symbol."""
     function = function_named(name)
     if function is None:
-        return names.get(name, sympy.Symbol(name))
+        return sympy.pi if name == "pi" else names.get(name, sympy.Symbol(name))
     return getattr(sympy, function.kind)(sympy_scalar(function.argument, names))
 
 
@@ -473,7 +473,7 @@ def numeric(expression: Any, point: Mapping[Any, Any]) -> Any:
     return getattr(mpmath, {"Pow": "power"}.get(kind, kind))(*parts)
 
 
-CONSTANTS = {sympy.I: mpmath.j, sympy.E: mpmath.e}
+CONSTANTS = {sympy.I: mpmath.j, sympy.E: mpmath.e, sympy.pi: mpmath.pi}
 
 
 def integral(value: Value, limits: tuple[Any, ...]) -> Value:
