@@ -135,6 +135,8 @@ class InTime:
         if self.output is not None:
             known |= {"y_t": self.output, "x_0": self.x0, "y_0": self.free, "r_0": self.moment}
             known |= {"u_t": self.input, "x_f": self.forced}
+            known |= {"W_t": replace(self, horizon=t).gramian_by(sigma)}
+            known |= {"det_W": known["W_t"].det()}
         return known
 
     def answers(self, task: str) -> dict[str, Any]:

@@ -131,6 +131,21 @@ def legendre(count: int) -> tuple[list[Any], list[Any]]:
     return nodes, [2 / ((1 - n**2) * slope**2) for n, slope in zip(nodes, slopes, strict=True)]
 
 
+@pytest.mark.parametrize(
+    ("A", "C", "output", "wanted"),
+    [
+        ("[0 1; 0 -1]", "[1 0]", "1", "T⁴/12"),  # the catalogue: T² (tr W)²/det W → 12
+        ("[-1/25 1/100; 1/25 -1/25]", "[0 1]", "0", "T⁴/7500"),  # det(𝒪)²/12 = (1/25)²/12
+        ("[0 1 0; 0 0 1; 0 0 0]", "[1 0 0]", "t^2", "T⁹/8640"),  # of 1, t, t²/2: a quarter of Hilbert's determinant
+        ("[0 1; -1 0]", "[1 0; 0 1]", "[cos(t); -sin(t)]", None),
+    ],
+)
+def test_how_ill_conditioned_a_short_horizon_is(A: str, C: str, output: str, wanted: str | None) -> None:
+    page = symobs.initial_state(symobs.StateSpace(A, None, C), output=output).to("text")
+    assert ("short horizon" in page) == (wanted is not None)
+    assert wanted is None or f"begins with {wanted}," in " ".join(page.split())
+
+
 # -- random plants -----------------------------------------------------------------------------------------------------
 
 entry = st.integers(-3, 3)
