@@ -234,6 +234,7 @@ PROBLEMS_IN_TIME = {
 
 # -- plants in which the time stands -----------------------------------------------------------------------------------
 
+DECAYED, TURNED = exp(-t) * Matrix([[1, t + t**2 / 2]]), (t**2 - t0**2) / 2
 #: What the letters of pages about time-varying plants must be worth.
 VARYING: dict[str, dict[str, Any]] = {
     "time_varying_integrator": {
@@ -273,5 +274,32 @@ VARYING: dict[str, dict[str, Any]] = {
         "v": Matrix([1, 1]),
         "t_start": sympy.Integer(1),
         "t_end": 1 + T,
+    },
+    "time_varying_decay": {
+        "A": Matrix([[-1, 1 + t], [0, -1]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[-1, 1 + t], [0, -1]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": exp(t0 - t) * Matrix([[1, t - t0 + (t**2 - t0**2) / 2], [0, 1]]),
+        "W": integral(DECAYED.T * DECAYED, t, 0, T).doit(),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[-1, 1 + t]]),
+        "O": Matrix([[1, 0], [-1, 1 + t]]),
+        "t_start": sympy.Integer(0),
+        "t_end": T,
+        "y_t": exp(-t) * (a + b * t + b * t**2 / 2),
+        "xi": exp(-t) * (a + b * t + b * t**2 / 2),
+        "x_0": Matrix([a, b]),
+        "x_t": exp(-t) * Matrix([a + b * (t + t**2 / 2), b]),
+    },
+    "time_varying_rotation": {
+        "A": Matrix([[0, t], [-t, 0]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[0, t], [-t, 0]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": Matrix([[cos(TURNED), sin(TURNED)], [-sin(TURNED), cos(TURNED)]]),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[0, t]]),
+        "O": sympy.diag(1, t),
     },
 }
