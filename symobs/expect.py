@@ -11,7 +11,7 @@ from symobs.certificate import verify
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank, root_of_pole
-from symobs.exact.functions import identities, roots_in
+from symobs.exact.functions import identities, roots_in, symbols_in
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
 from symobs.formula import Environment, Literal, Relation
@@ -141,8 +141,11 @@ def _names(result: Result) -> Any:
     declared, plant = result.plant.symbols.names, result.plant
     if declared is None:
         return None
-    used = {name for value in result.answer.values() for name in getattr(value, "names", ())}
-    used = used | {plant.variable} if plant.is_time_varying else used - {plant.variable}
+    exact = [value for value in result.answer.values() if isinstance(value, (Matrix, Scalar))]
+    if plant.is_time_varying:
+        used = {plant.variable}.union(*map(symbols_in, exact))
+    else:
+        used = {name for value in exact for name in value.names} - {plant.variable}
     if result.in_time:  # t is the variable there, and generators such as exp(-t) are no names
         used = {name for name in used if name.isidentifier()} - {"t"}
     return {**dict.fromkeys(sorted(used), "real"), **declared}
@@ -157,7 +160,8 @@ def _shown(value: Any) -> str:
 def met(result: Result, name: str, expected: Any, where: str) -> bool:
     """Tell whether an expected answer is the result's."""
     found, names, variable = _found(result, name), _names(result), result.plant.variable
-    if result.in_time and isinstance(found, (Matrix, Scalar)):
+    if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
+        names = names and {name: sign for name, sign in names.items() if name != "t"}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
         return functions_agree(read(expected, names, variable="t", where=where, functions=True), found)
     if isinstance(found, Matrix):

@@ -57,6 +57,7 @@ LETTERS: dict[str, LetterForm] = {
     "x_0": LetterForm("x_0", "x₀", "initial state"),
     "r_0": LetterForm("r", "r", "right side of the moment equations"),
     "Q": LetterForm("Q", "Q", "intensity of the input noise"),
+    "det_W": LetterForm(r"\det W(t)", "det W(t)", "determinant of the Gramian up to t"),
     "W_t": LetterForm("W(t)", "W(t)", "Gramian up to t"),
     "Phi_m": LetterForm("e^{-At}", "exp(-A t)", "inverse of the matrix exponential"),
     "V_t": LetterForm("V(t)", "V(t)", "what input noise at t does to the estimate"),

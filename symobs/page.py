@@ -126,13 +126,16 @@ class Page:
 
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these functions of time: how they depend on each other is known from the start."""
-        meanings, vanishing = identities(values)
-        self.start = replace(self.start, coefficients=meanings).under(vanishing)
-        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
+        self.in_time_by(*identities(values))
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
         for root in _roots_of_sums(values):
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
+
+    def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
+        """Let the page speak of functions of time that depend on each other in this way."""
+        self.start = replace(self.start, coefficients=meanings).under(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
 
     def derivation(self) -> Derivation:
         """Return what was written; a parameter with the name of a letter that is used is set without serifs."""

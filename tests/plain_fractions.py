@@ -215,7 +215,7 @@ class World:
         if function is not None:
             return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
         if name == PI:
-            return series.Series.make([+series.CONTEXT.pi])
+            return series.PI
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)

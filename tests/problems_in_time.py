@@ -135,6 +135,8 @@ class InTime:
         if self.output is not None:
             known |= {"y_t": self.output, "x_0": self.x0, "y_0": self.free, "r_0": self.moment}
             known |= {"u_t": self.input, "x_f": self.forced}
+            known |= {"W_t": replace(self, horizon=t).gramian_by(sigma)}
+            known |= {"det_W": known["W_t"].det()}
         return known
 
     def answers(self, task: str) -> dict[str, Any]:
@@ -186,6 +188,9 @@ states = plain | {"x10": "real", "x20": "real"}
 PROBLEMS_IN_TIME = {
     "servo_gramian": InTime(servo["A"], servo["C"], signs=plain),
     "third_order_gramian": InTime(Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), signs=plain),
+    "third_order_gramian_period": InTime(
+        Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
+    ),
     "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
     "pendulum_gramian": InTime(
         Matrix([[0, 1], [-(omega**2), -b]]),
@@ -229,6 +234,7 @@ PROBLEMS_IN_TIME = {
 
 # -- plants in which the time stands -----------------------------------------------------------------------------------
 
+DECAYED, TURNED = exp(-t) * Matrix([[1, t + t**2 / 2]]), (t**2 - t0**2) / 2
 #: What the letters of pages about time-varying plants must be worth.
 VARYING: dict[str, dict[str, Any]] = {
     "time_varying_integrator": {
@@ -268,5 +274,32 @@ VARYING: dict[str, dict[str, Any]] = {
         "v": Matrix([1, 1]),
         "t_start": sympy.Integer(1),
         "t_end": 1 + T,
+    },
+    "time_varying_decay": {
+        "A": Matrix([[-1, 1 + t], [0, -1]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[-1, 1 + t], [0, -1]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": exp(t0 - t) * Matrix([[1, t - t0 + (t**2 - t0**2) / 2], [0, 1]]),
+        "W": integral(DECAYED.T * DECAYED, t, 0, T).doit(),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[-1, 1 + t]]),
+        "O": Matrix([[1, 0], [-1, 1 + t]]),
+        "t_start": sympy.Integer(0),
+        "t_end": T,
+        "y_t": exp(-t) * (a + b * t + b * t**2 / 2),
+        "xi": exp(-t) * (a + b * t + b * t**2 / 2),
+        "x_0": Matrix([a, b]),
+        "x_t": exp(-t) * Matrix([a + b * (t + t**2 / 2), b]),
+    },
+    "time_varying_rotation": {
+        "A": Matrix([[0, t], [-t, 0]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[0, t], [-t, 0]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": Matrix([[cos(TURNED), sin(TURNED)], [-sin(TURNED), cos(TURNED)]]),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[0, t]]),
+        "O": sympy.diag(1, t),
     },
 }

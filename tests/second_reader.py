@@ -98,7 +98,7 @@ def sympy_generator(name: str, names: Mapping[str, Any]) -> Any:
     if name == "pi":
         return sympy.pi
     if function is None:
-        return names.get(name, sympy.Symbol(name))
+        return sympy.pi if name == "pi" else names.get(name, sympy.Symbol(name))
     return getattr(sympy, function.kind)(sympy_scalar(function.argument, names))
 
 
@@ -495,7 +495,7 @@ def numeric(expression: Any, point: Mapping[Any, Any]) -> Any:
     return getattr(mpmath, {"Pow": "power"}.get(kind, kind))(*parts)
 
 
-CONSTANTS = {sympy.I: mpmath.j, sympy.E: mpmath.e}
+CONSTANTS = {sympy.I: mpmath.j, sympy.E: mpmath.e, sympy.pi: mpmath.pi}
 
 
 def integral(value: Value, limits: tuple[Any, ...]) -> Value:

@@ -88,6 +88,10 @@ class Series(Fraction):
     __hash__ = None  # type: ignore[assignment]
 
 
+#: A number no fraction is; its name means nothing else.
+PI = Series.make([+CONTEXT.pi])
+
+
 def _pairs(left: Any, right: Any) -> list[tuple[Any, Any]]:
     """Return the coefficients beside each other, those of a constant filled up with zeros."""
     a, b = (list(value.parts) if isinstance(value, Series) else [Fraction(value)] for value in (left, right))

@@ -8,7 +8,7 @@ import pytest
 import sympy
 
 from symobs.face import to_sympy
-from tests.problems_by_hand import is_zero, s
+from tests.problems_by_hand import s
 from tests.problems_in_time import PROBLEMS_IN_TIME, VARYING
 from tests.second_reader import Reader, facts_in, values_of
 from tests.test_independent_values import ROOTS, VERDICTS, results, same
@@ -66,14 +66,16 @@ def test_every_line_and_answer_where_the_plant_varies(name: str) -> None:
     (result,), known = results(name), VARYING[name]
     facts = list(facts_in(result.derivation.steps))
     positive = [{sympy.Symbol("T"): sympy.Rational(k, 3)} for k in range(1, 6)]
-    tally = Reader(result.derivation, known, lambda: iter(positive)).read()
+    reader = Reader(result.derivation, known, lambda: iter(positive))
+    tally = reader.read()
     assert tally.compared + len(tally.unknown) >= values_of(facts)
     assert tally.unknown == []
     fields = {"matrix": "O", "transition_matrix": "Phi", "gramian": "W", "x0": "x_0"}
     for field_name, letter in fields.items():
         if field_name in result.fields:
             found = to_sympy(result.fields[field_name], {})
-            assert all(map(is_zero, sympy.Matrix(found) - known[letter])), field_name
+            assert reader.agree(sympy.Matrix(found), known[letter]), field_name
     assert [to_sympy(block, {}) for block in result.fields["stack"]] == [known["N_0"], known["N_1"]]
-    assert is_zero(to_sympy(result.fields["determinant"], {}) - known["W"].det())
+    assert ("W" in known) == ("determinant" in result.fields)
+    assert "W" not in known or reader.agree(to_sympy(result.fields["determinant"], {}), known["W"].det())
     assert result.fields["rank"] == known["O"].rank() == 2 - len(result.fields["kernel"])

@@ -68,7 +68,8 @@ def test_worked_examples_against_quadrature(name: str) -> None:
     for result in found.solve():
         m = result.plant.matrices
         A, C = numeric(m.A, POINT), numeric(m.C, POINT)
-        end = mpmath.mpf(7) / 5
+        horizon = PROBLEMS_IN_TIME[name].horizon.subs(T, sympy.Rational(POINT["T"]))
+        end = mpmath.inf if horizon == sympy.oo else mpmath.mpf(sympy.N(horizon, 30))
         if result.task == "matrix_exponential":
             for time in ("1/3", "2"):
                 value = numeric(result.fields["matrix"], POINT | {"t": time})
@@ -128,6 +129,21 @@ def legendre(count: int) -> tuple[list[Any], list[Any]]:
     nodes = [mpmath.mpf(str(root)) for root in P.nroots(n=25)]
     slopes = [mpmath.mpf(str(sympy.N(P.diff(x).eval(sympy.Float(str(n), 25)), 25))) for n in nodes]
     return nodes, [2 / ((1 - n**2) * slope**2) for n, slope in zip(nodes, slopes, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "output", "wanted"),
+    [
+        ("[0 1; 0 -1]", "[1 0]", "1", "T⁴/12"),  # the catalogue: T² (tr W)²/det W → 12
+        ("[-1/25 1/100; 1/25 -1/25]", "[0 1]", "0", "T⁴/7500"),  # det(𝒪)²/12 = (1/25)²/12
+        ("[0 1 0; 0 0 1; 0 0 0]", "[1 0 0]", "t^2", "T⁹/8640"),  # of 1, t, t²/2: a quarter of Hilbert's determinant
+        ("[0 1; -1 0]", "[1 0; 0 1]", "[cos(t); -sin(t)]", None),
+    ],
+)
+def test_how_ill_conditioned_a_short_horizon_is(A: str, C: str, output: str, wanted: str | None) -> None:
+    page = symobs.initial_state(symobs.StateSpace(A, None, C), output=output).to("text")
+    assert ("short horizon" in page) == (wanted is not None)
+    assert wanted is None or f"begins with {wanted}," in " ".join(page.split())
 
 
 # -- random plants -----------------------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import pytest
 import sympy
 from hypothesis import assume, given, settings
@@ -23,7 +24,7 @@ from symobs.method import tasks
 from symobs.problem import read
 from tests.mutations import answer_changes, changes, lines_of
 from tests.problems_by_hand import is_zero
-from tests.second_reader import Reader, sympy_scalar
+from tests.second_reader import Reader, numeric, sympy_scalar
 from tests.truth import still_true
 
 if TYPE_CHECKING:
@@ -60,7 +61,23 @@ PLANTS: dict[str, tuple[str, str, int, str, str | None]] = {
     "frozen_misleads_no": ("[0 1; 0 0]", "[1 -t]", 1, "no", "[[1, t - t0], [0, 1]]"),
     "frozen_misleads_yes": ("[0 0; 0 0]", "[1 t]", 2, "yes", "[[1, 0], [0, 1]]"),
     "airy": ("[0 1; -t 0]", "[1 0]", 2, "yes", None),
-    "exponential_hidden": ("[t 0; 0 t]", "[1 1]", 1, "no", None),
+    "exponential_hidden": ("[t 0; 0 t]", "[1 1]", 1, "no", "[[exp(t^2/2 - t0^2/2), 0], [0, exp(t^2/2 - t0^2/2)]]"),
+    "decaying": ("[-1 t; 0 -1]", "[1 0]", 2, "yes", "[[exp(t0-t), exp(t0-t)*(t^2-t0^2)/2], [0, exp(t0-t)]]"),
+    "turning": (
+        "[0 t; -t 0]",
+        "[1 0]",
+        2,
+        "yes",
+        "[[cos(t^2/2-t0^2/2), sin(t^2/2-t0^2/2)], [-sin(t^2/2-t0^2/2), cos(t^2/2-t0^2/2)]]",
+    ),
+    "two_rates": (
+        "[-1 0; t -2]",
+        "[0 1]",
+        2,
+        "yes",
+        "[[exp(t0-t), 0], [(t-1)*exp(t0-t) - (t0-1)*exp(2*t0-2*t), exp(2*t0-2*t)]]",
+    ),
+    "error_function": ("[-1 1; 0 -2*t]", "[1 0]", 2, "yes", None),
     "parametric": ("[0 a*t; 0 0]", "[1 0]", 2, "conditional", "[[1, a*(t**2 - t0**2)/2], [0, 1]]"),
 }
 
@@ -74,7 +91,9 @@ every_plant = pytest.mark.parametrize("name", PLANTS)
 
 
 def zero(expression: Any) -> bool:
-    """Whether a rational SymPy expression or matrix is 0."""
+    """Whether a SymPy expression or matrix is 0."""
+    if expression.has(sympy.exp, sympy.cos, sympy.sin):
+        expression = sympy.simplify(expression.rewrite(sympy.exp))
     return all(map(is_zero, expression)) if isinstance(expression, sympy.MatrixBase) else is_zero(expression)
 
 
@@ -109,19 +128,12 @@ def test_transition_matrices_are_those_worked_out_by_hand(name: str) -> None:
 def eval_rows(text: str, names: dict[str, Any]) -> Any:
     """Read nested lists of this file's own expressions."""
     return [
-        [to_sympy(parse_scalar(entry), names) for entry in row.split(",")]
+        [sympy_scalar(parse_scalar(entry, functions=True), names) for entry in row.split(",")]
         for row in (part.strip(" [],") for part in text.split("],"))
     ]
 
 
-def to_sympy(value: Scalar, names: dict[str, Any]) -> Any:
-    def polynomial(part: Scalar) -> Any:
-        return sympy.Add(*(c * sympy.Mul(*(names[n] ** k for n, k in powers)) for c, powers in part.terms()))
-
-    return polynomial(value.numerator) / polynomial(value.denominator)
-
-
-@pytest.mark.parametrize("name", ["integrator", "commuting", "frozen_misleads_no", "frozen_misleads_yes"])
+@pytest.mark.parametrize("name", ["integrator", "commuting", "frozen_misleads_no", "frozen_misleads_yes", "decaying"])
 def test_gramians_are_integrals_of_sympy(name: str) -> None:
     result = solved(name, interval="1, 1 + T" if name == "commuting" else "0, T")
     start = 1 if name == "commuting" else 0
@@ -295,7 +307,7 @@ def rational(above: list[int], below: list[int]) -> tuple[Scalar, Any]:
 def test_derivatives_and_antiderivatives(above: list[int], below: list[int]) -> None:
     value, image = rational(above, below)
     slope = derivative(value, "t")
-    assert zero(to_sympy(slope, {"t": t}) - sympy.diff(image, t))
+    assert zero(sympy_scalar(slope, {"t": t}) - sympy.diff(image, t))
     found = antiderivative(slope, "t")
     assert found is not None
     assert derivative(found, "t") == slope
@@ -313,8 +325,52 @@ def test_exponentials_of_integrals(factor: list[int], power: int) -> None:
     found = exponential_of_integral(logarithmic, "t")
     assert found is not None
     assert derivative(found, "t") == logarithmic * found
-    assert exponential_of_integral(logarithmic + 1, "t") is None
+    grown = exponential_of_integral(logarithmic + 1, "t")
+    assert grown is not None
+    assert sympy.exp(t) in sympy_scalar(grown / found, {"t": t}).atoms(sympy.exp)
+    assert derivative(grown, "t") == (logarithmic + 1) * grown
     assert exponential_of_integral(Scalar.rational(1, 2) / Scalar.symbol("t"), "t") is None
+
+
+@given(*[st.lists(st.integers(-3, 3), min_size=3, max_size=3)] * 4)
+@settings(max_examples=40, deadline=None)
+def test_antiderivatives_of_waves(above: list[int], below: list[int], growth: list[int], turn: list[int]) -> None:
+    """What SymPy differentiates is integrated back, up to a constant."""
+    c, d, p, q = (sum(k * t**i for i, k in enumerate(part)) for part in (above, below, growth, turn))
+    whole = sympy.exp(p) * (c * sympy.cos(q) + d * sympy.sin(q))
+    integrand = parse_scalar(str(sympy.diff(whole, t)), functions=True)
+    found = antiderivative(integrand, "t")
+    assert found is not None
+    rest = sympy_scalar(found, {"t": t}) - whole
+    with mpmath.workdps(60):
+        values = [numeric(rest, {t: mpmath.mpf(k) / 7}) for k in range(1, 4)]
+        assert max(abs(value - values[0]) for value in values) < mpmath.mpf(10) ** -30
+
+
+@pytest.mark.parametrize(
+    "text", ["exp(t^2)", "cos(t^2)", "t^2*exp(-t^2)", "exp(t)/t", "cos(t^2/2)^2", "t*sin(t^3)", "1/cos(t)"]
+)
+def test_what_has_no_elementary_antiderivative(text: str) -> None:
+    """The classical ones: error function, Fresnel's integrals, the exponential integral."""
+    assert antiderivative(parse_scalar(text, functions=True), "t") is None
+
+
+def test_an_integral_without_closed_form_is_named() -> None:
+    assert "integral of exp(-t² + t) over t" in " ".join(solved("error_function").to("text").split())
+    page = " ".join(solved("turning").to("text").split())
+    assert "contains the integral of" in page
+    assert "gramian" not in solved("turning").fields
+
+
+def test_a_zero_of_a_denominator_is_a_case() -> None:
+    """For A = [-a t; 0 -b] the closed form divides by a - b; at a = b it is another one."""
+    result = symobs.time_varying_observability(symobs.StateSpace("[-a t; 0 -b]", None, "[1 0]"))
+    assert [(c.kind, str(c)) for c in result.holds_where if "a - b" in str(c)] == [("claim", "a - b != 0")]
+    case = next(case for case in result.case_tree if [str(c) for c in case.when] == ["a - b == 0"])
+    assert case.result is not None
+    Phi = sympy_scalar(case.result.answer["transition_matrix"][0, 1], {"t": t, "t0": t0})
+    (left,) = Phi.free_symbols - {t, t0}
+    assert zero(Phi - sympy.exp(-left * (t - t0)) * (t**2 - t0**2) / 2)
 
 
 # -- pages -------------------------------------------------------------------------------------------------------------

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import TYPE_CHECKING
 
 from symobs.analysis.branches import rate_of
 from symobs.analysis.matrix_exponential import closed_form, tell_exponential, tell_question
+from symobs.conditions import never_zero
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
-from symobs.formula import Literal, Together
+from symobs.exact.quasi import determinant, table_of
+from symobs.formula import Literal, Shown, Together
 from symobs.formula.calculus import since_start
 from symobs.formula.term import block
 from symobs.page import relation
@@ -17,6 +20,9 @@ if TYPE_CHECKING:
     from symobs.analysis.initial_state import InitialState
     from symobs.formula.term import Term
     from symobs.page import Page
+
+#: The order of det W(T) grows like the square of the number of states, and so does the search for it.
+_WARNED_UP_TO = 3
 
 
 def tell_initial_state(result: InitialState, page: Page) -> None:
@@ -87,6 +93,35 @@ def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
         moments=relation(W @ page["x_0"], r),
         output=relation(C @ Phi @ page["x_0"], free),
     )
+    _warn_of_short_horizons(result, page)
+
+
+def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
+    """Say how fast det W(T) vanishes as T → 0, by its Taylor polynomial there; W(t) is held to its derivative and start.
+
+    Of order Tⁿ it is where W itself is nearly T CᵀC with C of full rank: no reason to warn.
+    """
+    if result.plant.order > _WARNED_UP_TO:
+        return
+    function = result.answer["gramian_function"]
+    rates = [determinant(table_of(function))]
+    while rates[-1].at_zero.is_zero:
+        rates.append(rates[-1].derivative())
+    power, last = len(rates) - 1, rates[-1].at_zero
+    if power == result.plant.order or not never_zero(last, page.plant.symbols.signs):
+        return
+    C, Phi, end = page["C"], page["exp_At"], Scalar.symbol("T")
+    W = page.set("W_t", function)
+    start = relation(W.at("t", 0), Matrix.zeros(*function.shape))
+    page.conclude_silently(relation(rate_of(W), Phi.T @ C.T @ C @ Phi), start)
+    det = page.set("det_W", function.determinant())
+    page.conclude_silently(relation(det, W.apply("det")))
+    taylor = det.at("t", 0)
+    for k in range(1, power + 1):
+        det = rate_of(det)
+        taylor = taylor + det.at("t", 0) * (end**k / factorial(k))
+    leading = page.value(last * end**power / factorial(power))
+    page.caution("short_horizon", leading=Shown(taylor.formula, leading.formula))
 
 
 def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:

@@ -11,16 +11,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import reject
+from symobs.analysis.branches import reject, vanishing_denominators
 from symobs.analysis.intervals import instant_where_not_zero, reject_poles, reject_sizes_and_names
 from symobs.analysis.strata import strata
 from symobs.analysis.time_varying_page import write
-from symobs.analysis.time_varying_solution import Asked, closed_form
+from symobs.analysis.time_varying_solution import Asked, closed_form, dependences
 from symobs.analysis.transition import START, TERMS_UP_TO, TIME
 from symobs.certificate import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
 from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
+from symobs.exact.functions import substitute
+from symobs.exact.waves import collected
 from symobs.formula import Environment, Integral, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task_in_time
@@ -83,7 +85,7 @@ class TimeVaryingObservability(Result):
             "free": free,
         }
         answer["point"] = instant_where_not_zero(plant, asked_for.interval, O.select(answer["rows"], columns))
-        return cls(plant, method_name, answer | closed_form(plant, asked_for), asked_for)
+        return cls(plant, method_name, answer | closed_form(plant, asked_for, answer), asked_for)
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
@@ -103,7 +105,9 @@ class TimeVaryingObservability(Result):
         values |= {"Phi": answer["transition_matrix"], "G": answer["gramian_in_time"], "v": answer["kernel"]}
         values |= {"f": answer["forced"], "x_0": answer["x0"], "y": self.asked_for.output, "u": self.asked_for.input}
         signs = self.plant.symbols.signs
-        e = Environment(TIME, {name: value for name, value in values.items() if value is not None}, signs=signs)
+        meant = {name: value for name, value in values.items() if value is not None}
+        named, zero = dependences([*meant.values(), *self.closed_forms], self.asked_for)
+        e = Environment(TIME, meant, signs=signs, coefficients=named, relations=zero)
         yield Claim(relation(len(answer["stack"]), order), e, "the stack has n blocks")
         yield Claim(relation(letter("N_0", e), letter("C", e)), e)
         for k in range(order - 1):
@@ -215,7 +219,8 @@ class TimeVaryingObservability(Result):
         if self.answer["rank"] < self.plant.order:
             return "no"
         certain = all(case.result is not None and case.result.verdict == "yes" for case in self.case_tree)
-        return "conditional" if self._binding_conditions or not certain else "yes"
+        drops = any(condition.kind == "existence" for condition in self.holds_where)
+        return "conditional" if drops or not certain else "yes"
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -227,11 +232,20 @@ class TimeVaryingObservability(Result):
         return (min(coefficients, key=lambda c: (c.size, str(c))),)
 
     @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """The polynomials in the parameters that Φ, the Gramian and x₀ divide by and the plant does not."""
+        m, domain = self.plant.matrices, {condition.expression for condition in self.domain}
+        names = (m.A.names | m.B.names | m.C.names) - {TIME}
+        found = vanishing_denominators(self.closed_forms, self.plant.symbols.signs)
+        return tuple(f for f in found if f.names <= names and f not in domain)
+
+    @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
-        """The domain, a length of the interval that is not certain, and the factors on whose vanishing the rank falls."""
+        """The domain, an uncertain length of the interval, what closed forms divide by, the factors at which the rank falls."""
         asked, signs = self.asked_for, self.plant.symbols.signs
         length = () if asked.interval is None else (asked.end - asked.start,)
         known = tuple(Condition("domain", d, ">") for d in length if sign_of(d, signs) != "positive")
+        known = (*known, *(Condition("claim", f) for f in self.denominators))
         if self.answer["rank"] < self.plant.order:
             return (*self.domain, *known)
         lost = [c.when[0].expression for c in self.case_tree if c.result is None or c.result.verdict == "no"]
@@ -240,14 +254,29 @@ class TimeVaryingObservability(Result):
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
-        """Rank and kernel on every stratum where the minor vanishes identically and the rank is another."""
+        """The strata where the minor vanishes identically and the rank is another, and those of other closed forms."""
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             return type(self).of(plant.in_time(), self.asked_for.substitute(values), self.method)
 
-        found = strata(self.plant, self.existence, solve)
-        rank = self.answer["rank"]
-        return tuple(c for c in found if c.result is None or c.result.answer["rank"] != rank or c.result.case_tree)
+        found = strata(self.plant, (*self.existence, *self.denominators), solve)
+        rank, others = self.answer["rank"], set(self.denominators)
+        return tuple(
+            case
+            for case in found
+            if case.result is None
+            or case.result.answer["rank"] != rank
+            or case.result.case_tree
+            or any(condition.expression in others for condition in case.when)
+        )
+
+    @property
+    def closed_forms(self) -> tuple[Matrix | Scalar, ...]:
+        """The matrices that may be functions of time, with the given signals."""
+        names = ("transition_matrix", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
+        found = (*(self.answer[name] for name in names), self.asked_for.output, self.asked_for.input)
+        determinant = () if self.answer["gramian"] is None else (self.gramian_determinant,)
+        return (*(value for value in found if value is not None), *determinant)
 
     @property
     def never_seen(self) -> Matrix:
@@ -255,6 +284,11 @@ class TimeVaryingObservability(Result):
         found: Matrix | None = self.answer["kernel"]
         hidden: Matrix = self.answer["hidden"]
         return hidden if found is None else found
+
+    @cached_property
+    def gramian_determinant(self) -> Scalar:
+        """The determinant of the Gramian."""
+        return collected(self.answer["gramian"].determinant())
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -267,7 +301,7 @@ class TimeVaryingObservability(Result):
             if answer[name] is not None:
                 found[name] = answer[name]
         if answer["gramian"] is not None:
-            found["determinant"] = answer["gramian"].determinant()
+            found["determinant"] = self.gramian_determinant
         if self.asked_for.output is not None:
             found["x0"] = None if answer["x0"] is None else [*answer["x0"].entries]
         return found
@@ -294,7 +328,7 @@ def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:
 def _has_value(Phi: Matrix, start: Scalar) -> bool:
     """Whether Φ has a value at the start: it has none where A has a pole there."""
     try:
-        Phi.substitute({START: start})
+        substitute(Phi, {START: start})
     except ZeroDivisionError:
         return False
     return True
@@ -321,7 +355,7 @@ def time_varying_observability(
 
     plant      n states, p ≥ 1 outputs; t in A, B, C is the time
     interval   "0, T": the interval of time; without it any interval without a pole of A and C
-    output     y(t), rational in t, from which the initial state is to be found; with
+    output     y(t), in t, exp, cos, sin, from which the initial state is to be found; with
     input      u(t), 0 if left out
     Returns stack (N₀ … N_{n−1}), rank over the functions of t, kernel (initial states never seen); where they have a
     closed form transition_matrix Φ(t, t0), gramian ∫ΦᵀCᵀCΦ dt over the interval and its determinant; x0.
@@ -336,7 +370,7 @@ def time_varying_observability(
         reject_poles(plant, ends)
     if input is not None:
         plant.require("B", task="time_varying_observability with an input")
-    given = None if output is None else read_signal(output, plant, "output", plant.outputs)
-    driving = None if input is None else read_signal(input, plant, "input", plant.inputs)
+    given = None if output is None else read_signal(output, plant, "output", plant.outputs, functions=True)
+    driving = None if input is None else read_signal(input, plant, "input", plant.inputs, functions=True)
     asked_for = Asked(ends, given, driving)
     return choose("time_varying_observability", method, "stack").solve(plant, asked_for)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form, given, stratum_of, undecided
-from symobs.analysis.transition import START, TIME, antiderivative_since, transition
+from symobs.analysis.time_varying_solution import dependences, has_functions
+from symobs.analysis.transition import START, TIME, OpenIntegral, antiderivative_since, tidied, transition
 from symobs.conditions import never_zero
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal
 from symobs.exact import Matrix, Scalar, antiderivative, rank
+from symobs.exact.functions import substitute
 from symobs.formula import Integral, Literal, Shown
 from symobs.formula.term import Term, block
 from symobs.page import relation, sentence
@@ -26,6 +28,7 @@ _DUMMIES = ("sigma", "tau", "rho", "nu")
 def write(page: Page, result: TimeVaryingObservability) -> None:
     """Write the page in the order of the theory."""
     asked = result.asked_for
+    page.in_time_by(*dependences((*result.closed_forms, *_squares(result)), asked, _dummy(page)))
     given(page)
     if asked.interval is not None:
         ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
@@ -59,7 +62,11 @@ def _dummy(page: Page) -> str:
 def _transition(page: Page, result: TimeVaryingObservability) -> None:
     """Say how Φ is found, and check it."""
     Phi: Matrix | None = result.answer["transition_matrix"]
-    found = transition(page.plant.matrices.A)
+    try:
+        found = transition(page.plant.matrices.A, page.plant.symbols.signs)
+    except OpenIntegral as error:
+        page.remark("transition_open_integral", integrand=error.integrand)
+        return
     if Phi is None or found is None:
         page.remark("transition_open")
         return
@@ -78,6 +85,8 @@ def _transition(page: Page, result: TimeVaryingObservability) -> None:
     rate = relation(page["Phi"].derivative, A @ page["Phi"])
     start = relation(page["Phi"].at(TIME, Scalar.symbol(START)), page.identity(order))
     page.verified("transition_checked", rate=rate, start=start)
+    if result.denominators:
+        page.assume("closed_form_if", *result.denominators)
 
 
 def _integral_of_A(page: Page, factor: Term | None, value: Matrix) -> Term:
@@ -127,18 +136,34 @@ def _seen(page: Page, result: TimeVaryingObservability) -> Term:
     return page["C"] @ page["Phi"].at(START, result.asked_for.start)
 
 
+def _squares(result: TimeVaryingObservability) -> tuple[Matrix, ...]:
+    """Return Φᵀ Cᵀ C Φ where its integral is not known."""
+    Phi, found = result.answer["transition_matrix"], result.answer["gramian"]
+    if Phi is None or found is not None:
+        return ()
+    seen = result.plant.matrices.C @ substitute(Phi, {START: result.asked_for.start})
+    return (tidied(seen.T @ seen),)
+
+
 def _gramian(page: Page, result: TimeVaryingObservability) -> None:
     """Give W with its determinant, and the initial states in its kernel."""
     asked, answer = result.asked_for, result.answer
     if answer["gramian"] is None:
-        page.remark("gramian_not_rational")
+        seen = _seen(page, result)
+        (product,), order = _squares(result), page.plant.order
+        places = [(i, j) for i in range(order) for j in range(order)]
+        i, j = next((p for p in places if antiderivative(product[p], TIME) is None), (0, 0))
+        unit = Matrix.identity(order)
+        row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
+        entry = row.T @ seen.T @ seen @ column
+        page.remark("gramian_open_integral", integrand=Shown(entry.formula, Literal(product[i, j])))
     else:
         Phi = page["Phi"].at(START, asked.start)
-        integrand = Phi.T @ page["C"].T @ page["C"] @ Phi
-        W = integral(page, integrand, TIME, asked.start, asked.end, answer["gramian_in_time"])
-        page.define("W", W, say="gramian", answer=True)
+        squared = Phi.T @ page["C"].T @ page["C"] @ Phi
+        whole = integral(page, squared, TIME, asked.start, asked.end, answer["gramian_in_time"])
+        page.define("W", whole, page.value(answer["gramian"]), say="gramian", answer=True, closing=False)
         if answer["rank"] == page.plant.order:
-            _determinant(page, answer["gramian"].determinant())
+            _determinant(page, result.gramian_determinant)
     if answer["kernel"] is None or not answer["kernel"].shape[1]:
         return
     key = "never_seen_start" if answer["gramian"] is None else "gramian_singular"
@@ -151,8 +176,9 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
 
 
 def _determinant(page: Page, value: Scalar) -> None:
-    det, shown = page["W"].apply("det"), determinant_form(page, value)
-    if never_zero(value, page.plant.symbols.signs):
+    det = page["W"].apply("det")
+    shown = page.value(value) if has_functions(value) else determinant_form(page, value)
+    if not has_functions(value) and never_zero(value, page.plant.symbols.signs):
         page.equal(relation(det, shown, "!=", 0))
         page.conclude("gramian_regular")
     else:
@@ -305,13 +331,16 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
             _refuse(page, result)
         return
     seen = _seen(page, result)
-    moment = antiderivative_since((seen.T @ page["xi"]).value.normal(), asked.start)
+    moment = antiderivative_since(tidied((seen.T @ page["xi"]).value), asked.start)
     assert moment is not None  # noqa: S101 - x₀ was found by it
     Phi = page["Phi"].at(START, asked.start)
     whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, moment)
-    page.define("x_0", page["W"].inverse @ whole, say="x0_formula", answer=True)
+    page.define(
+        "x_0", page["W"].inverse @ whole, page.value(answer["x0"]), say="x0_formula", answer=True, closing=False
+    )
     free = page["Phi"].at(START, asked.start) @ page["x_0"]
-    page.define("x_t", free if asked.input is None else free + page["x_u"], say="state_history")
+    history = free if asked.input is None else free + page["x_u"]
+    page.define("x_t", history, page.value(tidied(history.value)), say="state_history", closing=False)
     output = page["C"] @ page["x_t"]
     if asked.input is not None and m.has_feedthrough:
         output = output + page["D"] @ page["u_t"]

@@ -1,20 +1,25 @@
-"""Transition matrices in closed form: Φ' = A(t) Φ, Φ(t₀, t₀) = I, with entries rational in t and t₀.
+"""Transition matrices in closed form: Φ' = A(t) Φ, Φ(t₀, t₀) = I.
 
-Three classes are solved.  *nilpotent*: the Peano-Baker series I + ∫A + ∫A∫A + … ends (strictly triangular A(t), A(t) that
-commutes with a nilpotent integral, nilpotent constant A).  *triangular*: row by row, by variation of constants.
-*direction*: A(t) = α(t) K with K constant, where Φ = e^{K ∫α}.  A solution that needs logarithms or exponentials is not
-found: `constant_direction` gives α and K to whoever has e^{Kτ}.
+Four classes are solved.  *nilpotent*: the Peano-Baker series I + ∫A + ∫A∫A + … ends (strictly triangular A(t), A(t) that
+commutes with a nilpotent integral, nilpotent constant A).  *commuting*: A(t) = Σ αᵢ(t) Mᵢ with constant matrices that
+commute, where Φ = Π e^{Mᵢ ∫αᵢ}.  *direction*: A(t) = α(t) K with K constant and rational powers of what ∫α is the
+logarithm of.  *triangular*: row by row, by variation of constants.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING
 
+from symobs.conditions import sign_of
 from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral, roots_of
+from symobs.exact.exponential import NoClosedForm, OpenBranch, exponential
+from symobs.exact.functions import substitute
+from symobs.exact.waves import collected
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 TIME, START = "t", "t0"
 #: A series or a solution whose terms grow beyond this is given up: it would be read by nobody.
@@ -30,20 +35,34 @@ class Transition:
     terms: tuple[Matrix, ...] = ()
 
 
-def transition(A: Matrix) -> Transition | None:
-    """Return Φ(t, t₀) where one of the classes holds, None otherwise."""
-    return _series(A) or _triangular(A) or _direction(A)
+class OpenIntegral(ArithmeticError):
+    """The equations can be solved one after the other, but for an integral without closed form."""
+
+    def __init__(self, integrand: Scalar) -> None:
+        """Keep the integrand."""
+        super().__init__(str(integrand))
+        self.integrand = integrand
+
+
+def transition(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
+    """Return Φ(t, t₀) where one of the classes holds, None otherwise; raises `OpenIntegral`."""
+    return _series(A) or _commuting(A, signs) or _direction(A) or _triangular(A)
 
 
 def antiderivative_since(value: Matrix, start: Scalar) -> Matrix | None:
-    """Return the antiderivative in t that is 0 at `start`, None where none is rational (or it is too large)."""
+    """Return the antiderivative in t that is 0 at `start`, None where none is found (or it is too large)."""
     found = antiderivative(value, TIME)
     if found is None or found.size > TERMS_UP_TO:
         return None
     try:
-        return (found - found.substitute({TIME: start})).normal()
+        return tidied(found - substitute(found, {TIME: start}))
     except ZeroDivisionError:
         return None
+
+
+def tidied(value: Matrix) -> Matrix:
+    """Return a matrix with its functions collected."""
+    return Matrix.of([[collected(entry) for entry in row] for row in value.normal().rows], value.shape[1])
 
 
 def _series(A: Matrix) -> Transition | None:
@@ -86,14 +105,17 @@ def _triangular(A: Matrix) -> Transition | None:
     start = {TIME: Scalar.symbol(START)}
     entries = [[Scalar.of(0)] * len(own) for _ in own]
     for place, j in enumerate(ordered):
-        entries[j][j] = scales[j] / scales[j].substitute(start)
+        entries[j][j] = scales[j] / substitute(scales[j], start)
         for i in ordered[place + 1 :]:
             driven = _sum(A[i, k] * entries[k][j] for k in ordered[place:] if k != i)
-            found = antiderivative((driven / scales[i]), TIME)
-            if found is None or found.size > TERMS_UP_TO:
+            driven = collected(driven / scales[i])
+            found = antiderivative(driven, TIME)
+            if found is None:
+                raise OpenIntegral(collected(driven * substitute(scales[j], start)))
+            if found.size > TERMS_UP_TO:
                 return None
-            entries[i][j] = scales[i] * (found - found.substitute(start))
-    return Transition(Matrix.of(entries), "triangular")
+            entries[i][j] = scales[i] * (found - substitute(found, start))
+    return Transition(tidied(Matrix.of(entries)), "triangular")
 
 
 def _sum(values: Iterable[Scalar]) -> Scalar:
@@ -101,6 +123,43 @@ def _sum(values: Iterable[Scalar]) -> Scalar:
     for value in values:
         total = total + value
     return total
+
+
+def commuting_parts(A: Matrix) -> list[tuple[Scalar, Matrix]]:
+    """Return (α, M) with A(t) = Σ α M, the M constant: A by its powers of t, or A = α K; [] where neither holds."""
+    if A.common_denominator().degree(TIME) <= 0:
+        powers = range(max(entry.degree(TIME) for entry in A.entries) + 1)
+        found = [(Scalar.symbol(TIME) ** k, _of_power(A, k)) for k in powers]
+        return [(alpha, M) for alpha, M in found if not M.is_zero]
+    direction = constant_direction(A)
+    return [] if direction is None else [direction]
+
+
+def _of_power(A: Matrix, power: int) -> Matrix:
+    """Return the matrix of the coefficients of a power of t."""
+
+    def coefficient(entry: Scalar) -> Scalar:
+        found = entry.coefficients(TIME)
+        return found[len(found) - 1 - power] if power < len(found) else Scalar.of(0)
+
+    return Matrix.of([[coefficient(entry) for entry in row] for row in A.rows])
+
+
+def _commuting(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
+    """Return Π e^{M ∫α} over the commuting parts, where each has a closed form."""
+    parts, total = commuting_parts(A), Matrix.identity(A.shape[0])
+    if any(not (M @ N - N @ M).is_zero for (_, M), (_, N) in combinations(parts, 2)):
+        return None
+    for alpha, M in parts:
+        since = antiderivative_since(Matrix.of([[alpha]]), Scalar.symbol(START))
+        if since is None:
+            return None
+        try:
+            found = exponential(M, "s", lambda delta: sign_of(delta, signs))
+        except (NoClosedForm, OpenBranch):
+            return None
+        total = total @ found.matrix(since[0, 0])
+    return Transition(tidied(total), "commuting") if parts else None
 
 
 def constant_direction(A: Matrix) -> tuple[Scalar, Matrix] | None:
@@ -134,5 +193,5 @@ def _direction(A: Matrix) -> Transition | None:
                 projection = (projection @ (K - whole * other)) * (1 / (own - other))
         if not (K @ projection - projection * own).is_zero:
             return None
-        total = total + projection * (scale / scale.substitute(start))
+        total = total + projection * (scale / substitute(scale, start))
     return Transition(total.normal(), "direction")

@@ -1,7 +1,7 @@
-"""Antiderivatives of rational functions of one generator, the time.
+"""Antiderivatives in one generator, the time: of rational functions, and of sums of c e^p cos q and c e^p sin q.
 
-Antiderivatives are sought among rational functions (Ostrogradsky's method): where a logarithm would be needed there is
-none.
+Those of rational functions are sought among rational functions (Ostrogradsky's method): where a logarithm would be needed
+there is none.  The others are those of `waves`.
 """
 
 from __future__ import annotations
@@ -9,10 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from symobs.exact.elimination import kernel
-from symobs.exact.functions import derivative
+from symobs.exact.functions import derivative, function
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import from_coefficients
 from symobs.exact.scalar import Scalar
+from symobs.exact.waves import antiderivative_of_waves, moves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +25,7 @@ DEGREE_UP_TO = 12
 
 
 def antiderivative(value: Value, name: str) -> Value | None:
-    """Return a rational function whose derivative is `value`, None where there is none (or its search is too large)."""
+    """Return a function whose derivative is `value`, None where none is found in closed form without logarithms."""
     if isinstance(value, Matrix):
         found = [[_antiderivative(entry, name) for entry in row] for row in value.rows]
         entries = [[entry for entry in row if entry is not None] for row in found]
@@ -35,6 +36,11 @@ def antiderivative(value: Value, name: str) -> Value | None:
 
 
 def _antiderivative(value: Scalar, name: str) -> Scalar | None:
+    if any(moves(other, name) for other in value.names):
+        found = antiderivative_of_waves(value, name)
+        if found is None or (rest := _antiderivative(found[1], name)) is None:
+            return None
+        return found[0] + rest
     below = value.denominator
     whole, rest = _divided(value, name)
     total = _of_polynomial(whole, name)
@@ -106,7 +112,16 @@ def _combination(parts: Sequence[Scalar], whole: Scalar, name: str) -> list[Scal
 
 
 def exponential_of_integral(value: Scalar, name: str) -> Scalar | None:
-    """Return a rational ρ with ρ' = value · ρ, None where there is none: value = Σ nᵢ fᵢ'/fᵢ with whole numbers nᵢ."""
+    """Return ρ = e^p Π fᵢ^nᵢ with ρ' = value · ρ, None where there is none: value = p' + Σ nᵢ fᵢ'/fᵢ, p a polynomial."""
+    if any(moves(other, name) for other in value.names):
+        return None
+    whole, rest = _divided(value, name)
+    found = _of_logarithms(rest, name)
+    return None if found is None else found * function("exp", _of_polynomial(whole, name))
+
+
+def _of_logarithms(value: Scalar, name: str) -> Scalar | None:
+    """Return a rational ρ with ρ' = value · ρ: value = Σ nᵢ fᵢ'/fᵢ with whole numbers nᵢ."""
     if value.is_zero:
         return Scalar.of(1)
     below = value.denominator

@@ -33,7 +33,7 @@ def rate(value: Any, name: str, *, constant: bool) -> Any:
 
 def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
     """Return the value with the generator `name` replaced."""
-    return substitute(exact(value), {name: exact(arithmetic.leaf(instant))})
+    return arithmetic.leaf(substitute(exact(value), {name: exact(arithmetic.leaf(instant))}))
 
 
 def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:

@@ -53,6 +53,9 @@ PHRASES: dict[str, str] = {
     "moments_right": "and the right side",
     "initial_found": "The Gramian is invertible, so the initial state is the one solution,",
     "initial_checked": "{moments}, and the output that starts there is the one that was measured: {output}.",
+    "short_horizon": "For a short horizon these equations are ill-conditioned: the Taylor series of the determinant of $W$ at $T = 0$ begins "
+    "with {leading}, so errors of the output are much enlarged in $x_0$. An observer, which corrects its estimate all the time, avoids this "
+    "inversion.",
     "initial_not_unique": "The output does not fix the initial state, since the pair ($C$, $A$) is not observable. One state that "
     "explains it is",
     "initial_kernel": "Its output is the one measured, and that of the vector beside it vanishes, so every multiple of that one may be added:",

@@ -19,13 +19,18 @@ PHRASES: dict[str, str] = {
     "constants:",
     "transition_direction": "Without input the state is $x = Phi x_0$. The matrix $A$ is a function of $t$ times a constant matrix, whose "
     "eigenvectors the solutions keep:",
+    "closed_form_if": "The closed forms hold as long as {condition}, which we assume from here on; what is left out are cases of their own.",
     "transition_checked": "{rate} and {start}, as required.",
-    "transition_open": "None of the known ways leads to a transition matrix whose entries are rational functions of $t$, so none is given "
+    "transition_open": "None of the known ways leads to a transition matrix in closed form, so none is given "
     "here, and no Gramian. The rank test does without them.",
+    "transition_open_integral": "The equations can be solved one after the other, but the solution contains the integral of {integrand} over "
+    "$t$, of which no closed form is known here. So no transition matrix is given, and no Gramian. The rank test does without them.",
+    "transition_commuting": "Without input the state is $x = Phi x_0$. The matrix $A$ is a sum of functions of $t$ times constant matrices that "
+    "commute, so $Phi$ is the product of the exponentials of their integrals:",
     "gramian": "What the input forces taken away, the output is $C Phi x_0$. Multiplied by $Phiᵀ Cᵀ$ and integrated over the interval it gives "
     "$W x_0$ with",
-    "gramian_not_rational": "What the input forces taken away, the output is $C Phi x_0$. The integral of $Phiᵀ Cᵀ C Phi$, the Gramian, is not rational, "
-    "and no closed form of it is given here.",
+    "gramian_open_integral": "What the input forces taken away, the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains "
+    "the integral of {integrand} over $t$, of which no closed form is known here, so it is not given.",
     "gramian_regular": "Its determinant is not 0, so the kernel of $W$ is trivial, and every output belongs to one initial state.",
     "gramian_generic": "The initial state is determined exactly where this is not 0, and the rank test tells when.",
     "gramian_singular": "It is singular, and an initial state in its kernel is never seen at the output:",
@@ -77,3 +82,5 @@ RESTS_ON: dict[str, str] = {
     "gramian": "time_varying_gramian",
     "peano_baker": "peano_baker",
 }
+
+NAMING = ("transition_open_integral",)
