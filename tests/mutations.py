@@ -189,7 +189,7 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
     """Yield a result, the results it is made of, and those of its cases."""
     name = f"{where}{result.task}"
     yield name, result
-    for part in ("feedback", "estimator"):
+    for part in ("feedback", "estimator", "inner"):
         if part in type(result).__dataclass_fields__:
             yield from parts_of(getattr(result, part), f"{name}/")
     for case in result.case_tree:

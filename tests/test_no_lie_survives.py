@@ -19,6 +19,7 @@ from symobs import StateSpace, compensator, observability, observer
 from symobs.analysis.observability import RankResult
 from symobs.design.compensator import CompensatorDesign
 from symobs.design.gain import GainDesign
+from symobs.design.output_feedback import OutputFeedback
 from symobs.design.tracking import TrackingDesign
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
@@ -314,6 +315,21 @@ def test_a_compensator_cannot_be_denied_nor_made_of_other_gains() -> None:
         replace(asked, answer={**asked.answer, "F": None})
     with pytest.raises(CertificateRejected):
         replace(asked, answer=other.answer)
+
+
+@pytest.mark.parametrize(("observer", "poles"), [("full", [-5, -5, -6, -6]), ("minimal", [-5, -6])])
+def test_a_compensator_cannot_be_made_of_gains_for_another_plant(observer: str, poles: list[int]) -> None:
+    """F may follow from the gains: the polynomial of the loop is false all the same."""
+    rest = ("[0 0; 1 0; 0 0; 0 1]", "[1 0 0 0; 0 0 1 0]")
+    own = StateSpace("[0 1 0 0; 2 0 1 0; 0 0 0 1; 1 0 -1 0]", *rest)
+    foreign = StateSpace("[0 1 0 0; 3 0 1 0; 0 0 0 1; 1 0 -1 0]", *rest)
+    wishes: dict[str, Any] = {"control_poles": [-1, -2, -2, -3], "observer_poles": poles, "observer": observer}
+    asked, other = (compensator(plant, **wishes) for plant in (own, foreign))
+    assert isinstance(other, OutputFeedback)
+    for name, part in (("feedback", other.feedback), ("estimator", other.estimator)):
+        gain = {part.letter: part.answer[part.letter]}
+        with pytest.raises(CertificateRejected, match="another plant"):
+            replace(asked, answer={**asked.answer, **gain}, **{name: part})
 
 
 def test_impossibility_needs_a_subspace_of_the_plant_itself() -> None:

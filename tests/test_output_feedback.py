@@ -25,6 +25,7 @@ from tests.plain import (
     subtract,
     transposed,
 )
+from tests.plain_fractions import determinant, identity, inverse, plus, times
 
 if TYPE_CHECKING:
     import random
@@ -34,36 +35,6 @@ if TYPE_CHECKING:
 DRAWS = 400 if os.environ.get("SYMOBS_FULL") else 40
 #: order, inputs, outputs
 SIZES = ((2, 1, 1), (3, 1, 2), (3, 2, 1), (3, 2, 2), (4, 2, 2), (4, 1, 3), (4, 2, 3))
-
-
-def identity(order: int) -> Rows:
-    return [[Fraction(int(i == j)) for j in range(order)] for i in range(order)]
-
-
-def determinant(rows: Rows) -> Fraction:
-    """Read det M off det(sI − M)."""
-    constant = characteristic(rows)[-1]
-    return constant if len(rows) % 2 == 0 else -constant
-
-
-def inverse(rows: Rows) -> Rows:
-    """Solve M X = I column by column, by elimination on [M I]."""
-    order = len(rows)
-    work = [row + unit for row, unit in zip([list(row) for row in rows], identity(order), strict=True)]
-    for column in range(order):
-        pivot = next(i for i in range(column, order) if work[i][column])
-        work[column], work[pivot] = work[pivot], work[column]
-        lead = work[column][column]
-        work[column] = [entry / lead for entry in work[column]]
-        for i in range(order):
-            if i != column and work[i][column]:
-                factor = work[i][column]
-                work[i] = [a - factor * b for a, b in zip(work[i], work[column], strict=True)]
-    return [row[order:] for row in work]
-
-
-def added(left: Rows, right: Rows) -> Rows:
-    return [[a + b for a, b in zip(p, q, strict=True)] for p, q in zip(left, right, strict=True)]
 
 
 def drawn(generator: random.Random, rows: int, columns: int, *, sparse: bool = False) -> Rows:
@@ -132,13 +103,13 @@ def test_the_loop_has_the_poles_of_control_and_observer(
         whole = product([phi_c, phi_o])
         for s in (Fraction(7, 3), Fraction(-9, 4), Fraction(11)):
             F = function_at(found.answer["F"], s)
-            P = added(multiply(multiply(C, inverse(subtract(scaled(identity(order), s), A))), B), D)
-            loop = determinant(added(identity(outputs), multiply(P, F)))
+            P = plus(multiply(multiply(C, inverse(subtract(times(s, identity(order)), A))), B), D)
+            loop = determinant(plus(identity(outputs), multiply(P, F)))
             own_chi = at_number(characteristic(own), s)
-            expected = at_number(whole, s) * determinant(added(identity(outputs), multiply(D, direct)))
+            expected = at_number(whole, s) * determinant(plus(identity(outputs), multiply(D, direct)))
             assert loop * at_number(characteristic(A), s) * own_chi == expected
             G = [[entry_at(entry, s) for entry in row] for row in rows_of(found.fields["closed_loop"])]
-            assert multiply(added(identity(outputs), multiply(P, F)), G) == P
+            assert multiply(plus(identity(outputs), multiply(P, F)), G) == P
         large = Fraction(10**12)
         for row, limits in zip(function_at(found.answer["F"], large), direct, strict=True):
             assert all(abs(entry - limit) < Fraction(1, 10**6) for entry, limit in zip(row, limits, strict=True))
@@ -147,10 +118,6 @@ def test_the_loop_has_the_poles_of_control_and_observer(
 
 def drawn_zero(rows: int, columns: int) -> Rows:
     return [[Fraction(0)] * columns for _ in range(rows)]
-
-
-def scaled(rows: Rows, factor: Fraction) -> Rows:
-    return [[entry * factor for entry in row] for row in rows]
 
 
 def function_at(F: Any, s: Fraction) -> Rows:

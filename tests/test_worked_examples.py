@@ -35,6 +35,7 @@ ROWS = {"S0-Ex4.1", "S0-Ex4.2", "S0-CL", "S0-SEP", "S1-EX-DI", "S3-EX", "S4-PEND
 ROWS |= {"S0-REC", "S0-GRAM", "S0-Ex4.1-GRAM", "S0-Ex4.3-GRAM", "S1-TANK", "S4-PEND-GRAM", "S4-MSUM", "S4-NOISE"}
 ROWS |= {"S0-DUAL", "S4-DUALNEG", "S0-PBH", "S0-DET", "S3-ASSUMP", "S0-OMAT"}
 ROWS |= {"S1-OBS", "S1-PP", "S3-RRE", "S3-ALT", "S3-ZEROS", "S2-EX-PEND", "S2-TRACK"}
+ROWS |= {"S0-MIN", "S0-MIN-GENC", "S0-Ex4.3", "S0-MINCOMP", "S0-Ex4.4", "S2-FHG", "S4-PEND-MIN"}
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 

@@ -78,12 +78,11 @@ class Derivation:
 
     def check(self) -> Environment:
         """Verify every line; return what is established at the end.  Raises `DerivationRejected`."""
-        known = self.__dict__.get("_checked")
+        known: Environment | None = self.__dict__.get("_checked")
         if known is None:
             known = _walk(self.steps, self.start, self.discrete)
             object.__setattr__(self, "_checked", known)
-        environment: Environment = known
-        return environment
+        return known
 
 
 #: The letter that a label of a diagram must agree with, where the page has it.
@@ -242,8 +241,7 @@ def _assume(relation: Relation, environment: Environment) -> Environment:
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     if left == right:
         _reject(plain_relation(relation, environment.variable))
-    factors = [factor for factor, _ in (left - right).numerator.factors()[1]]
-    return replace(environment, assumed=(*environment.assumed, *factors))
+    return replace(environment, assumed=(*environment.assumed, *(f for f, _ in (left - right).numerator.factors()[1])))
 
 
 def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:

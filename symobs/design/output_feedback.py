@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 from symobs.analysis.strata import carried
 from symobs.certificate import Certificate, Claim, check
 from symobs.conditions import sign_of
+from symobs.design.gain import letters_of
+from symobs.errors import CertificateRejected
 from symobs.exact import Factored, Matrix, Scalar, factored, transfer, transfer_matrix
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
@@ -125,8 +127,11 @@ class OutputFeedback(Result):
         return self.answer["F"] is not None
 
     def certified(self, environment: Environment) -> Iterator[Claim]:
-        """Yield that K and L are the certified gains of the two designs."""
+        """Yield that K and L are the certified gains of the two designs, which are for this plant."""
         for design in (self.feedback, self.estimator):
+            if design.plant is not self.plant and letters_of(design.plant) != letters_of(self.plant):
+                message = f"{design.letter} is a gain for another plant"
+                raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
             own, certified = self.answer[design.letter], design.answer[design.letter]
             if own is not certified:
                 yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")
