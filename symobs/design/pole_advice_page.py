@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
 from symobs.derivation import Given
-from symobs.design.pole_advice import FURTHER_LEFT, numerator_of, numerator_term
-from symobs.design.pole_places import overshoot_of, third_digit
+from symobs.design.pole_advice import FURTHER_LEFT, numerator_term
+from symobs.design.pole_places import numerator_of, overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import function
