@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.certificate import Claim
 from symobs.conditions import Condition, sign_of
 from symobs.design.assignment import Pair
-from symobs.design.pole_places import Zeros, as_number, normalised, overshoot_of, pair_poles, pair_ratio, poles_of
+from symobs.design.pole_places import (
+    Zeros,
+    as_number,
+    normalised,
+    numerator_of,
+    overshoot_of,
+    pair_poles,
+    pair_ratio,
+    poles_of,
+)
 from symobs.design.pole_warnings import warnings_of
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of, transfer
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of
 from symobs.exact.circle import butterworth
 from symobs.exact.functions import NotWritten, function, identities
 from symobs.formula import Environment, Literal
@@ -229,12 +238,6 @@ class PoleAdvice(Result):
         from symobs.design.pole_advice_page import write_pole_advice  # noqa: PLC0415 - the page stands on this type
 
         write_pole_advice(page, self)
-
-
-def numerator_of(plant: StateSpace) -> Scalar:
-    """Return C adj(sI − A) B + D det(sI − A), nothing cancelled."""
-    m = plant.matrices
-    return transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)[0]
 
 
 def numerator_term(e: Environment, plant: StateSpace) -> Term:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
 from symobs.derivation import Given
-from symobs.design.pole_advice import FURTHER_LEFT, numerator_of, numerator_term
-from symobs.design.pole_places import overshoot_of, third_digit
+from symobs.design.pole_advice import FURTHER_LEFT, numerator_term
+from symobs.design.pole_places import numerator_of, overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import function
@@ -99,7 +99,9 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
         page.define("phi_r", whole, say="one_on_circle", closing=False)
     else:
         page.define("phi_r", whole, say="some_on_circle", closing=False, count=_in_words(count))
-    identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), advice.circle)
+    powers = [page.value(radius) ** (2 * count), page.s ** (2 * count)]
+    circle = powers[0] + powers[1] if count % 2 == 0 else powers[0] - powers[1]
+    identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), circle)
     if count == 1:
         page.conclude_silently(identity)
         return

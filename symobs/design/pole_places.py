@@ -8,7 +8,7 @@ from math import floor, log, log10, pi
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of
-from symobs.exact import Complex, Root, Scalar, factored, product_of
+from symobs.exact import Complex, Root, Scalar, factored, product_of, transfer
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import PI, function, square_root
 from symobs.stability import is_beyond, on_boundary, stability
@@ -144,3 +144,9 @@ def as_number(root: Root) -> Complex | Root:
     if size > 0:
         return Complex.of(root.centre + distance)
     return Complex(root.centre, distance)
+
+
+def numerator_of(plant: StateSpace) -> Scalar:
+    """Return C adj(sI − A) B + D det(sI − A), nothing cancelled."""
+    m = plant.matrices
+    return transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)[0]

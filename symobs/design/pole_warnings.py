@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symobs.design.pole_places import numerator_of
 from symobs.exact import Factored, Scalar, apply_polynomial, roots_of
 from symobs.exact.enclosure import is_number, sign_of_number
 from symobs.phrases import PHRASES
@@ -84,8 +85,6 @@ def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
 
 def _of_compensator(plant: StateSpace) -> Iterator[Beware]:
     """Warn where no compensator that is stable itself can stabilise the plant."""
-    from symobs.design.pole_advice import numerator_of  # noqa: PLC0415 - the two tell of each other
-
     P = numerator_of(plant) / plant.matrices.A.characteristic_polynomial(plant.variable)
     if P and no_stable_compensator(P, plant.variable, plant.symbols.signs):
         yield Beware("always_unstable")
