@@ -146,6 +146,32 @@ def test_how_ill_conditioned_a_short_horizon_is(A: str, C: str, output: str, wan
     assert wanted is None or f"begins with {wanted}," in " ".join(page.split())
 
 
+def test_the_covariance_of_four_integrators() -> None:
+    """The variance of the first state is n^2 r/T for n integrators in a row: the inverse of Hilbert's matrix begins so."""
+    chain = symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0]", symbols={"r": "positive"})
+    result = symobs.initial_state_covariance(chain, R="r")
+    assert result.covariance[0, 0] == 16 * sympy.Symbol("r") / T
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "asked"),
+    [
+        ("[0 1; -k -c]", "[1 0]", "square roots of the parameters"),
+        ("[-1 0 0; 1 -2 0; 0 1 -3]", "[0 0 1]", "the inverse of the 3x3 Gramian, of "),
+        (
+            "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 0 0 0]",
+            "[1 0 0 0 0]",
+            "the Gramian of 5 states, more than 4",
+        ),
+    ],
+)
+def test_what_stays_open_about_a_covariance_is_named(A: str, C: str, asked: str) -> None:
+    plant = symobs.StateSpace(A, None, C, symbols={"k": "positive", "c": "positive"})
+    result = symobs.initial_state_covariance(plant, R="1")
+    assert result.verdict == "undecided"
+    assert asked in result.question
+
+
 # -- random plants -----------------------------------------------------------------------------------------------------
 
 entry = st.integers(-3, 3)

@@ -212,6 +212,16 @@ def test_an_initial_state_is_found_again(x0: list[int], u: list[int]) -> None:
     assert "No initial state" in spoiled.to("text")
 
 
+def test_an_initial_state_behind_exponentials() -> None:
+    """By hand for x₁' = t x₂ − x₁, x₂' = 1 − x₂ from (4, 2) at t = 1: x₂ = 1 + e^{1−t}."""
+    plant = symobs.StateSpace("[-1 t; 0 -1]", "[0; 1]", "[1 0]")
+    output = "t - 1 + exp(1 - t)*(4 + (t^2 - 1)/2)"
+    result = symobs.time_varying_observability(plant, interval="1, 3", output=output, input="1")
+    assert list(result.x0) == [4, 2]
+    spoiled = symobs.time_varying_observability(plant, interval="1, 3", output=f"{output} + exp(-2*t)", input="1")
+    assert spoiled.x0 is None
+
+
 def test_that_no_state_explains_an_output_is_proved() -> None:
     result = solved("integrator", interval="1, 3", output="t^7")
     candidate = result.answer["candidate"]

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: Orders for which the inverse of a Gramian in closed form is still readable.
-_MOST_STATES = 3
+_MOST_STATES = 4
 #: Gramians of more terms than this are not inverted.
 _MOST_TERMS = 16
 END = Scalar.symbol("T")
@@ -61,14 +61,13 @@ class InitialStateCovariance(Branched):
         if test["rank"] < plant.order:
             return cls(plant, method_name, shared)
         if plant.order > _MOST_STATES:
-            question = f"the inverse of a Gramian of more than {_MOST_STATES} states"
+            question = f"the inverse of the Gramian of {plant.order} states, more than {_MOST_STATES}"
             return cls(plant, method_name, {**shared, "question": question, "factor": None})
         try:
             found, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
-        if _is_long(plant, found):
-            question = "the inverse of a Gramian of many terms"
+        if question := _too_long(plant, found):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
@@ -180,13 +179,20 @@ class InitialStateCovariance(Branched):
         tell_covariance(self, page)
 
 
-def _is_long(plant: StateSpace, found: Exponential) -> bool:
-    """Whether e^{At} has square roots of parameters, or the Gramian more terms than can be inverted readably."""
-    table = found.table()
+def _too_long(plant: StateSpace, found: Exponential) -> str:
+    """Return the question that stays open where the Gramian cannot be inverted readably."""
+    table, order = found.table(), plant.order
     if plant.matrices.A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
-        return True
+        return (
+            f"the inverse of the {order}x{order} Gramian, whose functions have square roots of the parameters in them"
+        )
     seen = product(table_of(plant.matrices.C), table)
-    return sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row) > _MOST_TERMS
+    terms = sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row)
+    return (
+        f"the inverse of the {order}x{order} Gramian, of {terms} terms, more than {_MOST_TERMS}"
+        if terms > _MOST_TERMS
+        else ""
+    )
 
 
 def roots_of_frequencies(value: Quasi) -> bool:
