@@ -391,3 +391,12 @@ class TestComplex:
             assert second**-2 * second * second == Complex.of(1)
             assert complex_from_sympy(read_back(str(quotient)), "here") == quotient
         assert hash(first - second + second) == hash(first)
+
+
+def test_long_polynomials_reach_sympy_term_by_term() -> None:
+    names = [Scalar.symbol(name) for name in ("a", "b", "c", "pi_1")]
+    value = (names[0] * 2 - names[1] + names[2] / 3 + names[3] + 1) ** 5
+    assert value.size > 100
+    own = [sympy.Symbol("a"), sympy.Symbol("b", positive=True), sympy.Symbol("c"), sympy.Symbol("pi_1")]
+    expected = sympy.expand((own[0] * 2 - own[1] + own[2] / 3 + own[3] + 1) ** 5)
+    assert sympy.expand(scalar_to_sympy(value, {"b": own[1]}) - expected) == 0
