@@ -358,9 +358,11 @@ def test_all_methods_agree_for_one_output(block: int) -> None:
         gains, verdicts = set(), set()
         for method in sorted(m.name for m in methods("observer").values()):
             found = symobs.observer(plant, poles=listed, method=method)
-            back = symobs.state_feedback(dual, poles=listed, method=method)
             gain = found.answer["L"]
-            assert back.answer["K"] == (None if gain is None else gain.T)
-            verdicts |= {found.verdict, back.verdict}
+            verdicts.add(found.verdict)
             gains.add(str(gain))
+            if f"state_feedback/{method}" in methods("state_feedback"):
+                back = symobs.state_feedback(dual, poles=listed, method=method)
+                assert back.answer["K"] == (None if gain is None else gain.T)
+                verdicts.add(back.verdict)
         assert len(gains) == len(verdicts) == 1, (A, C, listed)
