@@ -51,8 +51,14 @@ def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
         return sympy_border.scalar_to_sympy(value.value, objects) - sympy_border.root_to_sympy(value.root, objects)
     if isinstance(value, Condition):
         return sympy_border.relation_to_sympy(value.expression, value.operator, objects)
+    if isinstance(value, tuple) and value and all(isinstance(row, tuple) and _are_factored(row) for row in value):
+        return sympy_border.table_to_sympy(value, objects)
     if isinstance(value, (list, tuple)):
         return tuple(to_sympy(entry, objects) for entry in value)
     if isinstance(value, dict):
         return {key: to_sympy(entry, objects) for key, entry in value.items()}
     return value
+
+
+def _are_factored(row: tuple[Any, ...]) -> bool:
+    return bool(row) and all(isinstance(entry, Factored) for entry in row)

@@ -43,6 +43,8 @@ LETTERS: dict[str, LetterForm] = {
     "v": LetterForm("v", "v", "vector"),
     "N": LetterForm("N", "N", "basis of the hidden subspace"),
     "X": LetterForm("X", "X", "plant on the hidden subspace"),
+    "N_K": LetterForm(r"N_{\mathrm c}", "N_c", "basis of what the input does not move, transposed"),
+    "X_K": LetterForm(r"X_{\mathrm c}", "X_c", "plant on what the input does not move"),
     "N_2": LetterForm("N_2", "N₂", "basis of the hidden subspace of the unmeasured part"),
     "X_2": LetterForm("X_2", "X₂", "plant on the hidden subspace of the unmeasured part"),
     "exp_At": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),

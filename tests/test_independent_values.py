@@ -306,7 +306,17 @@ ROOTS = {"roots", "poles", "zeros", "zeros_used"}
 #: Verdicts about stability, which `test_verdicts_of_stability` decides by numeric roots.
 #: Letters of a case that are free to choose: a basis N of the kernel and X with A N = N X, which the page states.
 #: With row reduction the null vectors, of which f Psi^-1 is the gain.
-WITNESSES = {"N", "X", "mu", "S", "T", *(f"{part}_{of}" for part in "ABCO" for of in ("bar", "co", "dual")), "Ctr_dual"}
+WITNESSES = {
+    "N",
+    "X",
+    "N_K",
+    "X_K",
+    "mu",
+    "S",
+    "T",
+    *(f"{part}_{of}" for part in "ABCO" for of in ("bar", "co", "dual")),
+    "Ctr_dual",
+}
 WITNESSES |= {"Psi", "f_psi", *(f"xi_{k}{i}" for k in range(1, 5) for i in ("", *range(1, 9)))}
 VERDICTS = {"stable", "stable_if", "F_stable"}
 #: What was asked for, the basis of a decomposition and what it makes of the plant: `test_modes` holds these to identities.

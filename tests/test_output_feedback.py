@@ -193,3 +193,55 @@ def test_nothing_is_left_to_estimate_where_the_outputs_show_the_state() -> None:
 def test_the_method_alone_asks_for_the_minimal_observer() -> None:
     asked = {name: value for name, value in ASKED.items() if name != "observer"}
     assert symobs.compensator(SERVO, method="minimal_order", **asked).F == symobs.compensator(SERVO, **ASKED).F
+
+
+# -- what a reading of the whole found ------------------------------------------------------------------------------------
+
+
+def test_what_uses_the_estimate_needs_a_law_that_can_be_solved() -> None:
+    """With D = 1/31 the control law of S0, Example 4.4 cannot be solved for u, whatever is added to it."""
+    ill_posed = ("[0 1; 0 -1]", "[0; 1]", "[1 0]", "1/31")
+    asked = {"control_poles": [-2, -2], "observer_poles": [-10]}
+    for task in (symobs.feedforward, symobs.tracking):
+        found = task(StateSpace(*ill_posed), observer="minimal", **asked)
+        assert found.verdict == "no"
+        assert "cannot be solved for u" in found.to("text")
+    parametric = symobs.feedforward(StateSpace(*ill_posed[:3], "d"), observer="minimal", **asked)
+    assert [str(condition) for condition in parametric.conditions] == ["Ne(31*d - 1, 0)"]
+    assert [case.result.verdict for case in parametric.case_tree if case.result is not None] == ["no"]
+
+
+def test_a_parametric_output_that_may_depend_on_another_is_no_refusal() -> None:
+    found = symobs.reduced_order_observer(StateSpace("[0 1 0; 0 0 1; 1 2 3]", C="[1 0 0; 0 a 0]"), poles=[-1])
+    assert found.verdict == "conditional"
+    assert "Ne(a, 0)" in map(str, found.conditions)
+
+
+@pytest.mark.parametrize(
+    ("plant", "control", "observer"),
+    [
+        (("[1 0; 0 2]", "[1; 0]", "[0 1]"), ["-1", "-2"], ["-3", "-4"]),
+        (("[-1 0 0; 0 2 0; 0 0 -5]", "[0; 1; 1]", "[1 1 0]"), ["-1", "-2", "-3"], ["-5", "-4", "-3"]),
+        (("[-1 0; 0 -2]", "[1/2 -1; 1/2 0]", "[0 1]"), ["-1", "-1"], ["-1", "-2"]),
+    ],
+    ids=["both_sides_impossible", "both_sides_keep_modes", "no_compensator_needed"],
+)
+def test_pages_of_plants_that_are_hidden_on_both_sides(plant: Any, control: list[str], observer: list[str]) -> None:
+    assert symobs.compensator(StateSpace(*plant), control_poles=control, observer_poles=observer).to("text")
+
+
+def test_a_pole_three_times_in_discrete_time_has_a_page() -> None:
+    plant = StateSpace("[-1 2 1; -2 -1 0; 2 1 2]", "[-2; 0; 0]", "[1 0 0]", dt=True)
+    found = symobs.compensator(plant, control_poles=["-1/2"] * 3, observer_poles=[-2] * 3)
+    assert "A caution" in found.to("text")
+
+
+def test_outputs_that_see_nothing_leave_the_modes_where_they_are() -> None:
+    assert symobs.observer(StateSpace("3", C="[0; 0]"), poles=[3]).verdict == "yes"
+    hidden = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 0]")
+    assert symobs.reduced_order_observer(hidden, poles=[3]).fixed_modes == (3,)
+
+
+def test_the_time_is_no_name_for_a_parameter_of_the_coordinates() -> None:
+    with pytest.raises(InputError, match="another name"):
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 -1]", C="[1 0]"), poles=[-1], T="[1 0; 0 t]")

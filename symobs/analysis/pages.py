@@ -258,30 +258,36 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
         zero = Matrix.zeros(matrix.value.shape[0], 1)
         page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
     page.steps += repair(page, letter, result, kind)
-    page.set("N", result.answer["kernel"])
-    page.set("X", result.answer["restricted"])
+    letters = HIDDEN[kind]
+    page.set(letters[0], result.answer["kernel"])
+    page.set(letters[1], result.answer["restricted"])
     polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
     page.conclude(
         f"modes_{kind}",
-        *hidden(page, kind == "observability"),
+        *hidden(page, kind == "observability", letters),
         modes=Roots(
-            hidden_polynomial(page, len(result.kernel_vectors)).formula, roots_of(polynomial, page.plant.variable)
+            hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,
+            roots_of(polynomial, page.plant.variable),
         ),
     )
 
 
-def hidden(page: Page, is_observer: bool) -> tuple[Relation, ...]:  # noqa: FBT001
+#: The letters of what is not seen, and of what is not moved: a page may speak of both.
+HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
+
+
+def hidden(page: Page, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
     """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
-    N, X = page["N"], page["X"]
+    N, X = (page[name] for name in letters)
     A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
     count = N.value.shape[1]
     zero = Matrix.zeros(row.value.shape[0], count)
     return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
 
 
-def hidden_polynomial(page: Page, order: int) -> Term:
+def hidden_polynomial(page: Page, order: int, name: str = "X") -> Term:
     """Return det(sI − X): the polynomial of the hidden modes."""
-    return (page.s @ page.identity(order) - page["X"]).apply("det")
+    return (page.s @ page.identity(order) - page[name]).apply("det")
 
 
 def say_stability(page: Page, about: Term) -> None:

@@ -36,11 +36,13 @@ def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
     """
     if not isinstance(value, Matrix) or value.shape == (1, 1):
         return (as_scalar(value),)
+    if name == "strictly_proper":
+        return value.entries
     denominator = value.common_denominator()
-    if name not in {"strictly_proper", "stable", "unstable"} or denominator.degree(variable) < 1:
+    if name not in {"stable", "unstable"} or denominator.degree(variable) < 1:
         message = f"{name} is no property of this matrix"
         raise TypeError(message)
-    return value.entries if name == "strictly_proper" else (denominator,)
+    return (denominator,)
 
 
 def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001

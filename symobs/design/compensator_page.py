@@ -129,6 +129,9 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
     """Say that F is proper and, where the conditions are few, whether or where it is stable by itself."""
     plant, F = page.plant, design.answer["F"]
     found = design.own_stability
+    if isinstance(F, Matrix) and F.common_denominator().degree(plant.variable) < 1:
+        page.conclude(f"{stem}_proper", proper, **slots)
+        return
     if found in {"yes", "no"}:
         word = "stable" if found == "yes" else "unstable"
         page.conclude(f"{stem}_{word}", proper, predicate(word, page["F"]), **slots)
@@ -324,8 +327,8 @@ def _with_distinct_poles(page: Page, desired: DesiredPolynomial) -> Relation | N
     for factor in desired.factors:
         moved = factor
         while moved in factors:
-            moved = moved.substitute({variable: further_in})
-        factors[monic(moved, variable)] = None
+            moved = monic(moved.substitute({variable: further_in}), variable)
+        factors[moved] = None
     distinct = DesiredPolynomial(variable, tuple(factors))
     gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
     if gain is None:

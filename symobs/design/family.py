@@ -42,7 +42,7 @@ class Family:
         own = names[: A.shape[0] * (C.shape[0] - 1)]
         charts = charts_of(A, C, factors, pair.variable, own)
         part = pair.part_of(member)
-        inside = (chart for chart in charts if chart.free_entries(part) is not None)
+        inside = (chart for chart in charts if A.shape[0] and chart.free_entries(part) is not None)
         return Family(pair, next(inside, charts[0]), names, member)
 
     @property
@@ -53,7 +53,7 @@ class Family:
     @cached_property
     def own_G(self) -> Matrix | None:
         """The G of the member, None where it lies in no chart."""
-        return self.equation.free_entries(self.pair.part_of(self.member))
+        return None if self.is_empty else self.equation.free_entries(self.pair.part_of(self.member))
 
     @cached_property
     def H(self) -> Matrix:

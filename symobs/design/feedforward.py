@@ -44,7 +44,7 @@ class FeedforwardDesign(Result):
         """Return the feedforward of a loop, or the negative result."""
         plant = loop.plant
         answer: dict[str, Any] = dict.fromkeys(("F", "transfer_function", "w", "stuck"))
-        if loop.answer["K"] is not None and loop.answer["L"] is not None:
+        if loop.exists:
             stuck = kernel(moving_at_rest(loop))
             G = None if stuck.shape[1] else gain_at_rest(loop)
             left = Matrix.zeros(1, 0) if G is None else kernel(G.T)
@@ -62,7 +62,7 @@ class FeedforwardDesign(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
         K, F, w, stuck = self.loop.answer["K"], self.answer["F"], self.answer["w"], self.answer["stuck"]
-        have = K is not None and self.loop.answer["L"] is not None
+        have = self.loop.exists
         reasons = sum(value is not None for value in (F, w, stuck))
         if reasons != int(have) or (F is None) != (self.answer["transfer_function"] is None):
             message = "there is a feedforward exactly where both gains exist and the gain at rest has full rank"
@@ -129,8 +129,7 @@ class FeedforwardDesign(Result):
         """The conditions of the gains and of F."""
         own = super().holds_where
         known = {condition.expression for condition in own}
-        gains = [*self.loop.feedback.holds_where, *self.loop.estimator.holds_where]
-        further = {c.expression: c for c in gains if c.expression not in known}
+        further = {c.expression: c for c in self.loop.holds_where if c.expression not in known}
         for factor in vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs):
             if factor not in known:
                 further.setdefault(factor, Condition("existence", factor))

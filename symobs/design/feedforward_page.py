@@ -8,7 +8,7 @@ from symobs.analysis.pages import factored_form, formula_of_factored, given
 from symobs.design.compensator_page import MATRIX
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant, write_gain
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
-from symobs.design.minimal_order_page import partitioned_gain
+from symobs.design.minimal_order_page import partitioned_gain, write_control_law
 from symobs.design.observer import page_style, write_observer
 from symobs.design.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reduced_order_page import write_observer_of_rest
@@ -35,6 +35,14 @@ def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
             if loop.answer["L"] is not None:
                 write_observer(page)
     if loop.answer["K"] is None or loop.answer["L"] is None:
+        return
+    if (
+        isinstance(loop, MinimalOrderCompensator)
+        and not loop.exists
+        and None not in (loop.answer["K"], loop.answer["L"])
+    ):
+        with page.section("compensator"):
+            write_control_law(page, loop, large=False)
         return
     with page.section("feedforward"):
         if design.answer["F"] is None:

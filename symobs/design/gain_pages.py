@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import (
+    HIDDEN,
     determinant_form,
     factored_form,
     formula_of_factored,
@@ -44,6 +45,11 @@ class Side:
     test: str
     index: str
     coefficient: str
+
+    @property
+    def hidden(self) -> tuple[str, str]:
+        """The letters of the hidden subspace: a page may speak of both sides."""
+        return HIDDEN[self.test]
 
     @property
     def phi(self) -> str:
@@ -246,15 +252,15 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
     assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
     page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
-    fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
-    page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER), divides, roots=roots)
+    page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), divides, roots=roots)
     if design.chart is not None:
         write_hidden_family(page, design, side)
         return
     gain = page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
-    free = page["N"] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
+    free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
     page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
 
@@ -265,21 +271,21 @@ def _impossible(page: Page, design: GainDesign, side: Side) -> None:
         listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
         page.conclude("impossible_zero" if design.excluded else "undecided_zero", places=listed)
         return
-    fixed = _fixed(page, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     page.conclude(
         f"impossible_{side.kind}",
-        *hidden(page, side is OBSERVER),
+        *hidden(page, side is OBSERVER, side.hidden),
         predicate("not_polynomial", page[side.phi] / fixed),
         fixed=Shown(fixed.formula, Literal(design.fixed_polynomial)),
         polynomial=Shown(page[side.phi].formula, Literal(page[side.phi].value)),
     )
 
 
-def _fixed(page: Page, kernel: Matrix, restricted: Matrix) -> Term:
+def _fixed(page: Page, side: Side, kernel: Matrix, restricted: Matrix) -> Term:
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
-    page.set("N", kernel)
-    page.set("X", restricted)
-    return hidden_polynomial(page, kernel.shape[1])
+    for name, value in zip(side.hidden, (kernel, restricted), strict=True):
+        page.set(name, value)
+    return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
 
 
 def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
@@ -328,11 +334,11 @@ def _case(page: Page, case: Case, side: Side) -> None:
 def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
-    fixed = _fixed(page, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
+    fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
     key = "case_no" if gain is None else "case_survives" if own else "case_other"
-    page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER), wanted, modes=modes)
+    page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
     if gain is None:
         return
     if not own:

@@ -14,7 +14,7 @@ from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.gain import letters_of
 from symobs.design.output_feedback import OutputFeedback, Realisation
-from symobs.design.reduced_order_observer import ReducedOrderObserver, completed
+from symobs.design.reduced_order_observer import ReducedOrderObserver, completed, require_rank
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, transfer
@@ -87,6 +87,11 @@ class MinimalOrderCompensator(OutputFeedback):
     def well_posedness(self) -> Scalar:
         """det(I − N D): where it is 0 the control law cannot be solved for u."""
         return well_posedness(self.plant, self.answer["K"], self.estimator)
+
+    def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        """Return the compensator on a stratum; raises `NotWritten` where an output is a combination of the others."""
+        require_rank(plant)
+        return super().on(plant, values)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

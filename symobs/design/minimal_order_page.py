@@ -42,7 +42,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
     if design.answer["K"] is None or design.answer["L"] is None:
         return
     with page.section("compensator"):
-        _control_law(page, design, large=large)
+        write_control_law(page, design, large=large)
         if not design.exists:
             return
         _closed(page, large=large)
@@ -63,7 +63,7 @@ def _one(page: Page) -> Term:
     return page.identity(page.plant.inputs) if page.plant.inputs > 1 else page.value(1)
 
 
-def _control_law(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
+def write_control_law(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
     """U = −K x̂ in terms of the output and of the observer's state."""
     plant = page.plant
     partitioned_gain(page)

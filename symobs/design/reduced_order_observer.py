@@ -213,9 +213,7 @@ class ReducedOrderObserver(Result):
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
             T = self.answer["T"].substitute(values)
-            if not echelon(plant.matrices.C, plant.ideal)[0]:
-                message = "nothing is measured here"
-                raise NotWritten(message)
+            require_rank(plant)
             usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
@@ -237,6 +235,13 @@ class ReducedOrderObserver(Result):
         from symobs.design.reduced_order_page import write_reduced_order  # noqa: PLC0415 - the page stands on this type
 
         write_reduced_order(page, self)
+
+
+def require_rank(plant: StateSpace) -> None:
+    """Raise `NotWritten` on a stratum where an output is a combination of the others: fewer are to be kept there."""
+    if len(echelon(plant.matrices.C, plant.ideal)[0]) < plant.outputs:
+        message = "an output is a combination of the others here"
+        raise NotWritten(message)
 
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
@@ -287,6 +292,9 @@ def _read_coordinates(value: object, plant: StateSpace) -> Matrix:
     if T.select(range(plant.outputs), range(plant.order)) != plant.matrices.C:
         message = "the upper rows of T are not C"
         raise InputError(message, where="specification.T", repair="write T as [C; R]")
+    if T.names & {plant.variable, "t"}:
+        message = "T contains a name that stands for the time or the variable of polynomials"
+        raise InputError(message, where="specification.T", repair="give the parameter another name")
     if T.determinant().is_zero:
         message = "T is singular"
         raise InputError(message, where="specification.T", repair="choose rows below C that are independent of it")

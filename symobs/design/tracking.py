@@ -117,8 +117,8 @@ class TrackingDesign(Result):
 
     @property
     def has_gains(self) -> bool:
-        """Whether K and L exist."""
-        return self.loop.answer["K"] is not None and self.loop.answer["L"] is not None
+        """Whether K and L exist, and the control law can be solved for u."""
+        return self.loop.exists
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -147,8 +147,7 @@ class TrackingDesign(Result):
         """The conditions of the gains and of K_d."""
         own = super().holds_where
         known = {condition.expression for condition in own}
-        gains = [*self.loop.feedback.holds_where, *self.loop.estimator.holds_where]
-        return (*own, *(condition for condition in gains if condition.expression not in known))
+        return (*own, *(condition for condition in self.loop.holds_where if condition.expression not in known))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

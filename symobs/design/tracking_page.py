@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import formula_of_factored, given
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, write_gain
-from symobs.design.minimal_order_page import partitioned_gain
+from symobs.design.minimal_order_compensator import MinimalOrderCompensator
+from symobs.design.minimal_order_page import partitioned_gain, write_control_law
 from symobs.design.observer import page_style, write_observer
 from symobs.design.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reduced_order_page import write_observer_of_rest
@@ -31,6 +32,14 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
             write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
             if loop.answer["L"] is not None:
                 write_observer(page)
+    if (
+        isinstance(loop, MinimalOrderCompensator)
+        and not loop.exists
+        and None not in (loop.answer["K"], loop.answer["L"])
+    ):
+        with page.section("compensator"):
+            write_control_law(page, loop, large=False)
+        return
     with page.section("tracking"):
         _reference(page, design)
         if design.has_gains and design.answer["K_d"] is not None:

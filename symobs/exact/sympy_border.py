@@ -79,6 +79,11 @@ def factored_to_sympy(value: Factored, objects: Mapping[str, Any]) -> sympy.Expr
     return sympy.Mul(scalar_to_sympy(value.unit, objects), *powers)
 
 
+def table_to_sympy(rows: tuple[tuple[Factored, ...], ...], objects: Mapping[str, Any]) -> sympy.ImmutableMatrix:
+    """Return the `ImmutableMatrix` of rows of factored forms."""
+    return sympy.ImmutableMatrix([[factored_to_sympy(entry, objects) for entry in row] for row in rows])
+
+
 def complex_to_sympy(value: Complex, objects: Mapping[str, Any]) -> sympy.Expr:
     """Return real + imaginary·I."""
     return scalar_to_sympy(value.real, objects) + sympy.I * scalar_to_sympy(value.imaginary, objects)

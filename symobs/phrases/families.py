@@ -50,7 +50,7 @@ PHRASES: dict[str, str] = {
     "gain_follows": "The gain is",
     "no_member": "A gain with short entries, whose closed-loop matrix is not cyclic, is",
     "family_hidden": "It is not the only one. The gains form a family of dimension {count}: the part that is seen has the freedom of Sylvester's equation, "
-    "and along the hidden subspace, spanned by the columns of $N$, the gain is free.",
+    "and along the hidden subspace the gain is free.",
 }
 
 RESTS_ON: dict[str, str] = {

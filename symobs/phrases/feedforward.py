@@ -6,7 +6,7 @@ PHRASES: dict[str, str] = {
     "feedforward_law": "A new input $v_r$ is added to the control law:",
     "feedforward_loop": "State, error and output then obey",
     "feedforward_polynomial": "The error obeys an equation of its own, which $v_r$ does not enter, and the polynomial of the whole loop is",
-    "gain_at_rest": "With a constant input in place of $F_v v_r$ the loop comes to rest where the output is this input times",
+    "gain_at_rest": "With a constant input in place of $F_v v_r$ the output in the state of rest is this input times",
     "feedforward_gain": "For the output to equal $v_r$ at rest,",
     "feedforward_smallest": "There are more inputs than outputs. The smallest $F_v$ for which the output equals $v_r$ at rest is",
     "feedforward_response": "From $v_r$ to $y$ the error has no part, so the modes of the observer do not appear:",
