@@ -245,3 +245,24 @@ def test_outputs_that_see_nothing_leave_the_modes_where_they_are() -> None:
 def test_the_time_is_no_name_for_a_parameter_of_the_coordinates() -> None:
     with pytest.raises(InputError, match="another name"):
         symobs.reduced_order_observer(StateSpace("[0 1; 0 -1]", C="[1 0]"), poles=[-1], T="[1 0; 0 t]")
+
+
+def test_where_an_impossible_reference_can_be_followed_is_said() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[b; 1]", "[1 0]")
+    found = symobs.tracking(plant, control_poles=[-2, -2], observer_poles=[-10], reference_matrix="[0 1; -1 0]")
+    assert found.verdict == "no"
+    (followed,) = [case for case in found.case_tree if case.result is not None and case.result.verdict == "yes"]
+    assert [str(condition.expression) for condition in followed.when] == ["b"]
+    assert str(followed.result.answer["K_d"]) == "[1 -1]"
+
+
+def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
+    plant = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 e]")
+    found = symobs.reduced_order_observer(plant, poles=[-5])
+    assert [(str(case.when[0].expression), case.result.verdict) for case in found.case_tree] == [("e", "no")]
+
+
+@pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "smallest"}])
+def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
+    with pytest.raises(InputError, match="both L and"):
+        symobs.observer(StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]"), L="[1 2; 3 4]", **keywords)

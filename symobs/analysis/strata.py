@@ -51,6 +51,11 @@ def strata(plant: StateSpace, existence: Iterable[Scalar], solve: Solve) -> tupl
     return tuple({frozenset(case.when): case for case in found}.values())
 
 
+def common_zeros(plant: StateSpace, equations: Iterable[Scalar], solve: Solve) -> tuple[Case, ...]:
+    """Return the cases of the strata where several polynomials vanish together."""
+    return tuple(_below(equations, region_of(plant), plant, solve))
+
+
 def region_of(plant: StateSpace) -> Region:
     """Return the parameters of a plant: with their signs, on its stratum, where its denominators do not vanish."""
     m, signs = plant.matrices, plant.symbols.signs

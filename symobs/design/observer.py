@@ -224,6 +224,8 @@ def observer(
     plant = plant.knowing(poles, polynomial, L)
     plant.require("C", task="observer")
     reject_both("L", L, poles, polynomial)
+    reject_both("L", L, zero, None, other="zero")
+    reject_both("L", L, None if member == "simple" else member, None, other="member")
     if L is not None:
         return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
     desired = desired_polynomial(plant, poles, polynomial)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from symobs.analysis.strata import strata
+from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.gain import letters_of
 from symobs.design.observer import ObserverDesign
@@ -217,7 +217,10 @@ class ReducedOrderObserver(Result):
             usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
-        return strata(self.plant, (determinant, *self.inner.existence), solve)
+        own = strata(self.plant, (determinant, *self.inner.existence), solve)
+        if self.plant.outputs == 1:
+            return own
+        return tuple({case.when: case for case in (*carried(self.plant, self.inner.case_tree, solve), *own)}.values())
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

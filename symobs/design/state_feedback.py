@@ -168,6 +168,8 @@ def state_feedback(
     plant = plant.knowing(poles, polynomial, K)
     plant.require("B", task="state_feedback")
     reject_both("K", K, poles, polynomial)
+    reject_both("K", K, zero, None, other="zero")
+    reject_both("K", K, None if member == "simple" else member, None, other="member")
     if K is not None:
         return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
     desired = desired_polynomial(plant, poles, polynomial)

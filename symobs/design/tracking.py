@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.strata import carried, strata
+from symobs.analysis.strata import carried, common_zeros
 from symobs.certificate import Certificate, Claim
-from symobs.conditions import Condition
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
 from symobs.errors import CertificateRejected
@@ -25,6 +24,7 @@ from symobs.specification import read_gain
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.conditions import Condition
     from symobs.design.output_feedback import OutputFeedback
     from symobs.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
@@ -164,9 +164,7 @@ class TrackingDesign(Result):
         obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
         if any(entry.is_constant for entry in obstacles):
             return cases
-        if len(obstacles) == 1:
-            return (*cases, *strata(self.plant, obstacles, on))
-        return (*cases, Case(tuple(Condition("existence", entry, "==") for entry in obstacles), {}, None))
+        return (*cases, *common_zeros(self.plant, obstacles, on))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
