@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Self
 
 from symobs.certificate import Claim
 from symobs.design.gain import letters_of
-from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.observer import ObserverDesign
 from symobs.design.output_feedback import OutputFeedback, Realisation
 from symobs.design.state_feedback import StateFeedbackDesign
@@ -23,6 +22,7 @@ from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText,
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from symobs.design.minimal_order_compensator import MinimalOrderCompensator
     from symobs.system import StateSpace
 
 
@@ -136,6 +136,8 @@ def minimal_order(
     plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
 ) -> MinimalOrderCompensator:
     """Design K as if x were known, estimate only what the outputs do not show, use x̂ for x."""
+    from symobs.design.minimal_order_compensator import MinimalOrderCompensator  # noqa: PLC0415 - paid for where used
+
     return MinimalOrderCompensator.designed(plant, control, observer, "minimal_order")
 
 
