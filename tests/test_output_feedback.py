@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import pytest
+import sympy
 
 import symobs
 from symobs import StateSpace
@@ -266,3 +267,11 @@ def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
 def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
     with pytest.raises(InputError, match="both L and"):
         symobs.observer(StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]"), L="[1 2; 3 4]", **keywords)
+
+
+def test_the_closed_loop_has_a_value_wherever_the_conditions_hold() -> None:
+    """No factor is divided by a leading coefficient that a parameter can make vanish, here d (46 d − 1)."""
+    plant = StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0 1; 0 0; 1 0]", "[1 0 0; 0 1 0]", "[1 0; d 0]")
+    found = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
+    assert [str(condition) for condition in found.conditions] == ["Ne(46*d - 1, 0)"]
+    assert not found.closed_loop.subs("d", 0).has(sympy.nan, sympy.zoo)

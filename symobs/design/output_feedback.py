@@ -206,7 +206,7 @@ class OutputFeedback(Result):
         e = Environment(variable=variable, values=values)
         P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
         check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.under(self.plant.relations)))
-        return tuple(tuple(factored(entry, variable) for entry in row) for row in whole.rows)
+        return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
 
     @cached_property
     def single_loop(self) -> Factored:
@@ -217,7 +217,7 @@ class OutputFeedback(Result):
         polynomial = self.loop_polynomial
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
-        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable)
+        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
@@ -234,7 +234,7 @@ class OutputFeedback(Result):
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
-        return _over(numerator, own, polynomial) if kept else factored(value, variable)
+        return _over(numerator, own, polynomial) if kept else factored(value, variable, monic=False)
 
     @cached_property
     def loop_polynomial(self) -> Factored:
