@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar, rank
+from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import symbols_named
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
@@ -275,7 +275,8 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "!==":
         return differ(left, right, arithmetic)
     if operator == "~":  # the rows span the same space
-        return rank(left) == rank(right) == rank(Matrix.block([[left], [right]]))
+        several = (left, right, arithmetic.block([[left], [right]]))
+        return len({arithmetic.apply("rank", matrix) for matrix in several}) == 1
     if operator == "!=":
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)

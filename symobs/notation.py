@@ -120,6 +120,7 @@ LETTERS: dict[str, LetterForm] = {
     "x_d": LetterForm(r"x_{\mathrm d}", "x_d", "reference"),
     "e_d": LetterForm(r"e_{\mathrm d}", "e_d", "tracking error"),
     "A_e": LetterForm(r"A_{\mathrm e}", "A_e", "matrix of the errors"),
+    "x_d0": LetterForm(r"x_{\mathrm d}(0)", "x_d(0)", "start of the reference"),
     "V_d": LetterForm(r"V_{\mathrm d}", "V_d", "what the trajectory passes through"),
     "w_d": LetterForm("w", "w", "row that annuls the input matrix"),
     "G_r": LetterForm(r"G_{\mathrm r}({v})", "G_r({v})", "loop with unity feedback"),

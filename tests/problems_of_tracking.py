@@ -46,6 +46,7 @@ class Tracking(MinimalOrder):
         one, (K_1, K_2) = sympy.eye(self.A.rows), self.parts_of_gain
         known |= {"A_ref": self.reference, "x_d'": {"x_d": self.reference}, "A_e": self.errors, "K_d": self.K_d}
         known |= {"e_d": {"x_d": one, "x": -one}, "V_d": self.passed, "w_d": self.row}
+        known["x_d0"] = None if self.passed is None else self.passed[:, 0]
         if self.K_d is not None:
             known["u"] = {"x_d": self.feedback_gain - self.K_d, "x": -K_1 * self.C, "x_2_hat": -K_2}
         return {name: value for name, value in known.items() if value is not None}

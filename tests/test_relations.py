@@ -119,3 +119,11 @@ def test_an_eigenvalue_may_be_complex() -> None:
     assert not holds(Relation((rank, Literal(Scalar.of(2))), ("=",)), eigenvalue**2 + 1)
     assert holds(said(eigenvalue, "!=", Scalar.of(1)), eigenvalue**2 + 1)
     assert never_together_zero([a], (a**2 + 1,), {}), "a parameter is real"
+
+
+def test_rows_span_the_same_space_on_the_stratum_and_not_only_in_general() -> None:
+    general, whole = Matrix.of([[a, 1], [0, 1]]), Matrix.identity(2)
+    assert not holds(said(general, "~", whole), a)
+    assert holds(said(general, "~", whole), a - 1)
+    assert holds(said(Matrix.of([[1, a]]), "~", Matrix.of([[1, 0]])), a)
+    assert not holds(said(Matrix.of([[1, a]]), "~", Matrix.of([[1, 0]])))

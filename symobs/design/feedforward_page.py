@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import factored_form, formula_of_factored, given
+from symobs.analysis.pages import factored_form, formula_of_factored
 from symobs.design.compensator_page import MATRIX
-from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant, write_gain
+from symobs.design.estimate_pages import is_ill_posed, write_both_gains
+from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
-from symobs.design.minimal_order_page import partitioned_gain, write_control_law
-from symobs.design.observer import page_style, write_observer
-from symobs.design.reduced_order_observer import ReducedOrderObserver
-from symobs.design.reduced_order_page import write_observer_of_rest
+from symobs.design.minimal_order_page import partitioned_gain
 from symobs.exact import Matrix, Scalar
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
@@ -22,27 +20,12 @@ if TYPE_CHECKING:
 
 def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
     """Write the gains, the loop with its new input, and F."""
-    plant, loop = page.plant, design.loop
+    loop = design.loop
     minimal = isinstance(loop, MinimalOrderCompensator)
-    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
-    with page.section("state_feedback"):
-        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
-    if isinstance(loop.estimator, ReducedOrderObserver):
-        write_observer_of_rest(page, loop.estimator)
-    else:
-        with page.section("observer"):
-            write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
-            if loop.answer["L"] is not None:
-                write_observer(page)
+    write_both_gains(page, loop)
     if loop.answer["K"] is None or loop.answer["L"] is None:
         return
-    if (
-        isinstance(loop, MinimalOrderCompensator)
-        and not loop.exists
-        and None not in (loop.answer["K"], loop.answer["L"])
-    ):
-        with page.section("compensator"):
-            write_control_law(page, loop, large=False)
+    if is_ill_posed(page, loop):
         return
     with page.section("feedforward"):
         if design.answer["F"] is None:

@@ -25,7 +25,7 @@ from symobs.page import relation
 from symobs.stability import Stability, stability
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.analysis.rank_result import RankResult
     from symobs.design.assignment import Pair
@@ -94,6 +94,25 @@ class GainDesign(Result):
     def places(cls, zero: Places) -> Places:
         """Return places of this task's gain as places of that of the observer problem."""
         return zero if cls.letter == "L" else tuple((j, i) for i, j in zero)
+
+    @classmethod
+    def by_column(
+        cls,
+        plant: StateSpace,
+        desired: DesiredPolynomial,
+        method_name: str,
+        column: Callable[[Pair, DesiredPolynomial], Matrix],
+    ) -> Self:
+        """Return the design whose gain a method for one output (input) finds; with hidden modes there is the common way only.
+
+        Raises `InputError` where there are several.
+        """
+        pair = cls.pair(plant)
+        require_one(pair.c.shape[0], "output" if cls.letter == "L" else "input", method_name)
+        if not pair.is_observable:
+            return cls.of(plant, desired, method_name)
+        answer = {cls.letter: cls.oriented(column(pair, desired)), "polynomial": desired.polynomial}
+        return cls(plant, method_name, answer, desired)
 
     @classmethod
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
@@ -343,10 +362,3 @@ def require_one(count: int, what: str, name: str) -> None:
         message = f"the method {name} needs one {what}, the plant has {count}"
         repair = "write sylvester or row_reduced_echelon, which take several"
         raise InputError(message, where="specification.method", repair=repair)
-
-
-def require_single(count: int, what: str, task: str) -> None:
-    """Raise `InputError` unless there is exactly one output (input)."""
-    if count != 1:
-        message = f"{task} here needs one {what}, the plant has {count}"
-        raise InputError(message, where="plant", repair=f"keep one {what}")

@@ -35,3 +35,8 @@ def matching(pair: Pair, desired: DesiredPolynomial) -> Matching:
     M = Matrix.of([list(row) for row in zip(*columns, strict=True)])
     r = Matrix.column([wish - old for wish, old in zip(desired.coefficients, own, strict=True)])
     return Matching(M, r)
+
+
+def matched_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+    """Return l."""
+    return matching(pair, desired).solution

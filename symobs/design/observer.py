@@ -11,7 +11,7 @@ from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
-from symobs.design.matching import matching
+from symobs.design.matching import matched_gain
 from symobs.design.observer_existence_page import write_ansatz, write_found
 from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
@@ -136,12 +136,7 @@ def write_observer(page: Page) -> None:
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
-    require_one(plant.outputs, "output", "canonical_form")
-    pair = ObserverDesign.pair(plant)
-    if not pair.is_observable:
-        return ObserverDesign.of(plant, desired, "canonical_form")
-    answer = {"L": canonical_gain(pair, desired), "polynomial": desired.polynomial}
-    return ObserverDesign(plant, "canonical_form", answer, desired)
+    return ObserverDesign.by_column(plant, desired, "canonical_form", canonical_gain)
 
 
 @method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form")
@@ -166,12 +161,7 @@ def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
 @method("observer/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
 def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system."""
-    require_one(plant.outputs, "output", "coefficient_matching")
-    pair = ObserverDesign.pair(plant)
-    if not pair.is_observable:
-        return ObserverDesign.of(plant, desired, "coefficient_matching")
-    answer = {"L": matching(pair, desired).solution, "polynomial": desired.polynomial}
-    return ObserverDesign(plant, "coefficient_matching", answer, desired)
+    return ObserverDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
 
 
 @method("observer/row_reduced_echelon", source="S3, (7)-(10)")
@@ -188,12 +178,7 @@ def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> Observ
 @method("observer/companion_form", source="S1, the double integrator at 16:01")
 def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
-    require_one(plant.outputs, "output", "companion_form")
-    pair = ObserverDesign.pair(plant)
-    if not pair.is_observable:
-        return ObserverDesign.of(plant, desired, "companion_form")
-    answer = {"L": companion_gain(pair, desired), "polynomial": desired.polynomial}
-    return ObserverDesign(plant, "companion_form", answer, desired)
+    return ObserverDesign.by_column(plant, desired, "companion_form", companion_gain)
 
 
 @task

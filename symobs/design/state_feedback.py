@@ -11,7 +11,7 @@ from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import FEEDBACK, write_gain
-from symobs.design.matching import matching
+from symobs.design.matching import matched_gain
 from symobs.design.observer import page_style
 from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
@@ -86,12 +86,7 @@ class StateFeedbackDesign(GainDesign):
 @method("state_feedback/canonical_form", source="S0, Examples 4.1 and 4.2 (controllable canonical form)")
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
-    require_one(plant.inputs, "input", "canonical_form")
-    pair = StateFeedbackDesign.pair(plant)
-    if not pair.is_observable:
-        return StateFeedbackDesign.of(plant, desired, "canonical_form")
-    answer = {"K": canonical_gain(pair, desired).T, "polynomial": desired.polynomial}
-    return StateFeedbackDesign(plant, "canonical_form", answer, desired)
+    return StateFeedbackDesign.by_column(plant, desired, "canonical_form", canonical_gain)
 
 
 @method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300")
@@ -110,12 +105,7 @@ def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDes
 @method("state_feedback/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
 def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system."""
-    require_one(plant.inputs, "input", "coefficient_matching")
-    pair = StateFeedbackDesign.pair(plant)
-    if not pair.is_observable:
-        return StateFeedbackDesign.of(plant, desired, "coefficient_matching")
-    answer = {"K": matching(pair, desired).solution.T, "polynomial": desired.polynomial}
-    return StateFeedbackDesign(plant, "coefficient_matching", answer, desired)
+    return StateFeedbackDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
 
 
 @method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)")
@@ -132,12 +122,7 @@ def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateF
 @method("state_feedback/companion_form", source="S1, the double integrator at 16:01")
 def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
-    require_one(plant.inputs, "input", "companion_form")
-    pair = StateFeedbackDesign.pair(plant)
-    if not pair.is_observable:
-        return StateFeedbackDesign.of(plant, desired, "companion_form")
-    answer = {"K": companion_gain(pair, desired).T, "polynomial": desired.polynomial}
-    return StateFeedbackDesign(plant, "companion_form", answer, desired)
+    return StateFeedbackDesign.by_column(plant, desired, "companion_form", companion_gain)
 
 
 @task

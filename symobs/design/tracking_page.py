@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import formula_of_factored, given
-from symobs.design.gain_pages import FEEDBACK, OBSERVER, write_gain
-from symobs.design.minimal_order_compensator import MinimalOrderCompensator
-from symobs.design.minimal_order_page import partitioned_gain, write_control_law
-from symobs.design.observer import page_style, write_observer
+from symobs.analysis.pages import formula_of_factored
+from symobs.design.estimate_pages import is_ill_posed, write_both_gains
+from symobs.design.minimal_order_page import partitioned_gain
 from symobs.design.reduced_order_observer import ReducedOrderObserver
-from symobs.design.reduced_order_page import write_observer_of_rest
 from symobs.exact import Matrix
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
@@ -21,24 +18,9 @@ if TYPE_CHECKING:
 
 def write_tracking(page: Page, design: TrackingDesign) -> None:
     """Write the reference, the gains, K_d and the errors."""
-    plant, loop = page.plant, design.loop
-    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
-    with page.section("state_feedback"):
-        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
-    if isinstance(loop.estimator, ReducedOrderObserver):
-        write_observer_of_rest(page, loop.estimator)
-    else:
-        with page.section("observer"):
-            write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
-            if loop.answer["L"] is not None:
-                write_observer(page)
-    if (
-        isinstance(loop, MinimalOrderCompensator)
-        and not loop.exists
-        and None not in (loop.answer["K"], loop.answer["L"])
-    ):
-        with page.section("compensator"):
-            write_control_law(page, loop, large=False)
+    loop = design.loop
+    write_both_gains(page, loop)
+    if is_ill_posed(page, loop):
         return
     with page.section("tracking"):
         _reference(page, design)
@@ -93,8 +75,9 @@ def _gain(page: Page, design: TrackingDesign) -> None:
     A, B = page["A"], page["B"]
     order, columns = design.passed.shape
     if design.start is not None:
-        page.set("V_d", design.passed)
-        page.equal(relation(page["V_d"], design.passed), say="tracking_condition_one")
+        page.set("x_d0", design.start)
+        passes = block([[page["A_ref"] ** k @ page["x_d0"] if k else page["x_d0"] for k in range(columns)]])
+        page.define("V_d", passes, say="tracking_condition_one", start=relation(page["x_d0"], design.start))
     V = page["V_d"] if design.start is not None else None
     if design.answer["K_d"] is None:
         page.set("w_d", design.answer["w"])
