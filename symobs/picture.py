@@ -1,0 +1,87 @@
+"""Pictures as data: what is drawn, in coordinates of the plane, before any format decides how it looks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symobs.exact import Scalar
+    from symobs.formula import Relation
+
+#: A point of a picture.  Coordinates are rational: what is drawn can be held against what is exact.
+Place: TypeAlias = "tuple[Fraction, Fraction]"
+Interval: TypeAlias = "tuple[Fraction, Fraction]"
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A piece of the set where `equation` holds; a `boundary` is an edge of the region, other curves only divide the plane."""
+
+    points: tuple[Place, ...]
+    equation: Relation
+    boundary: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
+
+    place: Place
+    kind: str
+
+
+@dataclass(frozen=True, slots=True)
+class RegionPicture:
+    """A region of two parameters inside a window: filled areas (closed polygons), curves, marks.
+
+    `drawn_for` are the values given to other symbols, since a picture needs numbers.
+    """
+
+    axes: tuple[str, str]
+    window: tuple[Interval, Interval]
+    areas: tuple[tuple[Place, ...], ...]
+    curves: tuple[Curve, ...]
+    marks: tuple[Mark, ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """An end of an interval on a line: where it is drawn, and the formula or text that is written there."""
+
+    place: Fraction
+    label: Scalar | str
+
+
+@dataclass(frozen=True, slots=True)
+class LinePicture:
+    """Intervals of one parameter, open at both ends; an end that is missing lies beyond the window."""
+
+    axis: str
+    window: Interval
+    pieces: tuple[tuple[End | None, End | None], ...]
+    marks: tuple[tuple[Fraction, str], ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PoleMap:
+    """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
+
+    The stability boundary is the imaginary axis moved left by `margin`, or in discrete time the circle of radius `radius`.
+    """
+
+    variable: str
+    moved: str
+    values: Interval
+    paths: tuple[tuple[Place, ...], ...]
+    window: tuple[Interval, Interval]
+    discrete: bool = False
+    margin: Fraction | None = None
+    radius: Fraction | None = None
+
+
+Picture: TypeAlias = RegionPicture | LinePicture | PoleMap
