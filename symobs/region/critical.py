@@ -1,0 +1,127 @@
+"""Where roots can cross the stability boundary: the critical polynomials of a polynomial with parameters.
+
+Let a₀ wⁿ + … + aₙ have its roots in Re w < 0 exactly where the given polynomial is stable.  As the parameters move, a root
+crosses the imaginary axis only where aₙ = 0 or the Hurwitz determinant Δₙ₋₁ = 0, since aₙ = ± a₀ ∏ rᵢ and
+Δₙ₋₁ = ± a₀ⁿ⁻¹ ∏ (rᵢ + rⱼ) (Orlando 1911), and one comes from infinity only where a₀ = 0.  Off the set where their product
+vanishes stability is constant on connected pieces, and on it nothing is stable.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symobs.exact import Scalar, from_coefficients
+from symobs.stability import hurwitz_matrix
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+#: The variable of the polynomial whose roots are asked to lie in the left half-plane.
+W = "s"
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """What stable means: Re s < −margin, or in discrete time |z| < radius."""
+
+    variable: str
+    discrete: bool = False
+    margin: Scalar = Scalar.of(0)  # noqa: RUF009 - a frozen number
+    radius: Scalar = Scalar.of(1)  # noqa: RUF009
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether this is the imaginary axis, or the unit circle."""
+        return self.margin.is_zero and self.radius.is_one
+
+    def moved(self, polynomial: Scalar) -> Scalar:
+        """Return χ(s − margin), or χ(radius z): stable in the usual sense where χ is stable in this one."""
+        if self.is_usual:
+            return polynomial
+        variable = Scalar.symbol(self.variable)
+        return polynomial.substitute({self.variable: variable * self.radius if self.discrete else variable - self.margin})
+
+
+@dataclass(frozen=True)
+class Critical:
+    """The polynomial a₀ wⁿ + … + aₙ without denominators, and what may vanish where stability changes."""
+
+    polynomial: Scalar
+    boundary: Boundary
+
+    @cached_property
+    def denominator(self) -> Scalar:
+        """What the polynomial is divided by: where it vanishes there is no polynomial."""
+        return self.polynomial.denominator
+
+    @cached_property
+    def coefficients(self) -> tuple[Scalar, ...]:
+        """a₀ … aₙ."""
+        moved = self.boundary.moved(self.polynomial).numerator
+        found = moved.coefficients(self.boundary.variable)
+        return tuple(bilinear(found)) if self.boundary.discrete else found
+
+    @property
+    def order(self) -> int:
+        """The degree n."""
+        return len(self.coefficients) - 1
+
+    @cached_property
+    def values(self) -> tuple[Scalar, ...]:
+        """a₀, aₙ and Δₙ₋₁, those that are different."""
+        hurwitz = hurwitz_matrix(self.coefficients)
+        last = max(self.order - 1, 0)
+        found = [self.coefficients[0], self.coefficients[-1]]
+        if last:
+            found.append(hurwitz.select(range(last), range(last)).determinant())
+        return tuple(dict.fromkeys(found))
+
+    @property
+    def never(self) -> bool:
+        """Whether one of them vanishes identically: then there is always a root on the boundary, or beyond."""
+        return any(value.is_zero for value in self.values)
+
+    @cached_property
+    def factors(self) -> tuple[Scalar, ...]:
+        """The distinct irreducible factors of the critical polynomials and of the denominator."""
+        return irreducible([*self.values, self.denominator])
+
+    @cached_property
+    def conditions(self) -> tuple[Scalar, ...]:
+        """What is positive exactly where the polynomial is stable (Liénard and Chipart 1914): with either half of the aₖ."""
+        a, n = self.coefficients, self.order
+        hurwitz = hurwitz_matrix(a)
+        minors = {k: hurwitz.select(range(k), range(k)).determinant() for k in range(n - 1, 1, -2)}
+        found = [a[0] * a[k] for k in range(n, 0, -2)]
+        found += [minor * a[0] ** (k % 2) for k, minor in minors.items()]
+        if n % 2 == 0:
+            found.append(a[0] * a[1])
+        return tuple(dict.fromkeys(found))
+
+    def at(self, point: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
+        """Return the coefficients at a point."""
+        return tuple(c.substitute(point) for c in self.coefficients)
+
+
+def irreducible(values: Iterable[Scalar]) -> tuple[Scalar, ...]:
+    """Return the distinct irreducible factors that are not constant."""
+    found = {f: None for value in values if not value.is_constant for f, _ in value.numerator.factors()[1]}
+    return tuple(found)
+
+
+def bilinear(coefficients: tuple[Scalar, ...]) -> list[Scalar]:
+    """Return the coefficients of (w − 1)ⁿ a((w + 1)/(w − 1)), the leading one first, also where it is 0."""
+    w = Scalar.symbol(W)
+    order = len(coefficients) - 1
+    total = Scalar.of(0)
+    for k, coefficient in enumerate(coefficients):
+        total = total + coefficient * (w + 1) ** (order - k) * (w - 1) ** k
+    found = list(total.coefficients(W))
+    return [Scalar.of(0)] * (order + 1 - len(found)) + found
+
+
+def polynomial_of(coefficients: tuple[Scalar, ...]) -> Scalar:
+    """Return a₀ wⁿ + … + aₙ."""
+    return from_coefficients(coefficients, W)
