@@ -117,10 +117,10 @@ class Plane:
         for curve in self.curves:
             found.append(curve.by_second[-1])
             if curve.degree > 1:
-                found.append(_in_first(curve.inside.discriminant(self.names[1]), self.names))
+                found.append(in_first(curve.inside.discriminant(self.names[1]), self.names))
         risen = [curve for curve in self.curves if curve.degree]
         for one, other in combinations(risen, 2):
-            found.append(_in_first(one.inside.resultant(other.inside, self.names[1]), self.names))
+            found.append(in_first(one.inside.resultant(other.inside, self.names[1]), self.names))
         return tuple({_key(f): f for polynomial in found for f in irreducible_factors(polynomial)}.values())
 
     @cached_property
@@ -163,7 +163,7 @@ class Plane:
         return any(curve.degree and wall.x.sign_of(curve.by_second[-1]) == 0 for curve in self.curves)
 
 
-def _in_first(polynomial: fmpz_mpoly, names: tuple[str, str]) -> fmpz_poly:
+def in_first(polynomial: fmpz_mpoly, names: tuple[str, str]) -> fmpz_poly:
     """Return a polynomial that is free of the second name."""
     field = Field.of(names)
     place = field.position[names[0]]

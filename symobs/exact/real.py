@@ -286,5 +286,9 @@ def _sum_of_two_roots(p: Scalar, q: Scalar, index: int) -> Scalar | None:
 
 def roots_of_scalar(polynomial: Scalar, name: str) -> list[RealNumber]:
     """Return the distinct real roots of a polynomial in one name, ascending."""
-    ascending = [c.fraction() for c in reversed(polynomial.numerator.coefficients(name))]
-    return real_roots(fmpz_poly([int(c) for c in ascending]))
+    return real_roots(integer_factor(polynomial, name))
+
+
+def integer_factor(polynomial: Scalar, name: str) -> fmpz_poly:
+    """Return the numerator as a polynomial in one name."""
+    return fmpz_poly([int(c.fraction()) for c in reversed(polynomial.numerator.coefficients(name))])

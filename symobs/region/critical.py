@@ -8,11 +8,12 @@ vanishes stability is constant on connected pieces, and on it nothing is stable.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar, from_coefficients
+from symobs.exact import Scalar
+from symobs.exact.half_plane import all_to_the_left
 from symobs.stability import hurwitz_matrix
 
 if TYPE_CHECKING:
@@ -50,6 +51,12 @@ class Critical:
 
     polynomial: Scalar
     boundary: Boundary
+    signs: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """The names in the coefficients."""
+        return tuple(sorted(self.polynomial.names - {self.boundary.variable}))
 
     @cached_property
     def denominator(self) -> Scalar:
@@ -84,9 +91,28 @@ class Critical:
         return any(value.is_zero for value in self.values)
 
     @cached_property
-    def factors(self) -> tuple[Scalar, ...]:
+    def proper(self) -> tuple[Scalar, ...]:
         """The distinct irreducible factors of the critical polynomials and of the denominator."""
         return irreducible([*self.values, self.denominator])
+
+    @cached_property
+    def factors(self) -> tuple[Scalar, ...]:
+        """The same, and the parameters of declared sign: they end where they vanish."""
+        signed = [Scalar.symbol(name) for name in self.parameters if self.signs.get(name, "real") != "real"]
+        return tuple(dict.fromkeys([*self.proper, *signed]))
+
+    def allows(self, point: Mapping[str, Scalar]) -> bool:
+        """Tell whether the declared signs allow a rational point off the critical set."""
+        up, down = {"positive", "nonnegative"}, {"negative", "nonpositive"}
+        return all(
+            value.fraction() < 0 if self.signs.get(name) in down else value.fraction() > 0
+            for name, value in point.items()
+            if self.signs.get(name) in up | down
+        )
+
+    def is_stable(self, point: Mapping[str, Scalar]) -> bool:
+        """Tell whether the polynomial is stable at a rational point, by Routh's table; never where it has no meaning."""
+        return not self.denominator.substitute(point).is_zero and all_to_the_left(self.at(point))
 
     @cached_property
     def conditions(self) -> tuple[Scalar, ...]:
@@ -120,8 +146,3 @@ def bilinear(coefficients: tuple[Scalar, ...]) -> list[Scalar]:
         total = total + coefficient * (w + 1) ** (order - k) * (w - 1) ** k
     found = list(total.coefficients(W))
     return [Scalar.of(0)] * (order + 1 - len(found)) + found
-
-
-def polynomial_of(coefficients: tuple[Scalar, ...]) -> Scalar:
-    """Return a₀ wⁿ + … + aₙ."""
-    return from_coefficients(coefficients, W)

@@ -63,8 +63,10 @@ class Region(Protocol):
 def short_list(region: Region) -> tuple[Bound, ...]:
     """Return the inequalities; none where everything is stable.  The region must not be empty."""
     samples = region.samples(())
-    bounds = [*(Bound(factor, "!=") for factor in region.surrounded())]
-    bounds += _oriented(region.critical.factors, samples)
+    bounds = [Bound(factor, "!=") for factor in region.surrounded()]
+    bounds += _oriented(region.critical.proper, samples)
+    listed = {bound.polynomial for bound in bounds} | {-bound.polynomial for bound in bounds}
+    bounds += [Bound(through[0], "!=") for through in region.through_holes() if not listed.intersection(through)]
     waiting = _candidates(region.critical, samples)
     while True:
         missed = [sample for sample in samples if not sample.stable and _hold(bounds, sample)]

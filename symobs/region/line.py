@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.half_plane import all_to_the_left
 from symobs.exact.real import rational_between, roots_of_scalar
 
 from symobs.region.inequalities import Sample
@@ -44,23 +43,18 @@ class LineRegion:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The intervals between them, from left to right."""
-        return self._divided(self.points)
+        """The intervals between them that the declared sign allows, from left to right."""
+        return self._pieces(self.points)
 
-    def _divided(self, points: Sequence[RealNumber]) -> tuple[Piece, ...]:
+    def _pieces(self, points: Sequence[RealNumber]) -> tuple[Piece, ...]:
         ends = [None, *points, None]
         found = []
         for low, high in zip(ends[:-1], ends[1:], strict=True):
             sample = rational_between(low, high)
-            found.append(Piece(low, high, sample, self.is_stable(sample)))
+            point = {self.name: Scalar.of(sample)}
+            if self.critical.allows(point):
+                found.append(Piece(low, high, sample, self.critical.is_stable(point)))
         return tuple(found)
-
-    def is_stable(self, value: Fraction) -> bool:
-        """Tell whether the polynomial is stable at a rational value."""
-        point = {self.name: Scalar.of(value)}
-        if self.critical.denominator.substitute(point).is_zero:
-            return False
-        return all_to_the_left(self.critical.at(point))
 
     @cached_property
     def intervals(self) -> tuple[Piece, ...]:
@@ -71,21 +65,25 @@ class LineRegion:
     def cuts(self) -> tuple[RealNumber, ...]:
         """The points with stable intervals on both sides: they are not in the region."""
         pairs = zip(self.pieces[:-1], self.pieces[1:], strict=True)
-        return tuple(point for point, (low, high) in zip(self.points, pairs, strict=True) if low.stable and high.stable)
+        return tuple(high.low for low, high in pairs if low.stable and high.stable and high.low is not None)
 
     # -- for the inequalities ----------------------------------------------------------------------------------------
 
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
         """Return a point of every open interval, none of the further polynomials changing its sign inside one."""
-        more = {root for polynomial in further for root in roots_of_scalar(polynomial, self.name)}
-        pieces = self._divided(sorted(more.union(self.points))) if further else self.pieces
+        pieces = self._pieces(self.divided(further)) if further else self.pieces
         return [Sample({self.name: Scalar.of(piece.sample)}, piece.stable) for piece in pieces]
+
+    def divided(self, further: Sequence[Scalar]) -> tuple[RealNumber, ...]:
+        """Return the critical points and the roots of further irreducible polynomials, ascending."""
+        more = {root for polynomial in further for root in roots_of_scalar(polynomial, self.name)}
+        return tuple(sorted(more.union(self.points)))
 
     def surrounded(self) -> tuple[Scalar, ...]:
         """Return the critical factors that vanish at points with the region on both sides."""
         return tuple(
             factor
-            for factor in self.critical.factors
+            for factor in self.critical.proper
             if any(root in self.cuts for root in roots_of_scalar(factor, self.name))
         )
 
@@ -100,8 +98,8 @@ class LineRegion:
 
     @property
     def everywhere(self) -> bool:
-        """Whether every value is stable."""
-        return not self.points and not self.empty
+        """Whether every value that is allowed is stable."""
+        return len(self.pieces) == len(self.intervals) and not self.surrounded()
 
     @property
     def bounded(self) -> bool:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from symobs.errors import SymobsError
 from symobs.exact import Scalar
 from symobs.exact.fibre import Fibre, curves_between, fibre, point_between
-from symobs.exact.half_plane import all_to_the_left
 from symobs.exact.plane import Branch, Plane, Slab, Wall
 from symobs.region.inequalities import Sample
 
@@ -32,12 +31,16 @@ class TooLargeToDivide(SymobsError):
 
 @dataclass(frozen=True)
 class Cell:
-    """An open cell: its place (slab, height in the stack), a rational point in it, and whether it is stable there."""
+    """An open cell: its place (slab, height in the stack), a rational point in it, and whether it is stable there.
+
+    What the declared signs do not allow is not `allowed`, and not stable.
+    """
 
     slab: int
     height: int
     sample: tuple[Fraction, Fraction]
     stable: bool
+    allowed: bool = True
 
 
 @dataclass(frozen=True)
@@ -72,18 +75,14 @@ class PlaneRegion:
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
         """All cells, slab by slab from left to right, each stack from below."""
-        return tuple(
-            Cell(index, height, (slab.x, y), self.is_stable(slab.x, y))
-            for index, slab in enumerate(self.plane.slabs)
-            for height, y in enumerate(slab.samples)
-        )
-
-    def is_stable(self, x: Fraction, y: Fraction) -> bool:
-        """Tell whether the polynomial is stable at a rational point."""
-        point = self._point(x, y)
-        if self.critical.denominator.substitute(point).is_zero:
-            return False
-        return all_to_the_left(self.critical.at(point))
+        found = []
+        for index, slab in enumerate(self.plane.slabs):
+            for height, y in enumerate(slab.samples):
+                point = self._point(slab.x, y)
+                allowed = self.critical.allows(point)
+                stable = allowed and self.critical.is_stable(point)
+                found.append(Cell(index, height, (slab.x, y), stable, allowed))
+        return tuple(found)
 
     @cached_property
     def _numbers(self) -> dict[tuple[int, int], int]:
@@ -214,12 +213,24 @@ class PlaneRegion:
 
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
         """Return a point of every open cell, none of the further polynomials changing its sign inside one."""
+        if self.divided(further) is self.plane:
+            return [Sample(self._point(*cell.sample), cell.stable) for cell in self.cells if cell.allowed]
+        points = [self._point(slab.x, y) for slab in self.divided(further).slabs for y in slab.samples]
+        return [Sample(point, self.critical.is_stable(point)) for point in points if self.critical.allows(point)]
+
+    def divided(self, further: Sequence[Scalar]) -> Plane:
+        """Return the plane divided by further irreducible polynomials besides."""
         others = [polynomial for polynomial in further if polynomial not in self.critical.factors]
         if not others:
-            return [Sample(self._point(*cell.sample), cell.stable) for cell in self.cells]
-        finer = Plane((*self.critical.factors, *others), self.names)
-        places = [(slab.x, y) for slab in finer.slabs for y in slab.samples]
-        return [Sample(self._point(x, y), self.is_stable(x, y)) for x, y in places]
+            return self.plane
+        key = frozenset(others)
+        if key not in self._finer:
+            self._finer[key] = Plane((*self.critical.factors, *others), self.names)
+        return self._finer[key]
+
+    @cached_property
+    def _finer(self) -> dict[frozenset[Scalar], Plane]:
+        return {}
 
     def _point(self, x: Fraction, y: Fraction) -> dict[str, Scalar]:
         return {self.names[0]: Scalar.of(x), self.names[1]: Scalar.of(y)}
@@ -229,7 +240,8 @@ class PlaneRegion:
         curves = [self.plane.slabs[slab].branches[place].curve for slab, place in self.cuts]
         for index, _ in self.walls_cut:
             curves += self.plane.vertical_at(self.plane.walls[index])
-        return tuple(self.critical.factors[curve] for curve in dict.fromkeys(curves))
+        factors = dict.fromkeys(self.critical.factors[curve] for curve in curves)
+        return tuple(factor for factor in factors if factor in self.critical.proper)
 
     def through_holes(self) -> tuple[tuple[Scalar, ...], ...]:
         """Return for every isolated point that is missing the critical factors that vanish there."""
@@ -247,8 +259,9 @@ class PlaneRegion:
 
     @property
     def everywhere(self) -> bool:
-        """Whether every point is stable."""
-        return not self.plane.curves and not self.empty
+        """Whether every point that is allowed is stable."""
+        stable = all(cell.stable for cell in self.cells if cell.allowed)
+        return stable and not self.surrounded() and not self.holes
 
     @property
     def bounded(self) -> bool:

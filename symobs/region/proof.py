@@ -1,0 +1,96 @@
+"""What a region must pass before it is believed (trusted): other means than those that found it.
+
+The plane's division is proved by `exact.plane_proof`.  The critical values are held against determinants of numbers at
+random points, the verdict in every cell against the isolated roots of the polynomial at its sample, the list of
+inequalities against the cells of a division in which nothing listed changes its sign inside a cell.
+"""
+
+from __future__ import annotations
+
+import random
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.half_plane import sides
+from symobs.exact.plane_proof import holds, is_line
+from symobs.exact.real import integer_factor
+from symobs.region.critical import irreducible
+from symobs.region.inequalities import is_exact
+from symobs.region.line import LineRegion
+from symobs.region.plane import PlaneRegion
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symobs.region.critical import Critical
+    from symobs.region.inequalities import Bound
+
+_POINTS = 3
+
+
+def are_critical(critical: Critical) -> bool:
+    """Tell whether the coefficients are those of the moved polynomial, and the critical factors all there.
+
+    At random points: (w − 1)ⁿ χ((w + 1)/(w − 1)) = Σ aₖ wⁿ⁻ᵏ in discrete time, else χ itself; a₀, aₙ and the determinant of the
+    n − 1 first rows and columns of Hurwitz' matrix must vanish where a product of powers of the factors does.
+    """
+    generator = random.Random(f"{critical.polynomial} {critical.boundary}")  # noqa: S311 - repeatable by design
+    order = critical.order
+    for _ in range(_POINTS):
+        point = {name: Scalar.of(generator.getrandbits(61)) for name in critical.parameters}
+        a = critical.at(point)
+        ratios = {_ratio(critical, a, point, Scalar.of(generator.getrandbits(61))) for _ in range(2)}
+        if len(ratios) != 1 or ratios.pop().is_zero:
+            return False
+        rows = [[a[2 * j - i] if 0 <= 2 * j - i <= order else 0 for j in range(1, order)] for i in range(1, order)]
+        last = Matrix.of(rows).determinant() if rows else Scalar.of(1)
+        found = [v.substitute(point) for v in critical.values]
+        if set(found) != {a[0], a[-1], *([last] if order > 1 else [])}:
+            return False
+    return all(_is_product(value, critical.factors) for value in (*critical.values, critical.denominator))
+
+
+def _is_product(value: Scalar, factors: Sequence[Scalar]) -> bool:
+    """Tell whether a polynomial is a number times powers of these."""
+    for factor in factors:
+        while not value.is_constant and (quotient := value / factor).denominator.is_constant:
+            value = quotient
+    return value.is_constant
+
+
+def _ratio(critical: Critical, a: Sequence[Scalar], point: Mapping[str, Scalar], w: Scalar) -> Scalar:
+    """Return Σ aₖ wⁿ⁻ᵏ divided by the polynomial at the number that w stands for, times (w − 1)ⁿ in discrete time."""
+    boundary, value = critical.boundary, Scalar.of(0)
+    for coefficient in a:
+        value = value * w + coefficient
+    where = (w + 1) / (w - 1) * boundary.radius if boundary.discrete else w - boundary.margin
+    polynomial = critical.polynomial.substitute({**point, boundary.variable: where})
+    return value / (polynomial * (w - 1) ** critical.order if boundary.discrete else polynomial)
+
+
+@lru_cache(maxsize=256)
+def is_region(region: LineRegion | PlaneRegion, bounds: tuple[Bound, ...] | None) -> bool:
+    """Tell whether a region is what it says, and these inequalities hold exactly on it (None: it is empty)."""
+    critical = region.critical
+    if critical.never:
+        return bounds is None
+    if not are_critical(critical) or not all(critical.allows(s.point) for s in region.samples(())):
+        return False
+    if bounds is None:
+        return _is_divided(region, ()) and region.empty
+    listed = irreducible(bound.polynomial for bound in bounds)
+    return _is_divided(region, ()) and _is_divided(region, listed) and is_exact(region, bounds)
+
+
+def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> bool:
+    """Tell whether a division is whole, and in every cell the isolated roots say what is said of it."""
+    if isinstance(region, PlaneRegion):
+        whole = holds(region.divided(further))
+    else:
+        factors = [integer_factor(f, region.name) for f in (*region.critical.factors, *further)]
+        whole = is_line(region.divided(further), factors)
+    return whole and all(
+        sample.stable == (sides(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
+        for sample in region.samples(further)
+    )
