@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar, get_args
 
 import symobs
-from symobs.certificate import SENSELESS, Certificate, Claim, check_all
+from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, UsageError
 from symobs.page import Page
@@ -78,7 +78,7 @@ class Result:
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
-    def claims(self) -> Iterator[Claim]:
+    def claims(self) -> Iterator[Claim | Statement]:
         """Yield what must hold."""
         raise NotImplementedError
 
@@ -273,7 +273,7 @@ def _of_constant_plants(function: Callback) -> Callback:
 
     @wraps(function)
     def refusing(plant: StateSpace, *arguments: Any, **keywords: Any) -> Result:
-        if plant.is_time_varying:
+        if getattr(plant, "is_time_varying", False):  # a text is no plant
             message = f"{function.__name__} is for plants with constant matrices, and this plant depends on the time t"
             tasks()
             repair = f"use {' or '.join(_IN_TIME)}, or give a constant that is called t another name"

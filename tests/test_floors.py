@@ -31,6 +31,7 @@ FLOORS = {
     "stability": 3,
     "picture": 3,
     "face": 3,
+    "error_bounds": 3,
     "system": 3,
     "specification": 4,
     "certificate": 4,

@@ -37,6 +37,11 @@ class Boundary:
         """Whether this is the imaginary axis, or the unit circle."""
         return self.margin.is_zero and self.radius.is_one
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The names in margin and radius."""
+        return self.margin.names | self.radius.names
+
     def moved(self, polynomial: Scalar) -> Scalar:
         """Return χ(s − margin), or χ(radius z): stable in the usual sense where χ is stable in this one."""
         if self.is_usual:

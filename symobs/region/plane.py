@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs.errors import SymobsError
 from symobs.exact import Scalar
 from symobs.exact.fibre import Fibre, curves_between, fibre, point_between
 from symobs.exact.plane import Branch, Plane, Slab, Wall
@@ -19,14 +19,8 @@ if TYPE_CHECKING:
     from symobs.exact import RealNumber
     from symobs.region.critical import Critical
 
-#: Terms of the projection's polynomials beyond which the decomposition is not begun.
-LARGEST_PROJECTION = 60
-#: The largest product of degree and number of curves that is decomposed.
-MOST_CURVES = 12
-
-
-class TooLargeToDivide(SymobsError):
-    """The curves are too many, or of too high a degree, to divide the plane in reasonable time."""
+#: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
+LARGEST_PROJECTION = 300
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class PlaneRegion:
 
     @cached_property
     def plane(self) -> Plane:
-        """The plane divided by the critical curves; raises `TooLargeToDivide`."""
+        """The plane divided by the critical curves."""
         return Plane(self.critical.factors, self.names)
 
     @cached_property
@@ -274,8 +268,22 @@ def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
 
 
 def plane_region(critical: Critical, names: tuple[str, str]) -> PlaneRegion:
-    """Return the region, its stacks standing over the name for which the curves have the lower degree in the other."""
+    """Return the region, its stacks standing over that name in whose place the other has the lower degree."""
+
+    def height(name: str) -> tuple[int, int]:
+        degrees = [factor.degree(name) for factor in critical.factors]
+        return max(degrees, default=0), sum(degrees)
+
     first, second = names
-    degrees = [(max((f.degree(n) for f in critical.factors), default=0), sum(f.degree(n) for f in critical.factors)) for n in names]
-    order = (second, first) if degrees[0] < degrees[1] else (first, second)
-    return PlaneRegion(critical, order)
+    return PlaneRegion(critical, (second, first) if height(first) < height(second) else (first, second))
+
+
+def can_be_divided(region: PlaneRegion) -> bool:
+    """Tell whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
+    if region.critical.never:
+        return True
+    x, y = region.names
+    degrees = [(factor.degree(x), factor.degree(y)) for factor in region.critical.factors]
+    total = sum(max(0, 2 * high - 1) * wide for wide, high in degrees)
+    total += sum(one[0] * other[1] + one[1] * other[0] for one, other in combinations(degrees, 2))
+    return total <= LARGEST_PROJECTION

@@ -12,6 +12,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.enclosure import sign_of_number
+from symobs.exact.functions import substitute, tidy
 from symobs.exact.half_plane import sides
 from symobs.exact.plane_proof import holds, is_line
 from symobs.exact.real import integer_factor
@@ -23,7 +25,9 @@ from symobs.region.plane import PlaneRegion
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from symobs.exact.plane import Slab
     from symobs.region.critical import Critical
+    from symobs.region.description import Edge, Part
     from symobs.region.inequalities import Bound
 
 _POINTS = 3
@@ -94,3 +98,43 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
         sample.stable == (sides(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
         for sample in region.samples(further)
     )
+
+
+def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
+    """Tell whether parts are all stable cells, each once, and every bound in closed form is the branch it stands for.
+
+    A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
+    around the branch at the slab's point: no other branch does.
+    """
+    listed = [number for part in parts for number in part.cells]
+    if sorted(listed) != [number for number, cell in enumerate(region.cells) if cell.stable]:
+        return False
+    return all(_is_part(region, part, number) for part in parts for number in part.cells)
+
+
+def _is_part(region: PlaneRegion, part: Part, number: int) -> bool:
+    cell = region.cells[number]
+    slab, below, above = region.bounds(cell)
+    ends = (region.cells[part.cells[0]], region.cells[part.cells[-1]])
+    if (part.low, part.high) != (region.bounds(ends[0])[0].left, region.bounds(ends[1])[0].right):
+        return False
+    for edge, branch, place in ((part.lower, below, cell.height - 1), (part.upper, above, cell.height)):
+        if (edge is None) != (branch is None):
+            return False
+        if edge is None or branch is None:
+            continue
+        polynomial = region.plane.curves[branch.curve].scalar
+        if (edge.polynomial, edge.number) != (polynomial, branch.number):
+            return False
+        if edge.closed is not None and not _is_branch(edge, region.names, slab, place):
+            return False
+    return True
+
+
+def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
+    """Tell whether a closed form solves its polynomial, and at the slab's point lies between the samples around it."""
+    assert edge.closed is not None  # noqa: S101 - asked only where there is one
+    left = tidy(edge.polynomial.substitute({names[1]: edge.closed}))
+    at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
+    low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
+    return left.is_zero and sign_of_number(at_point - low) == "positive" and sign_of_number(high - at_point) == "positive"

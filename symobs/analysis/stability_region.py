@@ -1,0 +1,196 @@
+"""For which parameters are all roots stable: conditions, exact intervals, the exact decomposition of the plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.analysis.stability_region_fields import cells_of, components_of, excluded_of, intervals_of, stable_if
+from symobs.analysis.stability_region_question import Question, read_question
+from symobs.certificate import Claim, Statement
+from symobs.exact import Scalar
+from symobs.formula import Environment
+from symobs.formula.term import identity, letter
+from symobs.method import Result, choose, method, task
+from symobs.page import Page, relation
+from symobs.region.cells_proof import are_parts, is_region
+from symobs.region.description import parts
+from symobs.region.inequalities import Bound, short_list
+from symobs.region.line import LineRegion
+from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
+from symobs.region.routh import RouthTable, is_routh_table, routh_table
+from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
+from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.region.critical import Critical
+    from symobs.region.description import Part
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StabilityRegion(Result):
+    """χ, its Routh table, and inequalities that hold exactly where all roots of χ are stable."""
+
+    question: Question
+
+    task: ClassVar[str] = "stability_region"
+
+    @classmethod
+    def of(cls, question: Question, method_name: str) -> StabilityRegion:
+        """Return the region of a question."""
+        region = region_of(question)
+        bounds = None if region is None or region.critical.never or region.empty else short_list(region)
+        answer = {"polynomial": question.polynomial, "routh": routh_table(question.critical.coefficients), "bounds": bounds}
+        return cls(question.plant, method_name, answer, question)
+
+    @property
+    def critical(self) -> Critical:
+        """Where roots can cross the boundary."""
+        return self.question.critical
+
+    @cached_property
+    def region(self) -> LineRegion | PlaneRegion | None:
+        """The region as intervals or cells, None where there are other symbols, or more parameters than two."""
+        return region_of(self.question)
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """The region of two parameters as bounds of one over intervals of the other."""
+        return parts(self.region) if isinstance(self.region, PlaneRegion) and not self.empty else ()
+
+    # -- claims ------------------------------------------------------------------------------------------------------
+
+    def claims(self) -> Iterator[Claim | Statement]:
+        """Yield what χ is, that the table is Routh's, and that the inequalities hold exactly on the region."""
+        yield self._claim_of_polynomial()
+        table: RouthTable = self.answer["routh"]
+        yield Statement(
+            "the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.coefficients) else ""
+        )
+        bounds, region = self.answer["bounds"], self.region
+        if region is not None:
+            says = "stable nowhere" if bounds is None else f"stable exactly where {' and '.join(self.stable_if) or 'defined'}"
+            how = "every cell by the roots at a point of it, the cells by Sturm's theorem"
+            yield Statement(says, lambda: how if is_region(region, bounds) else "")
+        if isinstance(region, PlaneRegion) and self.parts:
+            yield Statement("the bounds over each interval", lambda: "exact" if are_parts(region, self.parts) else "")
+
+    def _claim_of_polynomial(self) -> Claim:
+        """Return det(sI − A + …) = χ(s), or for a polynomial lead · det(sI − A) = χ(s)."""
+        plant, m, question = self.plant, self.plant.matrices, self.question
+        chi: Scalar = self.answer["polynomial"]
+        values: dict[str, Any] = {"A": m.A, "chi": chi}
+        values |= {"K": question.K, "B": m.B} if question.K is not None else {}
+        values |= {"L": question.L, "C": m.C} if question.L is not None else {}
+        e = Environment(variable=plant.variable, values=values)
+        pencil = letter("s", e) @ identity(plant.order, e) - letter("A", e)
+        moved = [pencil + letter("B", e) @ letter("K", e)] if question.K is not None else []
+        moved += [pencil + letter("L", e) @ letter("C", e)] if question.L is not None else []
+        product = (moved or [pencil])[0].apply("det")
+        for other in moved[1:]:
+            product = product @ other.apply("det")
+        if plant.polynomial is not None:
+            return Claim(relation(letter("chi", e), plant.polynomial), e)
+        return Claim(relation(product, letter("chi", e)), e)
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is stable."""
+        return self.critical.never or self.region is None or self.region.empty
+
+    @property
+    def verdict(self) -> str:
+        """`yes` where everything is stable, `no` where nothing is, else `conditional`."""
+        if self.empty:
+            return "no"
+        assert self.region is not None  # noqa: S101 - it is not empty
+        return "yes" if self.region.everywhere else "conditional"
+
+    @cached_property
+    def stable_if(self) -> list[str]:
+        """The conditions as texts."""
+        return stable_if(self.answer["bounds"], self.region, self.plant.symbols.signs)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract."""
+        found: dict[str, Any] = {
+            "polynomial": self.answer["polynomial"],
+            "parameters": list(self.question.parameters),
+            "routh_table": [list(row.entries) for row in self.answer["routh"].rows],
+            "stable_if": self.stable_if,
+            "empty": self.empty,
+        }
+        region = self.region
+        if isinstance(region, LineRegion):
+            found |= intervals_of(region)
+        elif isinstance(region, PlaneRegion):
+            found |= {"bounded": self.empty or region.bounded}
+            found |= {"cells": cells_of(region), "components": components_of(region, self.parts)}
+            found |= excluded_of(region)
+        return found
+
+    def write(self, page: Page) -> None:
+        """Write χ, the table, the conditions, the region in words, and its picture."""
+        from symobs.analysis.stability_region_page import write_region  # noqa: PLC0415 - it stands on this type
+
+        write_region(page, self)
+
+
+def region_of(question: Question) -> LineRegion | PlaneRegion | None:
+    """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
+    names, critical = question.parameters, question.critical
+    if question.symbols or not 1 <= len(names) <= 2:
+        return None
+    if len(names) == 1:
+        return LineRegion(critical, names[0])
+    found = plane_region(critical, (names[0], names[1]))
+    return found if can_be_divided(found) else None
+
+
+@method("stability_region/routh", source="E. J. Routh, 1877; the plane divided after G. E. Collins, 1975")
+def by_routh(question: Question) -> StabilityRegion:
+    """Routh's table, the conditions, and the exact region of one or two parameters."""
+    return StabilityRegion.of(question, "routh")
+
+
+@task
+def stability_region(
+    plant: StateSpace | object = None,
+    symbols: Mapping[str, Any] | None = None,
+    dt: object = 0,
+    *,
+    polynomial: PolynomialText = None,
+    K: GainText = None,
+    L: GainText = None,
+    parameters: Names = None,
+    margin: Quantity = None,
+    radius: Quantity = None,
+    method: Name = "auto",
+) -> Result:
+    """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components.
+
+    plant          a plant, or a polynomial as a text: "s^2 + (b + h2) s + omega^2 (1 - h1)"
+    symbols, dt    for a polynomial: the signs of its symbols, and dt as for a plant (0 continuous: s, else z)
+    polynomial     the polynomial, instead of a plant
+    K, L           gains with free entries, "[h1; h2]": χ(s) = det(sI − A + BK), det(sI − A + LC), or their product
+    parameters     the names to find the region of; else the free names of the gains, else those without a sign
+    margin         α ≥ 0: all roots in Re s < −α           radius   0 < ρ ≤ 1, discrete time: all roots in |z| < ρ
+    Returns polynomial, routh_table, stable_if; for one parameter intervals, for two cells, components, excluded_points;
+    empty, bounded, sample_points.  One and two parameters without other symbols: exact; otherwise equivalent conditions.
+    Raises `InputError`.
+    """
+    if isinstance(plant, StateSpace):
+        asked = plant
+        if polynomial is not None and plant.polynomial is None:
+            asked = StateSpace.from_polynomial(polynomial, plant.dt, symbols=plant.symbols)
+    else:
+        asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=symbols)
+    question = read_question(asked, {"K": K, "L": L}, parameters, margin, radius)
+    found: StabilityRegion = choose("stability_region", method, "routh").solve(question)
+    return found.asked(method)
