@@ -356,5 +356,13 @@ THEOREMS: dict[str, Theorem] = {
     ),
     "time_varying_gramian": Theorem("initial state through the Gramian", "S4, time-varying plants"),
     "peano_baker": Theorem("Peano-Baker series", "W. J. Rugh, Linear System Theory, 2nd ed. (1996), chapter 3"),
+    "routh": Theorem(
+        "Routh's criterion", "E. J. Routh, A Treatise on the Stability of a Given State of Motion (Macmillan, 1877)"
+    ),
+    "hurwitz": Theorem("Hurwitz's criterion", "A. Hurwitz, Math. Ann. 46 (1895), 273-284"),
+    "lienard_chipart": Theorem(
+        "criterion of Liénard and Chipart",
+        "A. Liénard and M. H. Chipart, J. Math. Pures Appl. 10 (1914), 291-346",
+    ),
     "closed_loop": Theorem("closed loop in state and error", "S0, (4.26)-(4.29)"),
 }

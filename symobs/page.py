@@ -17,6 +17,8 @@ from symobs.derivation import (
     Section,
     Sentence,
     Step,
+    Tabulate,
+    findings_of,
 )
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import identities, known, roots_in
@@ -37,10 +39,12 @@ from symobs.formula import (
 )
 from symobs.formula.term import Term
 from symobs.notation import sans_serif
+from symobs.region.routh import routh_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.region.routh import RouthTable
     from symobs.system import StateSpace
 
 Member: TypeAlias = Term | Scalar | Matrix | int
@@ -274,6 +278,21 @@ class Page:
     def diagram(self, name: str, **labels: Member) -> None:
         """Draw."""
         self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
+
+    def tabulate(
+        self, polynomial: Term, variable: str = "", say: str = "", *, tell: bool = True, **slots: Slot
+    ) -> RouthTable:
+        """Show Routh's table of a polynomial, in another variable than the page's where one is named.
+
+        What the table says is told below it, unless `tell` is False.
+        """
+        variable = variable or self.environment.variable
+        coefficients = polynomial.value.coefficients(variable)
+        table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
+        findings = findings_of(table, coefficients, variable, self.environment.signs) if tell else ()
+        because = sentence(say, slots) if say else None
+        self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
+        return table
 
     @contextmanager
     def section(self, key: str, **slots: Slot) -> Iterator[None]:

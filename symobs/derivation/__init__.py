@@ -13,7 +13,9 @@ from symobs.derivation.steps import (
     Sentence,
     Solve,
     Step,
+    Tabulate,
 )
+from symobs.derivation.tables import findings_of
 
 __all__ = [
     "Case",
@@ -28,4 +30,6 @@ __all__ = [
     "Sentence",
     "Solve",
     "Step",
+    "Tabulate",
+    "findings_of",
 ]

@@ -26,7 +26,9 @@ from symobs.derivation.steps import (
     Sentence,
     Solve,
     Step,
+    Tabulate,
 )
+from symobs.derivation.tables import is_tabulated
 from symobs.errors import DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, roots_are
 from symobs.exact.functions import substitute
@@ -127,6 +129,11 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
+        case Tabulate(polynomial, variable=variable):
+            _about_letters(polynomial, environment)
+            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            if not is_tabulated(step, value, environment):
+                _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
         case Case(when, substitution, inside, anew=anew):
             stratum = _on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}

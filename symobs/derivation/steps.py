@@ -13,6 +13,7 @@ from symobs.phrases import slots_of
 if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.formula import Fact, Formula, Relation, Together
+    from symobs.region.routh import RouthTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +98,17 @@ class Diagram:
 
 
 @dataclass(frozen=True, slots=True)
+class Tabulate:
+    """Routh's table of a polynomial in `variable`; the findings, told below it, are among those of `findings_of`."""
+
+    polynomial: Formula
+    table: RouthTable
+    variable: str
+    sentence: Sentence | None = None
+    findings: tuple[Sentence, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -119,4 +131,4 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Case | Section
+Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Tabulate | Case | Section

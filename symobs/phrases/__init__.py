@@ -24,6 +24,7 @@ from symobs.phrases import (
     polynomials,
     rank,
     reduced_order,
+    routh,
     time,
     time_varying,
     titles,
@@ -47,6 +48,7 @@ _MODULES = (
     tracking,
     reduced_order,
     time_varying,
+    routh,
 )
 
 

@@ -15,6 +15,7 @@ from symobs.render.blocks import (
     Drawing,
     Heading,
     Paragraph,
+    TableBlock,
     Title,
     Verified,
     every,
@@ -25,6 +26,7 @@ from symobs.render.escape import escape
 from symobs.render.latex_printer import LatexPrinter
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.roots import LATEX, listed
+from symobs.render.table_formats import latex_table
 from symobs.render.templates import fill
 
 if TYPE_CHECKING:
@@ -104,6 +106,8 @@ class LatexWriter:
                 return rf"\caution{{{escape(label)}}}{{{self.sentence(inlines)}}}"
             case Drawing():
                 return tikz(block, self.printer)
+            case TableBlock():
+                return latex_table(block, self.printer, self.sentence)
             case CaseBlock(label, blocks):
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
                 body = LatexWriter(self.printer, inset=_INSET).body(blocks)

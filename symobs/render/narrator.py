@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
-from symobs.formula import Together
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve, Tabulate
+from symobs.formula import Literal, Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
@@ -23,6 +23,7 @@ from symobs.render.blocks import (
     Inline,
     Inlines,
     Paragraph,
+    TableBlock,
     Title,
     Verified,
 )
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from symobs.derivation import Step
     from symobs.formula import Formula, Relation
     from symobs.method import Document
+    from symobs.region.routh import RouthTable
     from symobs.render.printer import Printer
 
 P = TypeVar("P", bound="Printer[Any]")
@@ -119,6 +121,7 @@ def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
         found = getattr(step, "sentence", None)
         if found is not None:
             yield found
+        yield from getattr(step, "findings", ())
         yield from _sentences(getattr(step, "steps", ()))
 
 
@@ -199,6 +202,13 @@ class _Page:
                 self.say(sentence)
             case Diagram(name=name, labels=labels):
                 self.blocks.append(Drawing(name, labels))
+            case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
+                self.say(sentence)
+                self.blocks.append(
+                    TableBlock(table, variable, _remarks(table, variable), filled(Sentence("routh_where")))
+                )
+                for finding in findings:
+                    self.say(finding)
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
             case Section() if _is_statement(step):
@@ -245,6 +255,22 @@ class _Page:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
+
+
+def _remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
+    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
+    remarks: list[tuple[Inlines, ...]] = []
+    for row in table.rows:
+        if row.origin == "epsilon":
+            small = Literal(row.entries[0])
+            remarks.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
+        elif row.origin == "auxiliary":
+            polynomial = Literal(table.auxiliary(row, variable))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
+            remarks.append((full, filled(Sentence("routh_row_derivative"))))
+        else:
+            remarks.append(())
+    return tuple(remarks)
 
 
 def _is_statement(step: Step) -> bool:

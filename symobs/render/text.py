@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
-from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified
+from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, TableBlock, Title, Verified
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.roots import TEXT, listed
+from symobs.render.table_formats import text_table
 from symobs.render.text_printer import TextPrinter, text_width
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ class TextWriter:
                 return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
+            case TableBlock():
+                return indented(text_table(block, self.printer, self.sentence))
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
