@@ -280,7 +280,7 @@ class Page:
         self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
 
     def tabulate(
-        self, polynomial: Term, variable: str = "", say: str = "", *, tell: bool = True, **slots: Slot
+        self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot
     ) -> RouthTable:
         """Show Routh's table of a polynomial, in another variable than the page's where one is named.
 

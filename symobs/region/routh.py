@@ -118,7 +118,8 @@ def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
     Nothing is divided: a row is held to the two above it by cross-multiplication.
     """
     rows = table.rows
-    if not coefficients or [row.power for row in rows] != list(range(len(coefficients) - 1, -1, -1)):
+    shape = [(row.power, len(row.entries)) for row in rows]
+    if not coefficients or shape != [(power, power // 2 + 1) for power in range(len(coefficients) - 1, -1, -1)]:
         return False
     if table.epsilon in set().union(*(c.names for c in coefficients)) or not all(table.first_column):
         return False
@@ -128,7 +129,7 @@ def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
     if top.origin != "coefficients" or top.entries != tuple(coefficients[0::2]):
         return False
     return all(
-        len(row.entries) == row.power // 2 + 1 and _follows(row, above, before, table.epsilon, coefficients)
+        _follows(row, above, before, table.epsilon, coefficients)
         for before, above, row in zip((None, *rows), rows, rows[1:], strict=False)
     )
 

@@ -66,8 +66,8 @@ _GAP = 2
 _RULE = " │ "
 
 
-def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> str:
-    """Return the rows in aligned columns, and below them what their names stand for; `words` writes a remark."""
+def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> tuple[str, str]:
+    """Return the rows in aligned columns, and what their names stand for, if any; `words` writes a remark."""
     margin = 2 + len(str(block.table.rows[0].power)) + text_width(_RULE)
 
     def room(remarks: Sequence[Inlines]) -> float:
@@ -84,8 +84,7 @@ def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> str:
         f"{head}{_RULE}{(' ' * _GAP).join(row)}{' ' * 2 * _GAP}{remark}".rstrip()
         for head, row, remark in zip(first, zip(*others, strict=True), remarks, strict=True)
     ]
-    table = "\n".join(lines)
-    return f"{table}\n\n{words(block.where)}\n\n{printer.display(found.told)}" if found.told else table
+    return "\n".join(lines), printer.display(found.told) if found.told else ""
 
 
 def _padded(column: Sequence[str]) -> list[str]:

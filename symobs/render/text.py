@@ -78,7 +78,9 @@ class TextWriter:
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
             case TableBlock():
-                return indented(text_table(block, self.printer, self.sentence))
+                table, told = text_table(block, self.printer, self.remark)
+                below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
+                return f"{indented(table)}{below}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
@@ -86,6 +88,10 @@ class TextWriter:
     def sentence(self, inlines: Inlines) -> str:
         """Return running text with its mathematics."""
         return "".join(self._inline(part) for part in inlines)
+
+    def remark(self, inlines: Inlines) -> str:
+        """Return words that are not wrapped."""
+        return self.sentence(inlines).replace(_NO_BREAK, " ")
 
     def _inline(self, part: Inline) -> str:
         if isinstance(part, str):
