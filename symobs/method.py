@@ -229,12 +229,13 @@ class Method:
 
 @dataclass(frozen=True)
 class Task:
-    """A question one can ask: its function, and its keywords with the kinds they are of."""
+    """A question one can ask: its function, its keywords with their kinds; `alone` where it needs no plant."""
 
     name: str
     function: Callable[..., Result]
     keywords: Mapping[str, str]
     summary: str
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -286,12 +287,10 @@ def _of_constant_plants(function: Callback) -> Callback:
 
 def _registered(function: Callback) -> Callback:
     """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
-    keywords = {
-        name: _kind(parameter.annotation)
-        for name, parameter in inspect.signature(function).parameters.items()
-        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
-    }
-    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function))
+    signature = inspect.signature(function).parameters
+    keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
+    alone = signature["plant"].default is None
+    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), alone)
     return function
 
 

@@ -13,8 +13,11 @@ from symobs.derivation.steps import (
     Sentence,
     Solve,
     Step,
+    Survey,
     Tabulate,
+    Where,
 )
+from symobs.derivation.regions import findings_of_region
 from symobs.derivation.tables import findings_of
 
 __all__ = [
@@ -30,6 +33,9 @@ __all__ = [
     "Sentence",
     "Solve",
     "Step",
+    "Survey",
     "Tabulate",
+    "Where",
     "findings_of",
+    "findings_of_region",
 ]

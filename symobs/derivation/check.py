@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
-from symobs.derivation.properties import PREDICATES, needed, polynomial_of, subjects
+from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
+from symobs.derivation.regions import is_exactly, is_survey
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -26,7 +27,9 @@ from symobs.derivation.steps import (
     Sentence,
     Solve,
     Step,
+    Survey,
     Tabulate,
+    Where,
 )
 from symobs.derivation.tables import is_tabulated
 from symobs.errors import DerivationRejected
@@ -134,6 +137,13 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
             if not is_tabulated(step, value, environment):
                 _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+        case Where(fact):
+            _fact(fact, environment, discrete)
+        case Survey(polynomial):
+            _about_letters(polynomial, environment)
+            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            if not is_survey(step, value, environment, discrete=discrete):
+                _reject(f"that this is the region of {plain(polynomial, environment.variable)}")
         case Case(when, substitution, inside, anew=anew):
             stratum = _on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}
@@ -207,26 +217,15 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         found = evaluate(fact.property.subject, environment, Exact(environment))
         (value,) = subjects(fact.property.name, found, environment.variable)
         polynomial = polynomial_of(value, environment)
-        bounds = needed(fact.property.name, polynomial, environment, discrete)
-        said = {_positive_part(relation, environment) for relation in fact.where}
-        strict = {operator in {"<", ">"} for relation in fact.where for operator in relation.operators}
-        if not bounds or said != set(bounds) or strict != {fact.property.name == "stable"}:
-            _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
+        if not is_exactly(fact, polynomial, environment, discrete=discrete):
+            where = ", ".join(plain_relation(relation, environment.variable) for relation in fact.where)
+            _reject(f"{polynomial} is {fact.property.name} exactly where {where}")
         return
     _about_letters(fact.subject, environment)
     found = evaluate(fact.subject, environment, Exact(environment))
     parts = subjects(fact.name, found, environment.variable)
     if fact.name not in PREDICATES or not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
         _reject(f"{fact.name}({found})")
-
-
-def _positive_part(relation: Relation, environment: Environment) -> Scalar:
-    """Return what an inequality says is positive, or not negative."""
-    if relation.operators not in {(">",), ("<",), (">=",), ("<=",)}:
-        _reject(plain_relation(relation, environment.variable))
-    left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
-    difference: Scalar = left - right if relation.operators[0][0] == ">" else right - left
-    return difference
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:

@@ -12,7 +12,7 @@ from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.formula import Fact, Formula, Relation, Together
+    from symobs.formula import Exactly, Fact, Formula, Relation, Together
     from symobs.region.routh import RouthTable
 
 
@@ -109,6 +109,30 @@ class Tabulate:
 
 
 @dataclass(frozen=True, slots=True)
+class Where:
+    """A property holds exactly where some inequalities do: shown on a display of their own."""
+
+    fact: Exactly
+    sentence: Sentence | None = None
+    answer: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
+
+    The findings are among those of `findings_of_region`; the parts are all of its intervals, or bounds of the second
+    parameter over intervals of the first, or are left out.
+    """
+
+    polynomial: Formula
+    names: tuple[str, ...]
+    findings: tuple[Sentence, ...] = ()
+    parts: tuple[tuple[Relation, ...], ...] = ()
+    sentence: Sentence | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -131,4 +155,4 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Tabulate | Case | Section
+Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Tabulate | Where | Survey | Case | Section

@@ -5,6 +5,7 @@ Isolation is FLINT's, certified: the balls are disjoint, and a ball with imagina
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, total_ordering
 from math import ceil, floor
@@ -13,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, ctx, fmpq, fmpz_poly
 
 from symobs.exact.field import Field
-from symobs.exact.functions import square_root
+from symobs.exact.functions import Function, registered, square_root
 from symobs.exact.roots import rational_sqrt
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 #: Bits of the first enclosure; doubled whenever they do not decide.
 FIRST_BITS = 64
@@ -107,6 +108,17 @@ class RealNumber:
         """Return the number written with square roots: of degree 1 and 2, and ±√a ± √b."""
         return _closed_form(self)
 
+    def truncated(self, digits: int = 5) -> str:
+        """Return the digits of an irrational number up to this place, as it would be begun on paper: 1.41421."""
+        bits = FIRST_BITS
+        while True:
+            low, high = (int(end * 10**digits) for end in self.interval(bits))
+            if low == high:
+                break
+            bits *= 2
+        whole, rest = divmod(abs(low), 10**digits)
+        return f"{'-' if self.interval()[1] < 0 else ''}{whole}.{rest:0{digits}d}"
+
     def decimal(self, digits: int = 6) -> str:
         """Return the number rounded to this many digits after the point, every digit certified."""
         if self.is_rational:
@@ -124,6 +136,11 @@ class RealNumber:
         closed = self.closed_form()
         return str(closed) if closed is not None else f"CRootOf({self.minimal_polynomial(variable)}, {self.index})"
 
+    def scalar(self, variable: str = "x") -> Scalar:
+        """Return the number as a value: its closed form, or a generator that stands for it."""
+        closed = self.closed_form()
+        return closed if closed is not None else registered(RealRoot("CRootOf", self.minimal_polynomial(variable), self))
+
     def minimal_polynomial(self, variable: str) -> Scalar:
         """Return the polynomial in a variable."""
         field = Field.of((variable,))
@@ -138,6 +155,31 @@ class RealNumber:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _from_coefficients, (tuple(map(int, self.polynomial.coeffs())), self.index)
+
+
+@dataclass(frozen=True)
+class RealRoot(Function):
+    """A real algebraic number without a closed form as a generator; the argument is its minimal polynomial."""
+
+    number: RealNumber
+
+    @property
+    def name(self) -> str:
+        """SymPy's text."""
+        return f"CRootOf({self.argument}, {self.number.index})"
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """Nothing: a number has no symbols."""
+        return frozenset()
+
+    def rate(self, time: str) -> Scalar:  # noqa: ARG002 - a number does not move
+        """Return 0."""
+        return Scalar.of(0)
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:  # noqa: ARG002
+        """Return the number itself."""
+        return Scalar.symbol(self.name)
 
 
 def _from_coefficients(coefficients: tuple[int, ...], index: int) -> RealNumber:

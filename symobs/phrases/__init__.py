@@ -24,6 +24,7 @@ from symobs.phrases import (
     polynomials,
     rank,
     reduced_order,
+    regions,
     routh,
     time,
     time_varying,
@@ -49,6 +50,7 @@ _MODULES = (
     reduced_order,
     time_varying,
     routh,
+    regions,
 )
 
 

@@ -69,11 +69,18 @@ class Critical:
         return self.polynomial.denominator
 
     @cached_property
-    def coefficients(self) -> tuple[Scalar, ...]:
-        """a₀ … aₙ."""
-        moved = self.boundary.moved(self.polynomial).numerator
-        found = moved.coefficients(self.boundary.variable)
+    def written(self) -> tuple[Scalar, ...]:
+        """The coefficients with their denominators, as Routh's table begins with them."""
+        found = self.boundary.moved(self.polynomial).coefficients(self.boundary.variable)
         return tuple(bilinear(found)) if self.boundary.discrete else found
+
+    @cached_property
+    def coefficients(self) -> tuple[Scalar, ...]:
+        """a₀ … aₙ without denominators."""
+        below = Scalar.of(1)
+        for coefficient in self.written:
+            below = below * (coefficient * below).denominator
+        return tuple(coefficient * below for coefficient in self.written)
 
     @property
     def order(self) -> int:

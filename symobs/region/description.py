@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import Scalar
 from symobs.exact.enclosure import decimal
 from symobs.exact.functions import square_part, square_root
+from symobs.formula import Literal, Relation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -76,6 +77,30 @@ def _followers(region: PlaneRegion) -> dict[int, int]:
         for (left, right), count in meetings.items()
         if count == 1 and lefts.count(left) == 1 and rights.count(right) == 1
     }
+
+
+def between(name: str, low: Scalar | None, high: Scalar | None, closing: str = "<") -> Relation | None:
+    """Return low < name < high, or what of it is bounded; None where nothing is."""
+    symbol = Literal(Scalar.symbol(name))
+    if low is not None and high is not None:
+        return Relation((Literal(low), symbol, Literal(high)), ("<", closing))
+    if low is not None:
+        return Relation((symbol, Literal(low)), (">",))
+    return None if high is None else Relation((symbol, Literal(high)), (closing,))
+
+
+def relations_of(part: Part, names: tuple[str, str]) -> tuple[Relation, ...]:
+    """Return the inequalities of a part whose bounds have closed forms: of x, then of y."""
+    x, y = names
+    ends = [None if number is None else number.scalar(x) for number in (part.low, part.high)]
+    bounds = [None if edge is None else edge.closed for edge in (part.lower, part.upper)]
+    first = between(x, ends[0], ends[1], "<=" if part.reaches else "<")
+    return tuple(found for found in (first, between(y, bounds[0], bounds[1])) if found is not None)
+
+
+def is_written(part: Part) -> bool:
+    """Tell whether every bound of y has a closed form."""
+    return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 
 
 def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Slab, Edge | None, Edge | None]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Survey, Tabulate, Where
 from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Shown, Sum, Together, letters
 
 if TYPE_CHECKING:
@@ -58,6 +58,10 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from (*equation.members, *solution.members, *_in_sentence(sentence))
         case Conclude(sentence=sentence) | Note(sentence=sentence) | Tabulate(sentence=sentence):
             yield from _in_sentence(sentence)
+        case Where(fact=fact, sentence=sentence):
+            yield from (*_in_facts((fact,)), *_in_sentence(sentence))
+        case Survey(polynomial=polynomial):
+            yield polynomial
         case Diagram(labels=labels):
             yield from (formula for _, formula in labels)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve, Tabulate
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve, Survey, Tabulate, Where
 from symobs.formula import Literal, Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
@@ -209,6 +209,11 @@ class _Page:
                 )
                 for finding in findings:
                     self.say(finding)
+            case Where(fact=fact, sentence=sentence, answer=answer):
+                self.say(sentence)
+                self.show(fact.where, boxed=answer)
+            case Survey():
+                self.tell_survey(step)
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
             case Section() if _is_statement(step):
@@ -225,6 +230,14 @@ class _Page:
             if isinstance(step, Section) or step not in self.told:
                 self.tell_step(step)
         self.numbers.pop()
+
+    def tell_survey(self, step: Survey) -> None:
+        """Tell what is found, and the parts of a region one below the other."""
+        for finding in step.findings:
+            self.say(finding)
+        self.say(step.sentence)
+        for part in step.parts:
+            self.blocks.append(Display(part))
 
     def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""

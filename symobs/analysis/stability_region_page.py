@@ -1,0 +1,196 @@
+"""The page of a stability region: the polynomial, Routh's table, where roots can cross, the inequalities, the region."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import determinant_form, given, state_signs
+from symobs.analysis.stability_region_fields import solved
+from symobs.derivation import Survey, Where, findings_of_region
+from symobs.derivation.regions import interval_relations
+from symobs.exact import Scalar
+from symobs.formula import Exactly, Literal, Quotient
+from symobs.page import predicate, relation, sentence
+from symobs.region.description import is_written, relations_of
+from symobs.region.line import LineRegion
+from symobs.stability import hurwitz_matrix
+
+if TYPE_CHECKING:
+    from symobs.analysis.stability_region import StabilityRegion
+    from symobs.formula import Relation
+    from symobs.formula.term import Term
+    from symobs.page import Page
+
+#: A region in more parts than this is left to its inequalities and its picture.
+MOST_PARTS = 6
+#: Hurwitz' matrix is written out up to this order.
+WRITTEN_ORDER = 4
+
+
+def write_region(page: Page, result: StabilityRegion) -> None:
+    """Write the whole page."""
+    question = result.question
+    if question.plant.polynomial is not None:
+        with page.section("given"):
+            page.given(relation(page["chi_p"], question.plant.polynomial))
+            page.environment = page.environment.having(values={"chi_p": question.plant.polynomial})
+            state_signs(page)
+        chi = page["chi_p"]
+    else:
+        given(page)
+        chi = None
+    with page.section("stability_region"):
+        if chi is None:
+            chi = _polynomial_of_loop(page, result)
+        _sought(page, result)
+        moved = _moved(page, result, chi)
+        _table(page, result, moved)
+        if result.region is not None:
+            _crossing(page, result, moved)
+            _region(page, result, moved)
+
+
+def _polynomial_of_loop(page: Page, result: StabilityRegion) -> Term:
+    """Establish the gains and the characteristic polynomial."""
+    question, order = result.question, result.plant.order
+    chi: Scalar = result.answer["polynomial"]
+    for name, gain in (("K", question.K), ("L", question.L)):
+        if gain is not None:
+            page.define(name, gain, say="gain_open", closing=False)
+    pencil = page.s @ page.identity(order) - page["A"]
+    moved = {
+        "chi_K": pencil + page["B"] @ page["K"] if question.K is not None else None,
+        "chi_L": pencil + page["L"] @ page["C"] if question.L is not None else None,
+    }
+    used = {name: term for name, term in moved.items() if term is not None} or {"chi": pencil}
+    for name, term in used.items():
+        own = chi if len(used) == 1 else term.apply("det").scalar
+        page.define(name, term.apply("det"), term.shown.apply("det"), own, say="polynomial_of_loop", closing=False)
+    if len(used) == 1:
+        return page[next(iter(used))]
+    return page.define("chi_cl", page["chi_K"] @ page["chi_L"], say="polynomial_of_loop", closing=False)
+
+
+def _sought(page: Page, result: StabilityRegion) -> None:
+    """Say what is asked for."""
+    boundary, names = result.question.boundary, _listed(result)
+    if boundary.is_usual:
+        page.remark("sought_discrete" if boundary.discrete else "sought_continuous", names=names)
+    elif boundary.discrete:
+        page.remark("sought_radius", names=names, limit=boundary.radius)
+    else:
+        page.remark("sought_margin", names=names, limit=-boundary.margin)
+
+
+def _listed(result: StabilityRegion) -> str:
+    from symobs.notation import symbol_text  # noqa: PLC0415
+
+    names = [symbol_text(name) for name in result.question.parameters]
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def _moved(page: Page, result: StabilityRegion, chi: Term) -> Term:
+    """Move the boundary to where it usually is: q(s) = χ(s − α), q(z) = χ(ρ z)."""
+    boundary = result.question.boundary
+    if boundary.is_usual:
+        return chi
+    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
+    argument = page.s * boundary.radius if boundary.discrete else page.s - page.value(boundary.margin)
+    value = boundary.moved(result.answer["polynomial"])
+    slot = {"radius": boundary.radius} if boundary.discrete else {"margin": boundary.margin}
+    say = "enlarged" if boundary.discrete else "moved_right"
+    q = page.define("q_s", argument.apply(name), value, say=say, closing=False, **slot)
+    page.remark("unit_disc" if boundary.discrete else "left_half_plane")
+    return q
+
+
+def _table(page: Page, result: StabilityRegion, chi: Term) -> None:
+    """Show Routh's table, in discrete time of the polynomial that the bilinear map makes."""
+    if not result.question.boundary.discrete:
+        page.tabulate(chi, say="routh_table", polynomial=chi)
+        return
+    w = Scalar.symbol("w")
+    image = page.term(Quotient(Literal(w + 1), Literal(w - 1)))
+    value = Scalar.of(0)
+    for coefficient in result.critical.written:
+        value = value * w + coefficient
+    order = result.critical.order
+    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
+    q = page.define(
+        "q_w", page.value(w - 1) ** order * image.apply(name), value, say="mapped", closing=False, image=image
+    )
+    page.tabulate(q, "w", say="routh_table", polynomial=q)
+
+
+def _crossing(page: Page, result: StabilityRegion, chi: Term) -> None:
+    """Show the critical polynomials."""
+    critical, names = result.critical, _listed(result)
+    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
+    places = (1, -1) if critical.boundary.discrete else (0,)
+    shown: list[Relation] = []
+    for place in places:
+        value = page.value(place).apply(name)
+        shown.append(relation(value, determinant_form(page, value.scalar)))
+    lead = critical.written[0]
+    page.remark("crossing_discrete" if critical.boundary.discrete else "crossing", names=names)
+    if not critical.boundary.discrete and not lead.is_constant:
+        page.equal(relation(page.value(lead), "!=", 0)) if False else None
+    page.equal(*shown)
+    last = critical.order - 1
+    if last < 1:
+        return
+    hurwitz = hurwitz_matrix(critical.written).select(range(last), range(last))
+    determinant = hurwitz.determinant()
+    if 1 < last <= WRITTEN_ORDER:
+        members = [page.value(hurwitz).apply("det"), determinant_form(page, determinant)]
+    else:
+        members = [determinant_form(page, determinant)]
+    page.define(f"Delta_{last}", *members, closing=False)
+    if critical.never:
+        page.remark("always_critical")
+
+
+def _region(page: Page, result: StabilityRegion, chi: Term) -> None:
+    """Show the inequalities, and the region in words and parts."""
+    region, bounds = result.region, result.answer["bounds"]
+    assert region is not None  # noqa: S101 - there is one here
+    found = findings_of_region(region)
+    names = (region.name,) if isinstance(region, LineRegion) else region.names
+    decided = tuple(finding for finding in found if finding.key in {"points_decide", "cells_decide"})
+    if decided:
+        page.steps.append(Survey(chi.formula, names, decided))
+    if result.empty:
+        page.steps.append(Survey(chi.formula, names, found))
+        return
+    relations = _inequalities(result, region)
+    if relations:
+        fact = Exactly(predicate("stable", chi), relations)
+        page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
+    elif bounds == ():
+        page.conclude("region_everywhere", predicate("stable", chi), names=_listed(result))
+    parts = _parts(result, region)
+    others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
+    if others or parts:
+        numbers = tuple(finding for finding in found if finding.key == "number_is_root") if parts else ()
+        say = sentence("parts_are", {}) if parts else None
+        page.steps.append(Survey(chi.formula, names, others, parts, say))
+        if numbers:
+            page.steps.append(Survey(chi.formula, names, numbers))
+
+
+def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:
+    if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
+        return tuple(r for found in interval_relations(region) for r in found)
+    signs = result.plant.symbols.signs
+    return tuple(relation(*solved(bound, signs)) for bound in result.answer["bounds"])
+
+
+def _parts(result: StabilityRegion, region: object) -> tuple[tuple[Relation, ...], ...]:
+    if isinstance(region, LineRegion):
+        return tuple(interval_relations(region)) if len(region.intervals) > 1 else ()
+    parts = result.parts
+    if not 0 < len(parts) <= MOST_PARTS or not all(map(is_written, parts)) or result.region is None:
+        return ()
+    if result.region.holes:  # type: ignore[union-attr] - a region of two parameters
+        return ()
+    return tuple(relations_of(part, result.region.names) for part in parts)  # type: ignore[union-attr]
