@@ -43,7 +43,7 @@ class StabilityRegion(Result):
         """Return the region of a question."""
         region = region_of(question)
         bounds = None if region is None or region.critical.never or region.empty else short_list(region)
-        answer = {"polynomial": question.polynomial, "routh": routh_table(question.critical.coefficients), "bounds": bounds}
+        answer = {"polynomial": question.polynomial, "routh": routh_table(question.critical.written, question.critical.parameters), "bounds": bounds}
         return cls(question.plant, method_name, answer, question)
 
     @property
@@ -68,7 +68,7 @@ class StabilityRegion(Result):
         yield self._claim_of_polynomial()
         table: RouthTable = self.answer["routh"]
         yield Statement(
-            "the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.coefficients) else ""
+            "the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else ""
         )
         bounds, region = self.answer["bounds"], self.region
         if region is not None:

@@ -9,7 +9,7 @@ from symobs.analysis.stability_region_fields import solved
 from symobs.derivation import Survey, Where, findings_of_region
 from symobs.derivation.regions import interval_relations
 from symobs.exact import Scalar
-from symobs.formula import Exactly, Literal, Quotient
+from symobs.formula import Exactly, Literal, Power, Product, Quotient, Sum
 from symobs.page import predicate, relation, sentence
 from symobs.region.description import is_written, relations_of
 from symobs.region.line import LineRegion
@@ -17,12 +17,12 @@ from symobs.stability import hurwitz_matrix
 
 if TYPE_CHECKING:
     from symobs.analysis.stability_region import StabilityRegion
-    from symobs.formula import Relation
+    from symobs.formula import Formula, Relation
     from symobs.formula.term import Term
     from symobs.page import Page
 
 #: A region in more parts than this is left to its inequalities and its picture.
-MOST_PARTS = 6
+MOST_PARTS = 8
 #: Hurwitz' matrix is written out up to this order.
 WRITTEN_ORDER = 4
 
@@ -46,7 +46,8 @@ def write_region(page: Page, result: StabilityRegion) -> None:
         moved = _moved(page, result, chi)
         _table(page, result, moved)
         if result.region is not None:
-            _crossing(page, result, moved)
+            if result.critical.proper:
+                _crossing(page, result, moved)
             _region(page, result, moved)
 
 
@@ -111,30 +112,43 @@ def _table(page: Page, result: StabilityRegion, chi: Term) -> None:
         return
     w = Scalar.symbol("w")
     image = page.term(Quotient(Literal(w + 1), Literal(w - 1)))
-    value = Scalar.of(0)
-    for coefficient in result.critical.written:
-        value = value * w + coefficient
     order = result.critical.order
+    powers = [(c, order - k) for k, c in enumerate(result.critical.written) if not c.is_zero]
+    value = page.term(Sum(tuple(_of_power(c, w, power) for c, power in powers)))
     name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
-    q = page.define(
-        "q_w", page.value(w - 1) ** order * image.apply(name), value, say="mapped", closing=False, image=image
-    )
+    product = page.value(w - 1) ** order * image.apply(name)
+    scale = result.critical.scale
+    if not scale.is_one:
+        product = page.value(scale) * product
+    q = page.define("q_w", product, value, say="mapped", closing=False, image=image)
     page.tabulate(q, "w", say="routh_table", polynomial=q)
+
+
+def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:
+    """Return coefficient · wᵖ."""
+    raised = Literal(w) if power == 1 else Power(Literal(w), power)
+    parts = [Literal(coefficient)] if not coefficient.is_one or not power else []
+    parts += [raised] if power else []  # type: ignore[list-item]
+    return parts[0] if len(parts) == 1 else Product(tuple(parts))
 
 
 def _crossing(page: Page, result: StabilityRegion, chi: Term) -> None:
     """Show the critical polynomials."""
-    critical, names = result.critical, _listed(result)
+    critical = result.critical
+    names = f"{_listed(result)} {'varies' if len(result.question.parameters) == 1 else 'vary'}"
     name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
     places = (1, -1) if critical.boundary.discrete else (0,)
     shown: list[Relation] = []
     for place in places:
         value = page.value(place).apply(name)
         shown.append(relation(value, determinant_form(page, value.scalar)))
-    lead = critical.written[0]
-    page.remark("crossing_discrete" if critical.boundary.discrete else "crossing", names=names)
-    if not critical.boundary.discrete and not lead.is_constant:
-        page.equal(relation(page.value(lead), "!=", 0)) if False else None
+    if critical.boundary.discrete:
+        key = "crossing_discrete"
+    elif not critical.written[0].is_constant:
+        key = "crossing_infinite"
+    else:
+        key = "crossing" if critical.order > 1 else "crossing_one"
+    page.remark(key, names=names)
     page.equal(*shown)
     last = critical.order - 1
     if last < 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.certificate import as_scalar
@@ -36,10 +37,9 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
     arithmetic = Exact(environment)
     said = []
     for relation in fact.where:
-        if len(relation.members) != 2:
-            return False
-        left, right = (as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members)
-        said.append((right - left if relation.operators[0][0] == "<" else left - right, relation.operators[0]))
+        values = [as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members]
+        for (left, right), operator in zip(pairwise(values), relation.operators, strict=True):
+            said.append((right - left if operator[0] == "<" else left - right, operator))
     wanted = needed(fact.property.name, polynomial, environment, discrete)
     signs = {">", "<"} if fact.property.name == "stable" else {">=", "<="}
     if wanted and {value for value, _ in said} == set(wanted) and {operator for _, operator in said} <= signs:
@@ -88,13 +88,13 @@ def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
-        slots = {"cells": counted(len(allowed), "open piece"), "stable": in_words(stable, of="cell")}
+        slots = {"cells": counted(len(allowed), "open piece"), "stable": in_words(stable, len(allowed))}
         yield Sentence("cells_decide", tuple(slots.items()))
     count, bounded = len(region.components), sum(component.bounded for component in region.components)
     if count == 1:
         yield Sentence("connected_bounded" if bounded else "connected_unbounded")
     else:
-        slots = {"count": counted(count, "piece"), "bounded": in_words(bounded, of="piece")}
+        slots = {"count": counted(count, "piece"), "bounded": in_words(bounded, count)}
         yield Sentence("pieces", tuple(slots.items()))
     x, y = region.names
     for hole in region.holes:

@@ -17,16 +17,20 @@ PHRASES: dict[str, str] = {
     "unit_disc": "which must have all of them in the open unit disc.",
     "mapped": "The map from $w$ to {image} carries the open left half plane to the open unit disc, so all roots lie in the disc exactly where those "
     "of this polynomial lie in the left half plane:",
-    "crossing": "As {names} move, a root can leave the left half plane only through 0, through a pair on the imaginary axis or through infinity (Orlando "
-    "1911): where one of these vanishes.",
-    "crossing_discrete": "As {names} move, a root can leave the disc only at 1, at −1 or in a pair on the circle: where one of these vanishes.",
+    "crossing_one": "As {names}, the root leaves the left half plane only through 0: where this vanishes.",
+    "crossing": "As {names}, a root leaves the left half plane only through 0 or with another one through the imaginary axis: where one of these "
+    "vanishes.",
+    "crossing_infinite": "As {names}, a root leaves the left half plane only through 0, with another one through the imaginary axis or through infinity, "
+    "where the leading coefficient vanishes: where one of these is zero.",
+    "crossing_discrete": "As {names}, a root leaves the disc only at 1, at −1 or with another one through the circle: where one of these vanishes.",
     "hurwitz_determinant": "with the determinant of Hurwitz",
     "always_critical": "One of them is zero whatever the values: there is always a root that is not stable.",
     "region_is": "So all roots are stable exactly where",
     "region_empty": "There are no such values.",
     "region_everywhere": "So all roots are stable for all values of {names}.",
-    "points_decide": "Between {points} on the line nothing changes, so one rational value decides for a whole interval: {stable} found stable.",
-    "cells_decide": "These curves cut the plane into {cells}. Inside one nothing changes, so one rational point decides for all of it: {stable} stable.",
+    "points_decide": "Between {points} on the line nothing changes, so one rational value decides for a whole interval: all roots are stable on {stable}.",
+    "cells_decide": "These curves, with lines through the points where they turn or meet, cut the plane into {cells}. Inside one nothing changes, so one "
+    "rational point decides for all of it: {stable} stable.",
     "point_missing": "The value {name} = {point} itself is not among them.",
     "connected_bounded": "The region is connected and bounded.",
     "connected_unbounded": "The region is connected and not bounded.",
@@ -37,9 +41,10 @@ PHRASES: dict[str, str] = {
     "parts_are": "Solved for the parameters:",
 }
 
-RESTS_ON: dict[str, str] = {"cells_decide": "collins", "points_decide": "sturm"}
+RESTS_ON: dict[str, str] = {"cells_decide": "collins", "points_decide": "sturm", "crossing": "orlando", "crossing_infinite": "orlando"}
+RESTS_ON |= {"crossing_discrete": "orlando"}
 
-NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius")
+NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped")
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
@@ -51,10 +56,12 @@ def counted(count: int, thing: str) -> str:
     return f"{number} {thing}{'' if count == 1 else 's'}"
 
 
-def in_words(count: int, of: str) -> str:
-    """Return `one of them is`, `three of them are`; `of` is what is counted."""
+def in_words(count: int, among: int) -> str:
+    """Return `none of them is`, `one of them is`, `three of them are`, `all of them are`."""
     if count == 0:
-        return f"no {of} is"
+        return "none of them is"
+    if count == among:
+        return "all of them are"
     number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
     return f"{number} of them {'is' if count == 1 else 'are'}"
 

@@ -70,17 +70,19 @@ class Critical:
 
     @cached_property
     def written(self) -> tuple[Scalar, ...]:
-        """The coefficients with their denominators, as Routh's table begins with them."""
+        """The coefficients Routh's table begins with: of the moved polynomial, in discrete time without denominators."""
         found = self.boundary.moved(self.polynomial).coefficients(self.boundary.variable)
-        return tuple(bilinear(found)) if self.boundary.discrete else found
+        return tuple(c * self.scale for c in bilinear(found)) if self.boundary.discrete else found
+
+    @cached_property
+    def scale(self) -> Scalar:
+        """What clears the denominators of the moved polynomial."""
+        return self.boundary.moved(self.polynomial).denominator
 
     @cached_property
     def coefficients(self) -> tuple[Scalar, ...]:
         """a₀ … aₙ without denominators."""
-        below = Scalar.of(1)
-        for coefficient in self.written:
-            below = below * (coefficient * below).denominator
-        return tuple(coefficient * below for coefficient in self.written)
+        return self.written if self.boundary.discrete else tuple(c * self.scale for c in self.written)
 
     @property
     def order(self) -> int:
