@@ -13,6 +13,7 @@ from symobs.phrases import slots_of
 if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.formula import Fact, Formula, Relation, Together
+    from symobs.picture import Picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +98,15 @@ class Diagram:
 
 
 @dataclass(frozen=True, slots=True)
+class Plot:
+    """A picture of where `subject`, a polynomial, is stable, or of its roots as a parameter moves."""
+
+    picture: Picture
+    subject: Formula
+    sentence: Sentence | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -119,4 +129,4 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Case | Section
+Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Plot | Case | Section
