@@ -72,7 +72,8 @@ def critical(curves: Sequence[Scalar], window: Window) -> list[float]:
             middle = fraction(float(a + c) / 2)
             a, c = (middle, c) if pattern(middle) == before else (a, middle)
         changes.append(float(a + c) / 2)
-    walls = [x for curve in curves if "h2" not in curve.names for x in real_roots(_numbers(curve, "h1"))]
+    leading = [curve.coefficients("h2")[0] for curve in curves]
+    walls = [x for value in leading for x in real_roots(_numbers(value, "h1")) if "h1" in value.names]
     inside = [x for x in (*changes[1:], *walls) if low < x < high]
     return sorted({low, *inside, high})
 
@@ -104,16 +105,17 @@ def region(
         branches = list(_branches(curves, nodes))
         lines = [[(x, Fraction(bottom)) for x in nodes], *(points for points, _ in branches)]
         lines.append([(x, Fraction(top)) for x in nodes])
+        lines = [[(fraction(left), line[0][1]), *line[1:-1], (fraction(right), line[-1][1])] for line in lines]
         lines = [[(x, min(max(y, Fraction(bottom)), Fraction(top))) for x, y in line] for line in lines]
         verdicts = []
         for below, above in pairwise(lines):
             y0, y1 = below[_NODES // 2][1], above[_NODES // 2][1]
-            stable = is_stable(chi, discrete=discrete, h1=middle, h2=(y0 + y1) / 2)
+            stable = is_stable(chi, discrete=discrete, h1=middle, h2=(2 * y0 + 3 * y1) / 5)
             verdicts.append(stable)
             if stable and any(low[1] != high[1] for low, high in zip(below, above, strict=True)):
                 areas.append((*below, *reversed(above)))
             if marked and y1 - y0 > Fraction(top - bottom, 12) and right - left > (window[0][1] - window[0][0]) / 12:
-                marks.append(Mark((middle, (y0 + y1) / 2), "stable" if stable else "unstable"))
+                marks.append(Mark((middle, (2 * y0 + 3 * y1) / 5), "stable" if stable else "unstable"))
         for (points, place), low, high in zip(branches, verdicts, verdicts[1:], strict=False):
             if any(bottom < y < top for _, y in points):
                 drawn.append(Curve(tuple(points), list(curves.values())[place], boundary=low != high))
@@ -143,7 +145,7 @@ HYPERBOLA = s**3 + h1 * s**2 + h2 * s + 1
 PENDULUM = s**2 + (b + h2) * s + omega**2 * (1 - h1)
 ANNULUS = s**2 + (5 - h1**2 - h2**2) * s + h1**2 + h2**2 - 1
 RING = s**2 + s + h1**2 + h2**2
-DISC_CUBIC = z**3 + (2 + h1) * z**2 + (h1**2 + h2**2 - 4) * z + h1 * h2 + 1
+DISC_CUBIC = s**3 + (2 + h1) * s**2 + (h1**2 + h2**2 - 4) * s + h1 * h2 + 1
 JURY2 = z**2 + h1 * z + h2
 JURY4 = z**4 + h1 * z**3 + h2 * z + Scalar.rational(1, 8)
 QUINTIC = s**5 + 3 * s**4 + (5 + h1) * s**3 + (6 + h2) * s**2 + (4 + h1 - h2) * s + 1 + h2
@@ -176,7 +178,7 @@ def ring_hole() -> RegionPicture:
 def three_components() -> RegionPicture:
     cubic = h1**3 + 2 * h1**2 + h1 * h2**2 - h1 * h2 - 4 * h1 + 2 * h2**2 - 9
     curves = {h1 * h2 + 1: equation(h1 * h2, -1), cubic: equation(cubic, 0)}
-    return region(DISC_CUBIC, curves, ((-5, 6), (-6, 6)), discrete=True)
+    return region(DISC_CUBIC, curves, ((-4, 5), (-4, 5)))
 
 
 def triangle() -> RegionPicture:
@@ -221,11 +223,20 @@ def four_pieces() -> LinePicture:
     return LinePicture("k", (Fraction(-4), Fraction(7)), pieces, ((Fraction(-1), "unstable"), (Fraction(2), "stable")))
 
 
-def pole_map(chi: Scalar, values: tuple[int, int], window: Window, *, steps: int = 80, **circle: Fraction) -> PoleMap:
+def pole_map(
+    chi: Scalar,
+    values: tuple[int, int],
+    window: Window,
+    *,
+    steps: int = 80,
+    through: tuple[str, ...] = (),
+    **circle: Fraction,
+) -> PoleMap:
     """The roots of chi as k goes along, followed by nearness."""
     (variable,) = chi.names & {"s", "z"}
     begin, end = values
-    along = tuple(Fraction(begin) + Fraction(end - begin) * j / steps for j in range(steps + 1))
+    even = (Fraction(begin) + Fraction(end - begin) * j / steps for j in range(steps + 1))
+    along = tuple(sorted({*even, *map(Fraction, through)}))
     stacks: list[list[complex]] = []
     for value in along:
         roots = [
@@ -267,7 +278,7 @@ def second_order() -> PoleMap:
 
 
 def third_order() -> PoleMap:
-    return pole_map(THIRD_ORDER, (0, 20), ((-5, 2), (-4, 4)), margin=Fraction(1, 2))
+    return pole_map(THIRD_ORDER, (0, 20), ((-5, 2), (-4, 4)), through=("0.6311303",), margin=Fraction(1, 2))
 
 
 def sampled() -> PoleMap:
@@ -279,7 +290,7 @@ ALL: dict[str, tuple[Callable[[], RegionPicture | LinePicture | PoleMap], Scalar
     "hyperbola": (hyperbola, HYPERBOLA, False),
     "pendulum": (pendulum, PENDULUM, False),
     "annulus": (annulus, ANNULUS, False),
-    "three_components": (three_components, DISC_CUBIC, True),
+    "three_components": (three_components, DISC_CUBIC, False),
     "triangle": (triangle, JURY2, True),
     "fourth_order": (fourth_order, JURY4, True),
     "fifth_order": (fifth_order, QUINTIC, False),

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 _NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200)
 #: A condition of stability is all but zero where it is so much smaller than at the points around.
 _SMALLER = 16
+_ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 _SIGNS: dict[str, Callable[[Fraction], bool]] = {
     "positive": lambda value: value > 0,
     "negative": lambda value: value < 0,
@@ -140,13 +141,15 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             _passes(value, test.axes, place, between) for place in inside
         ):
             yield plain_relation(curve.equation, test.variable)
+    excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
     for area in picture.areas:
         edges = [place for place in area if not _on_border(place, picture.window, near)]
         for place in edges:
             passes = any(_passes(value, test.axes, place, near) for value in equations.values() if value)
             if not passes and not test.is_stable(*place):
                 yield f"an edge at {_written(place)}"
-        yield from (f"{_written(place)} is stable" for place in _inside(area, near[0]) if not test.is_stable(*place))
+        samples = (place for place in _inside(area, near[0]) if place not in excluded)
+        yield from (f"{_written(place)} is stable" for place in samples if not test.is_stable(*place))
     for mark in picture.marks:
         x, y = mark.place
         around = [(x - near[0], y), (x + near[0], y), (x, y - near[1]), (x, y + near[1])]
@@ -201,16 +204,15 @@ def _on_border(place: Place, window: tuple[Interval, Interval], near: Place) -> 
 
 
 def _inside(area: Sequence[Place], near: Fraction) -> Iterator[Place]:
-    """Yield the middles of the widest stretches inside a polygon at three heights; none of what is too thin to be seen."""
+    """Yield places inside a polygon, at three heights three on every stretch; none on what is too short to be seen."""
     heights = [y for _, y in area]
     bottom, top = min(heights), max(heights)
     for k in (1, 2, 3):
         y = bottom + (top - bottom) * (Fraction(k, 4) + Fraction(1, 97))
         crossings = sorted(_crossings(area, y))
-        stretches = [(b - a, (a + b) / 2) for a, b in zip(crossings[::2], crossings[1::2], strict=True)]
-        length, x = max(stretches)
-        if length > 2 * near:
-            yield x, y
+        for a, b in zip(crossings[::2], crossings[1::2], strict=True):
+            if b - a > 2 * near:
+                yield from ((a + (b - a) * part, y) for part in _ALONG)
 
 
 def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:

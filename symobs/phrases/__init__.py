@@ -20,6 +20,7 @@ from symobs.phrases import (
     gains,
     minimal_order,
     modes,
+    pictures,
     pole_advice,
     polynomials,
     rank,
@@ -47,6 +48,7 @@ _MODULES = (
     tracking,
     reduced_order,
     time_varying,
+    pictures,
 )
 
 

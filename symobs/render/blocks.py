@@ -13,6 +13,8 @@ from symobs.formula import Formula, Relation, Roots
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from symobs.picture import Picture
+
 Inline: TypeAlias = str | Formula | Relation | Roots
 Inlines: TypeAlias = tuple[Inline, ...]
 
@@ -78,6 +80,14 @@ class Drawing:
 
 
 @dataclass(frozen=True, slots=True)
+class PictureBlock:
+    """A picture and what stands below it."""
+
+    picture: Picture
+    caption: Inlines
+
+
+@dataclass(frozen=True, slots=True)
 class CaseBlock:
     """What holds in a special case: the label says which, the blocks are set in from the margin."""
 
@@ -85,7 +95,7 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
-Block: TypeAlias = Title | Heading | Paragraph | Display | Verified | Caution | Drawing | CaseBlock
+Block: TypeAlias = Title | Heading | Paragraph | Display | Verified | Caution | Drawing | PictureBlock | CaseBlock
 
 
 def every(blocks: Iterable[Block]) -> Iterator[Block]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Plot, Section, Sentence, Solve
 from symobs.formula import Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
@@ -23,10 +23,12 @@ from symobs.render.blocks import (
     Inline,
     Inlines,
     Paragraph,
+    PictureBlock,
     Title,
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.plots_caption import caption
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -199,6 +201,9 @@ class _Page:
                 self.say(sentence)
             case Diagram(name=name, labels=labels):
                 self.blocks.append(Drawing(name, labels))
+            case Plot(picture=picture, sentence=sentence):
+                self.say(sentence)
+                self.blocks.append(PictureBlock(picture, caption(picture)))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
             case Section() if _is_statement(step):

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
-from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified
+from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, PictureBlock, Title, Verified
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
+from symobs.render.plots_text import character_plot
 from symobs.render.roots import TEXT, listed
 from symobs.render.text_printer import TextPrinter, text_width
 
@@ -76,6 +77,9 @@ class TextWriter:
                 return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
+            case PictureBlock(picture, caption):
+                plot = character_plot(picture, self.printer, width - len(INDENT))
+                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(caption), width - len(INDENT)))}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
