@@ -1,8 +1,7 @@
 """Results, and the registries of tasks, methods and formats (trusted).
 
-A `Result` cannot exist unless its claims hold: the constructor checks them, and the claims belong to the result's type,
-not to the method that found the answer.  Tasks, methods and output formats register themselves by decorators; their
-modules are discovered in the packages named by `symobs.PACKAGES`, so adding one is adding a file.
+A `Result` cannot exist unless its claims hold: the constructor checks them, and they belong to the result's type, not to
+the method.  Tasks, methods and formats register themselves by decorators in modules that are discovered.
 """
 
 from __future__ import annotations
@@ -26,6 +25,7 @@ from symobs.page import Page
 if TYPE_CHECKING:
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
+    from symobs.picture import Picture
     from symobs.system import StateSpace
 
 Kind = TypeVar("Kind", bound=type)
@@ -110,6 +110,11 @@ class Result:
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of this result and of those it is made of."""
         return self.certificates
+
+    @property
+    def picture(self) -> Picture | None:
+        """The picture of the answer that the page shows, where there is one."""
+        return None
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -256,6 +261,7 @@ _TASKS: dict[str, Task] = {}
 _IN_TIME: list[str] = []
 _METHODS: dict[str, Method] = {}
 _FORMATS: dict[str, Any] = {}
+_DISCOVERED: set[str] = set()
 
 
 def task(function: Callback) -> Callback:
@@ -325,19 +331,15 @@ def _summary(function: Callable[..., Any]) -> str:
 
 def _discover(package: str) -> None:
     """Import every module of a package, once."""
-    if package in _DISCOVERED:
-        return
-    _DISCOVERED.add(package)
-    for found in _modules(package):
-        importlib.import_module(f"{package}.{found.name}")
+    if package not in _DISCOVERED:
+        _DISCOVERED.add(package)
+        for found in _modules(package):
+            importlib.import_module(f"{package}.{found.name}")
 
 
 def _modules(package: str) -> Iterator[pkgutil.ModuleInfo]:
     """Yield the modules of a package, without importing them."""
     yield from pkgutil.iter_modules(importlib.import_module(package).__path__)
-
-
-_DISCOVERED: set[str] = set()
 
 
 def tasks() -> Mapping[str, Task]:

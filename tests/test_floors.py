@@ -43,6 +43,7 @@ FLOORS = {
     "design": 9,
     "render": 9,
     "expect": 10,
+    "output": 11,
     "problem": 11,
     "cli": 12,
     "teaching": 12,

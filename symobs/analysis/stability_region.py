@@ -9,25 +9,25 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.stability_region_fields import cells_of, components_of, excluded_of, intervals_of, stable_if
 from symobs.analysis.stability_region_question import Question, read_question
 from symobs.certificate import Claim, Statement
-from symobs.exact import Scalar
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.description import parts
-from symobs.region.inequalities import Bound, short_list
+from symobs.region.inequalities import short_list
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
 from symobs.region.routh import RouthTable, is_routh_table, routh_table
-from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.exact import Scalar
     from symobs.region.critical import Critical
     from symobs.region.description import Part
+    from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,7 +43,11 @@ class StabilityRegion(Result):
         """Return the region of a question."""
         region = region_of(question)
         bounds = None if region is None or region.critical.never or region.empty else short_list(region)
-        answer = {"polynomial": question.polynomial, "routh": routh_table(question.critical.written, question.critical.parameters), "bounds": bounds}
+        answer = {
+            "polynomial": question.polynomial,
+            "routh": routh_table(question.critical.written, question.critical.parameters),
+            "bounds": bounds,
+        }
         return cls(question.plant, method_name, answer, question)
 
     @property
@@ -67,12 +71,14 @@ class StabilityRegion(Result):
         """Yield what χ is, that the table is Routh's, and that the inequalities hold exactly on the region."""
         yield self._claim_of_polynomial()
         table: RouthTable = self.answer["routh"]
-        yield Statement(
-            "the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else ""
-        )
+        yield Statement("the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else "")
         bounds, region = self.answer["bounds"], self.region
         if region is not None:
-            says = "stable nowhere" if bounds is None else f"stable exactly where {' and '.join(self.stable_if) or 'defined'}"
+            says = (
+                "stable nowhere"
+                if bounds is None
+                else f"stable exactly where {' and '.join(self.stable_if) or 'defined'}"
+            )
             how = "every cell by the roots at a point of it, the cells by Sturm's theorem"
             yield Statement(says, lambda: how if is_region(region, bounds) else "")
         if isinstance(region, PlaneRegion) and self.parts:

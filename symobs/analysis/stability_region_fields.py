@@ -39,7 +39,9 @@ def solved(bound: Bound, signs: Mapping[str, str]) -> tuple[Any, str, Any]:
 def ends_of(piece: Piece, name: str, signs: Mapping[str, str]) -> list[str]:
     """Return name > low and name < high, without what the declared sign says already."""
     found = []
-    if piece.low is not None and not (signs.get(name) == "positive" and piece.low.is_rational and not piece.low.fraction):
+    if piece.low is not None and not (
+        signs.get(name) == "positive" and piece.low.is_rational and not piece.low.fraction
+    ):
         found.append(f"{name} > {piece.low.text(name)}")
     if piece.high is not None and not (
         signs.get(name) == "negative" and piece.high.is_rational and not piece.high.fraction

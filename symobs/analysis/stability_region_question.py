@@ -59,7 +59,9 @@ def read_question(
     if plant.polynomial is not None and any(gain is not None for gain in gains.values()):
         name = next(name for name, gain in gains.items() if gain is not None)
         message = f"both a polynomial and the gain {name} are given"
-        raise InputError(message, where=f"specification.{name}", repair="keep one of them; a gain needs a plant A, B, C")
+        raise InputError(
+            message, where=f"specification.{name}", repair="keep one of them; a gain needs a plant A, B, C"
+        )
     plant = plant.knowing(*gains.values())
     found: dict[str, Matrix | None] = dict.fromkeys(gains)
     if gains["K"] is not None:
@@ -107,5 +109,7 @@ def _boundary(plant: StateSpace, margin: object, radius: object) -> Boundary:
         return Boundary(plant.variable, margin=found)
     if sign_of(found, signs) in {"zero", "negative", "nonpositive"}:
         message = f"the radius is {found}, which is not positive"
-        raise InputError(message, where=where, repair="all roots shall lie in |z| < radius: give a radius > 0, at most 1")
+        raise InputError(
+            message, where=where, repair="all roots shall lie in |z| < radius: give a radius > 0, at most 1"
+        )
     return Boundary(plant.variable, discrete=True, radius=found)

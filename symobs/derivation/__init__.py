@@ -1,6 +1,7 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
+from symobs.derivation.regions import findings_of_region
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -9,6 +10,7 @@ from symobs.derivation.steps import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Solve,
@@ -17,7 +19,6 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.regions import findings_of_region
 from symobs.derivation.tables import findings_of
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "Equal",
     "Given",
     "Note",
+    "Plot",
     "Section",
     "Sentence",
     "Solve",

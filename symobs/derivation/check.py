@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
+from symobs.derivation.pictures import faults, relations_of
 from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
 from symobs.derivation.regions import is_exactly, is_survey
 from symobs.derivation.steps import (
@@ -23,6 +24,7 @@ from symobs.derivation.steps import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Solve,
@@ -36,6 +38,7 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, roots_are
 from symobs.exact.functions import substitute
 from symobs.formula import (
+    Apply,
     Derivative,
     Environment,
     Exact,
@@ -62,6 +65,8 @@ from symobs.stability import monic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from symobs.picture import Picture
 
 Value: TypeAlias = Scalar | Matrix | Signal
 _BUG = "please report this: it is a bug of symobs"
@@ -144,6 +149,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
             if not is_survey(step, value, environment, discrete=discrete):
                 _reject(f"that this is the region of {plain(polynomial, environment.variable)}")
+        case Plot(picture, subject):
+            _drawn(picture, subject, environment, discrete)
         case Case(when, substitution, inside, anew=anew):
             stratum = _on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}
@@ -155,6 +162,16 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             assert_never(step)
     _sentence(getattr(step, "sentence", None), environment, discrete)
     return environment
+
+
+def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
+    """Reject a picture that shows what is not true of the polynomial."""
+    for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
+        _established(formula, environment)
+    if not letters(subject) - {"s"} and not isinstance(subject, Apply):
+        _reject(f"a picture of {plain(subject, environment.variable)}, which is no letter's,")
+    for fault in faults(picture, subject, environment, discrete=discrete):
+        _reject(f"{fault}, in a picture,")
 
 
 def _sentence(sentence: Sentence | None, environment: Environment, discrete: bool) -> None:  # noqa: FBT001

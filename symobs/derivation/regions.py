@@ -120,8 +120,7 @@ def region_of(
     polynomial: Scalar, environment: Environment, *, discrete: bool, names: tuple[str, ...] = ()
 ) -> LineRegion | PlaneRegion | None:
     """Return the proved region of a polynomial with one or two parameters, None where it has others or is too large."""
-    found = _region_of(polynomial, environment.variable, tuple(sorted(environment.signs.items())), discrete, names)
-    return found
+    return _region_of(polynomial, environment.variable, tuple(sorted(environment.signs.items())), discrete, names)
 
 
 @lru_cache(maxsize=64)

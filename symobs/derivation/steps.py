@@ -13,6 +13,7 @@ from symobs.phrases import slots_of
 if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.formula import Exactly, Fact, Formula, Relation, Together
+    from symobs.picture import Picture
     from symobs.region.routh import RouthTable
 
 
@@ -133,6 +134,15 @@ class Survey:
 
 
 @dataclass(frozen=True, slots=True)
+class Plot:
+    """A picture of where `subject`, a polynomial, is stable, or of its roots as a parameter moves."""
+
+    picture: Picture
+    subject: Formula
+    sentence: Sentence | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -155,4 +165,6 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Tabulate | Where | Survey | Case | Section
+Step: TypeAlias = (
+    Given | Define | Equal | Solve | Conclude | Note | Diagram | Plot | Tabulate | Where | Survey | Case | Section
+)

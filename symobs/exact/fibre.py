@@ -6,6 +6,7 @@ exactly, by Euclid's algorithm modulo the minimal polynomial of α; its roots ar
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -116,7 +117,7 @@ def _separators(curves: Sequence[PlaneCurve], x: RealNumber) -> tuple[Fraction, 
     if x.is_rational:
         points = sorted({root for curve in risen for root in real_roots(curve.on_vertical(x.fraction))})
         ends: list[RealNumber | None] = [None, *points, None]
-        return tuple(rational_between(low, high) for low, high in zip(ends[:-1], ends[1:], strict=True))
+        return tuple(rational_between(low, high) for low, high in itertools.pairwise(ends))
     together: Upright = [fmpq_poly([1])]
     tower = _Tower(x)
     for curve in risen:
@@ -226,6 +227,6 @@ def _isolated(coefficients: Sequence[arb], bits: int) -> list[tuple[Fraction, Fr
         low, high = root.real.lower().fmpq(), root.real.upper().fmpq()
         found.append((Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q))))
     found.sort()
-    if any(one[1] >= other[0] for one, other in zip(found[:-1], found[1:], strict=True)):
+    if any(one[1] >= other[0] for one, other in itertools.pairwise(found)):
         return None
     return found

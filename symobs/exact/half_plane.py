@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from symobs.exact.scalar import Scalar
 
+
 def all_to_the_left(coefficients: Sequence[Scalar]) -> bool:
     """Tell it by Routh's table without fractions; the leading coefficient must not be 0 for the answer to be yes."""
     whole = integers(coefficients)

@@ -7,9 +7,8 @@ or runs off to infinity, so the branches keep their number and their order, and 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from flint import fmpz_poly
@@ -19,6 +18,7 @@ from symobs.exact.real import RealNumber, irreducible_factors, rational_between,
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from fractions import Fraction
 
     from flint import fmpz_mpoly
 
@@ -133,17 +133,15 @@ class Plane:
     def slabs(self) -> tuple[Slab, ...]:
         """The slabs from left to right."""
         ends = [None, *(wall.x for wall in self.walls), None]
-        return tuple(self._slab(left, right) for left, right in zip(ends[:-1], ends[1:], strict=True))
+        return tuple(self._slab(left, right) for left, right in pairwise(ends))
 
     def _slab(self, left: RealNumber | None, right: RealNumber | None) -> Slab:
         x = rational_between(left, right)
         roots = sorted(
-            (root, curve, number)
-            for curve, found in enumerate(self.roots_over(x))
-            for number, root in enumerate(found)
+            (root, curve, number) for curve, found in enumerate(self.roots_over(x)) for number, root in enumerate(found)
         )
         ends = [None, *(root for root, _, _ in roots), None]
-        samples = [rational_between(low, high) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+        samples = [rational_between(low, high) for low, high in pairwise(ends)]
         return Slab(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
 
     def roots_over(self, x: Fraction) -> list[list[RealNumber]]:

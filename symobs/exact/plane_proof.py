@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import random
-from fractions import Fraction
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from symobs.exact.real import RealNumber, count_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from fractions import Fraction
 
     from symobs.exact.plane import Plane, Slab
 
@@ -54,9 +54,7 @@ def _is_isolated(point: RealNumber) -> bool:
     if point.is_rational:
         return point.index == 0
     low, high = point.interval()
-    return (
-        count_roots(point.polynomial, low, high) == 1 and count_roots(point.polynomial, None, low) == point.index
-    )
+    return count_roots(point.polynomial, low, high) == 1 and count_roots(point.polynomial, None, low) == point.index
 
 
 def _before(one: RealNumber, other: RealNumber) -> bool:

@@ -5,6 +5,7 @@ Isolation is FLINT's, certified: the balls are disjoint, and a ball with imagina
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, total_ordering
@@ -139,7 +140,9 @@ class RealNumber:
     def scalar(self, variable: str = "x") -> Scalar:
         """Return the number as a value: its closed form, or a generator that stands for it."""
         closed = self.closed_form()
-        return closed if closed is not None else registered(RealRoot("CRootOf", self.minimal_polynomial(variable), self))
+        return (
+            closed if closed is not None else registered(RealRoot("CRootOf", self.minimal_polynomial(variable), self))
+        )
 
     def minimal_polynomial(self, variable: str) -> Scalar:
         """Return the polynomial in a variable."""
@@ -267,7 +270,7 @@ def _variations(chain: Sequence[fmpz_poly], point: Fraction | None, side: int) -
         where = fmpq(point.numerator, point.denominator)
         values = [p(where) for p in chain]
         signs = [1 if value > 0 else -1 for value in values if value]
-    return sum(a != b for a, b in zip(signs[:-1], signs[1:], strict=True))
+    return sum(a != b for a, b in itertools.pairwise(signs))
 
 
 def simplest_between(low: Fraction | None, high: Fraction | None) -> Fraction:

@@ -20,6 +20,7 @@ from symobs.phrases import (
     gains,
     minimal_order,
     modes,
+    pictures,
     pole_advice,
     polynomials,
     rank,
@@ -51,6 +52,7 @@ _MODULES = (
     time_varying,
     routh,
     regions,
+    pictures,
 )
 
 

@@ -41,7 +41,12 @@ PHRASES: dict[str, str] = {
     "parts_are": "Solved for the parameters:",
 }
 
-RESTS_ON: dict[str, str] = {"cells_decide": "collins", "points_decide": "sturm", "crossing": "orlando", "crossing_infinite": "orlando"}
+RESTS_ON: dict[str, str] = {
+    "cells_decide": "collins",
+    "points_decide": "sturm",
+    "crossing": "orlando",
+    "crossing_infinite": "orlando",
+}
 RESTS_ON |= {"crossing_discrete": "orlando"}
 
 NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped")

@@ -228,9 +228,7 @@ def _period(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> objec
     return 0
 
 
-def _plant(
-    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors, *, alone: bool
-) -> StateSpace | None:
+def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors, *, alone: bool) -> StateSpace | None:
     """Return the plant, None where it cannot be had; with `alone` a polynomial does instead."""
     table = _table(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):

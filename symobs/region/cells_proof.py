@@ -19,7 +19,6 @@ from symobs.exact.plane_proof import holds, is_line
 from symobs.exact.real import integer_factor
 from symobs.region.critical import irreducible
 from symobs.region.inequalities import is_exact
-from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion
 
 if TYPE_CHECKING:
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from symobs.region.critical import Critical
     from symobs.region.description import Edge, Part
     from symobs.region.inequalities import Bound
+    from symobs.region.line import LineRegion
 
 _POINTS = 3
 
@@ -137,4 +137,6 @@ def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bo
     left = tidy(edge.polynomial.substitute({names[1]: edge.closed}))
     at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
     low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
-    return left.is_zero and sign_of_number(at_point - low) == "positive" and sign_of_number(high - at_point) == "positive"
+    return (
+        left.is_zero and sign_of_number(at_point - low) == "positive" and sign_of_number(high - at_point) == "positive"
+    )

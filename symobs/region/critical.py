@@ -47,7 +47,9 @@ class Boundary:
         if self.is_usual:
             return polynomial
         variable = Scalar.symbol(self.variable)
-        return polynomial.substitute({self.variable: variable * self.radius if self.discrete else variable - self.margin})
+        return polynomial.substitute(
+            {self.variable: variable * self.radius if self.discrete else variable - self.margin}
+        )
 
 
 @dataclass(frozen=True)

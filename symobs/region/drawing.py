@@ -81,7 +81,9 @@ def _range(values: Iterable[Fraction]) -> Interval:
     usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
     near = [value for value in known if abs(value - middle) <= _FAR * usual]
     low, high = near[0], near[-1]
-    room = max((high - low) * Fraction(2, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(high) / 5, abs(low) / 5)
+    room = max(
+        (high - low) * Fraction(2, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(high) / 5, abs(low) / 5
+    )
     step = _round_step(high - low + 2 * room)
     return _down(low - room, step), -_down(-high - room, step)
 
@@ -119,7 +121,9 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
     high = right if slab.right is None else min(right, slab.right.interval(FIRST_BITS)[0])
     if low >= high:
         return []
-    found = {low + (high - low) * Fraction(round((1 - cos(pi * k / NODES)) * (1 << 29)), 1 << 30) for k in range(NODES + 1)}
+    found = {
+        low + (high - low) * Fraction(round((1 - cos(pi * k / NODES)) * (1 << 29)), 1 << 30) for k in range(NODES + 1)
+    }
     for curve in region.plane.curves:
         if curve.degree:
             for height in (bottom, top):

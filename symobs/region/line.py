@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.real import rational_between, roots_of_scalar
-
 from symobs.region.inequalities import Sample
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class LineRegion:
     def _pieces(self, points: Sequence[RealNumber]) -> tuple[Piece, ...]:
         ends = [None, *points, None]
         found = []
-        for low, high in zip(ends[:-1], ends[1:], strict=True):
+        for low, high in itertools.pairwise(ends):
             sample = rational_between(low, high)
             point = {self.name: Scalar.of(sample)}
             if self.critical.allows(point):

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
@@ -15,6 +14,7 @@ from symobs.region.inequalities import Sample
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from fractions import Fraction
 
     from symobs.exact import RealNumber
     from symobs.region.critical import Critical
@@ -264,7 +264,7 @@ class PlaneRegion:
 
 
 def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
-    return list(zip(values[:-1], values[1:], strict=True))
+    return list(pairwise(values))
 
 
 def plane_region(critical: Critical, names: tuple[str, str]) -> PlaneRegion:

@@ -13,6 +13,7 @@ from symobs.formula import Formula, Relation, Roots
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from symobs.picture import Picture
     from symobs.region.routh import RouthTable
 
 Inline: TypeAlias = str | Formula | Relation | Roots
@@ -93,6 +94,14 @@ class TableBlock:
 
 
 @dataclass(frozen=True, slots=True)
+class PictureBlock:
+    """A picture and what stands below it."""
+
+    picture: Picture
+    caption: Inlines
+
+
+@dataclass(frozen=True, slots=True)
 class CaseBlock:
     """What holds in a special case: the label says which, the blocks are set in from the margin."""
 
@@ -100,7 +109,9 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
-Block: TypeAlias = Title | Heading | Paragraph | Display | Verified | Caution | Drawing | TableBlock | CaseBlock
+Block: TypeAlias = (
+    Title | Heading | Paragraph | Display | Verified | Caution | Drawing | PictureBlock | TableBlock | CaseBlock
+)
 
 
 def every(blocks: Iterable[Block]) -> Iterator[Block]:

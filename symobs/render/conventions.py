@@ -4,7 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Survey, Tabulate, Where
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
 from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Shown, Sum, Together, letters
 
 if TYPE_CHECKING:
@@ -56,7 +70,12 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from (*relation.members, *_in_sentence(sentence))
         case Solve(equation=equation, solution=solution, sentence=sentence):
             yield from (*equation.members, *solution.members, *_in_sentence(sentence))
-        case Conclude(sentence=sentence) | Note(sentence=sentence) | Tabulate(sentence=sentence):
+        case (
+            Conclude(sentence=sentence)
+            | Note(sentence=sentence)
+            | Tabulate(sentence=sentence)
+            | Plot(sentence=sentence)
+        ):
             yield from _in_sentence(sentence)
         case Where(fact=fact, sentence=sentence):
             yield from (*_in_facts((fact,)), *_in_sentence(sentence))

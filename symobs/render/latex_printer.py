@@ -64,9 +64,13 @@ class LatexPrinter(Printer[LatexBox]):
 
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
+        return self.running_box(item).source
+
+    def running_box(self, item: Formula | Relation) -> LatexBox:
+        """Return mathematics for a line of text with its width and height."""
         running = copy(self)
         running.running, running.known = True, {}
-        return running.unbroken(item)
+        return running.relation(item) if isinstance(item, Relation) else running.typeset(item)
 
     def unbroken(self, item: Formula | Relation) -> str:
         """Return display mathematics without delimiters or line breaks, such as a label in a drawing."""

@@ -9,7 +9,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve, Survey, Tabulate, Where
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Sentence,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
 from symobs.formula import Literal, Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
@@ -23,11 +38,13 @@ from symobs.render.blocks import (
     Inline,
     Inlines,
     Paragraph,
+    PictureBlock,
     TableBlock,
     Title,
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.plots_caption import caption
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -214,6 +231,9 @@ class _Page:
                 self.show(fact.where, boxed=answer)
             case Survey():
                 self.tell_survey(step)
+            case Plot(picture=picture, sentence=sentence):
+                self.say(sentence)
+                self.blocks.append(PictureBlock(picture, caption(picture)))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
             case Section() if _is_statement(step):

@@ -9,9 +9,21 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
-from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, TableBlock, Title, Verified
+from symobs.render.blocks import (
+    CaseBlock,
+    Caution,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+)
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
+from symobs.render.plots_text import character_plot
 from symobs.render.roots import TEXT, listed
 from symobs.render.table_formats import text_table
 from symobs.render.text_printer import TextPrinter, text_width
@@ -81,6 +93,9 @@ class TextWriter:
                 table, told = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
                 return f"{indented(table)}{below}"
+            case PictureBlock(picture, caption):
+                plot = character_plot(picture, self.printer, width - len(INDENT))
+                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(caption), width - len(INDENT)))}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
