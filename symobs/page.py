@@ -31,6 +31,7 @@ from symobs.formula import (
     Identity,
     Letter,
     Literal,
+    Names,
     Predicate,
     Relation,
     Roots,
@@ -46,6 +47,9 @@ if TYPE_CHECKING:
 
     from symobs.region.routh import RouthTable
     from symobs.system import StateSpace
+
+#: What a slot of a sentence may hold besides formulas and words.
+FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
@@ -82,7 +86,7 @@ def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     filled = tuple(
         (
             name,
-            slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly, Together, Shown)) else formula_of(slot),
+            slot if isinstance(slot, (str, *FACTS)) else formula_of(slot),
         )
         for name, slot in slots.items()
     )

@@ -31,6 +31,7 @@ from symobs.formula import (
     Integral,
     Letter,
     Literal,
+    Names,
     Negative,
     Power,
     Predicate,
@@ -241,7 +242,7 @@ class Reader:
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
-            elif not isinstance(slot, str):
+            elif not isinstance(slot, (str, Names)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
     def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:

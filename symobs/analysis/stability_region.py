@@ -15,9 +15,11 @@ from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.description import parts
+from symobs.region.drawing import oriented, picture_of_line, picture_of_plane
 from symobs.region.inequalities import short_list
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
+from symobs.region.pole_paths import pole_map
 from symobs.region.routh import RouthTable, is_routh_table, routh_table
 from symobs.system import StateSpace
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.exact import Scalar
+    from symobs.picture import Picture, PoleMap
     from symobs.region.critical import Critical
     from symobs.region.description import Part
     from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
@@ -141,6 +144,22 @@ class StabilityRegion(Result):
             found |= excluded_of(region)
         return found
 
+    @cached_property
+    def picture(self) -> Picture | None:
+        """The region of two parameters; of one parameter the paths of the roots, or the line where they run off."""
+        if isinstance(self.region, LineRegion):
+            return self.pole_map or picture_of_line(self.region)
+        if isinstance(self.region, PlaneRegion) and not self.critical.never:
+            return oriented(picture_of_plane(self.region), self.question.parameters)
+        return None
+
+    @cached_property
+    def pole_map(self) -> PoleMap | None:
+        """The paths of the roots as the one parameter moves."""
+        if not isinstance(self.region, LineRegion):
+            return None
+        return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
+
     def write(self, page: Page) -> None:
         """Write χ, the table, the conditions, the region in words, and its picture."""
         from symobs.analysis.stability_region_page import write_region  # noqa: PLC0415 - it stands on this type
@@ -198,5 +217,4 @@ def stability_region(
     else:
         asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=symbols)
     question = read_question(asked, {"K": K, "L": L}, parameters, margin, radius)
-    found: StabilityRegion = choose("stability_region", method, "routh").solve(question)
-    return found.asked(method)
+    return choose("stability_region", method, "routh").solve(question).asked(method)

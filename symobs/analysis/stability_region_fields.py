@@ -120,7 +120,7 @@ def components_of(region: PlaneRegion, parts: Sequence[Part]) -> list[dict[str, 
                     {
                         x: [end(part.low, "-", x), end(part.high, "+", x)],
                         y: [_edge(part.lower, "-", y), _edge(part.upper, "+", y)],
-                        "reaches": part.reaches,
+                        "closed": [part.begins, part.reaches],
                     }
                     for part in own
                 ],

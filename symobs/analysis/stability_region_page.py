@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form, given, state_signs
 from symobs.analysis.stability_region_fields import solved
-from symobs.derivation import Survey, Where, findings_of_region
+from symobs.derivation import Plot, Survey, Where, findings_of_region
 from symobs.derivation.regions import interval_relations
 from symobs.exact import Scalar
-from symobs.formula import Exactly, Literal, Power, Product, Quotient, Sum
+from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
 from symobs.page import predicate, relation, sentence
-from symobs.region.description import is_written, relations_of
+from symobs.region.description import are_whole, is_written, relations_of
+from symobs.region.drawing import picture_of_line
 from symobs.region.line import LineRegion
+from symobs.region.plane import PlaneRegion
 from symobs.stability import hurwitz_matrix
 
 if TYPE_CHECKING:
     from symobs.analysis.stability_region import StabilityRegion
     from symobs.formula import Formula, Relation
-    from symobs.formula.term import Term
     from symobs.page import Page
 
 #: A region in more parts than this is left to its inequalities and its picture.
@@ -35,12 +36,12 @@ def write_region(page: Page, result: StabilityRegion) -> None:
             page.given(relation(page["chi_p"], question.plant.polynomial))
             page.environment = page.environment.having(values={"chi_p": question.plant.polynomial})
             state_signs(page)
-        chi = page["chi_p"]
+        chi = "chi_p"
     else:
         given(page)
-        chi = None
+        chi = ""
     with page.section("stability_region"):
-        if chi is None:
+        if not chi:
             chi = _polynomial_of_loop(page, result)
         _sought(page, result)
         moved = _moved(page, result, chi)
@@ -49,10 +50,11 @@ def write_region(page: Page, result: StabilityRegion) -> None:
             if result.critical.proper:
                 _crossing(page, result, moved)
             _region(page, result, moved)
+            _pictures(page, result, chi, moved)
 
 
-def _polynomial_of_loop(page: Page, result: StabilityRegion) -> Term:
-    """Establish the gains and the characteristic polynomial."""
+def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
+    """Establish the gains and the characteristic polynomial; return its letter."""
     question, order = result.question, result.plant.order
     chi: Scalar = result.answer["polynomial"]
     for name, gain in (("K", question.K), ("L", question.L)):
@@ -68,8 +70,9 @@ def _polynomial_of_loop(page: Page, result: StabilityRegion) -> Term:
         own = chi if len(used) == 1 else term.apply("det").scalar
         page.define(name, term.apply("det"), term.shown.apply("det"), own, say="polynomial_of_loop", closing=False)
     if len(used) == 1:
-        return page[next(iter(used))]
-    return page.define("chi_cl", page["chi_K"] @ page["chi_L"], say="polynomial_of_loop", closing=False)
+        return next(iter(used))
+    page.define("chi_cl", page["chi_K"] * page["chi_L"], say="polynomial_of_loop", closing=False)
+    return "chi_cl"
 
 
 def _sought(page: Page, result: StabilityRegion) -> None:
@@ -83,39 +86,35 @@ def _sought(page: Page, result: StabilityRegion) -> None:
         page.remark("sought_margin", names=names, limit=-boundary.margin)
 
 
-def _listed(result: StabilityRegion) -> str:
-    from symobs.notation import symbol_text  # noqa: PLC0415
-
-    names = [symbol_text(name) for name in result.question.parameters]
-    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+def _listed(result: StabilityRegion) -> Names:
+    return Names(result.question.parameters)
 
 
-def _moved(page: Page, result: StabilityRegion, chi: Term) -> Term:
-    """Move the boundary to where it usually is: q(s) = χ(s − α), q(z) = χ(ρ z)."""
+def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
+    """Move the boundary to where it usually is, q(s) = χ(s − α) or q(z) = χ(ρ z); return the letter."""
     boundary = result.question.boundary
     if boundary.is_usual:
         return chi
-    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
     argument = page.s * boundary.radius if boundary.discrete else page.s - page.value(boundary.margin)
     value = boundary.moved(result.answer["polynomial"])
-    slot = {"radius": boundary.radius} if boundary.discrete else {"margin": boundary.margin}
     say = "enlarged" if boundary.discrete else "moved_right"
-    q = page.define("q_s", argument.apply(name), value, say=say, closing=False, **slot)
+    by = boundary.radius if boundary.discrete else boundary.margin
+    page.define("q_s", argument.apply(f"{chi}_at"), value, say=say, closing=False, by=by)
     page.remark("unit_disc" if boundary.discrete else "left_half_plane")
-    return q
+    return "q_s"
 
 
-def _table(page: Page, result: StabilityRegion, chi: Term) -> None:
+def _table(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show Routh's table, in discrete time of the polynomial that the bilinear map makes."""
     if not result.question.boundary.discrete:
-        page.tabulate(chi, say="routh_table", polynomial=chi)
+        page.tabulate(page[chi], say="routh_table", polynomial=page[chi])
         return
     w = Scalar.symbol("w")
     image = page.term(Quotient(Literal(w + 1), Literal(w - 1)))
     order = result.critical.order
     powers = [(c, order - k) for k, c in enumerate(result.critical.written) if not c.is_zero]
     value = page.term(Sum(tuple(_of_power(c, w, power) for c, power in powers)))
-    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
+    name = f"{chi}_at"
     product = page.value(w - 1) ** order * image.apply(name)
     scale = result.critical.scale
     if not scale.is_one:
@@ -126,17 +125,17 @@ def _table(page: Page, result: StabilityRegion, chi: Term) -> None:
 
 def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:
     """Return coefficient · wᵖ."""
-    raised = Literal(w) if power == 1 else Power(Literal(w), power)
-    parts = [Literal(coefficient)] if not coefficient.is_one or not power else []
-    parts += [raised] if power else []  # type: ignore[list-item]
+    raised: Formula = Literal(w) if power == 1 else Power(Literal(w), power)
+    parts: list[Formula] = [Literal(coefficient)] if not coefficient.is_one or not power else []
+    parts += [raised] if power else []
     return parts[0] if len(parts) == 1 else Product(tuple(parts))
 
 
-def _crossing(page: Page, result: StabilityRegion, chi: Term) -> None:
+def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show the critical polynomials."""
     critical = result.critical
-    names = f"{_listed(result)} {'varies' if len(result.question.parameters) == 1 else 'vary'}"
-    name = f"{chi.formula.name}_at"  # type: ignore[union-attr] - it is a letter
+    vary = "varies" if len(result.question.parameters) == 1 else "vary"
+    name = f"{chi}_at"
     places = (1, -1) if critical.boundary.discrete else (0,)
     shown: list[Relation] = []
     for place in places:
@@ -148,7 +147,7 @@ def _crossing(page: Page, result: StabilityRegion, chi: Term) -> None:
         key = "crossing_infinite"
     else:
         key = "crossing" if critical.order > 1 else "crossing_one"
-    page.remark(key, names=names)
+    page.remark(key, names=_listed(result), vary=vary)
     page.equal(*shown)
     last = critical.order - 1
     if last < 1:
@@ -164,7 +163,7 @@ def _crossing(page: Page, result: StabilityRegion, chi: Term) -> None:
         page.remark("always_critical")
 
 
-def _region(page: Page, result: StabilityRegion, chi: Term) -> None:
+def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show the inequalities, and the region in words and parts."""
     region, bounds = result.region, result.answer["bounds"]
     assert region is not None  # noqa: S101 - there is one here
@@ -172,24 +171,39 @@ def _region(page: Page, result: StabilityRegion, chi: Term) -> None:
     names = (region.name,) if isinstance(region, LineRegion) else region.names
     decided = tuple(finding for finding in found if finding.key in {"points_decide", "cells_decide"})
     if decided:
-        page.steps.append(Survey(chi.formula, names, decided))
+        page.steps.append(Survey(page[chi].formula, names, decided))
     if result.empty:
-        page.steps.append(Survey(chi.formula, names, found))
+        page.steps.append(Survey(page[chi].formula, names, found))
         return
     relations = _inequalities(result, region)
     if relations:
-        fact = Exactly(predicate("stable", chi), relations)
+        fact = Exactly(predicate("stable", page[chi]), relations)
         page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
     elif bounds == ():
-        page.conclude("region_everywhere", predicate("stable", chi), names=_listed(result))
+        page.conclude("region_everywhere", predicate("stable", page[chi]), names=_listed(result))
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
     if others or parts:
         numbers = tuple(finding for finding in found if finding.key == "number_is_root") if parts else ()
         say = sentence("parts_are", {}) if parts else None
-        page.steps.append(Survey(chi.formula, names, others, parts, say))
+        page.steps.append(Survey(page[chi].formula, names, others, parts, say))
         if numbers:
-            page.steps.append(Survey(chi.formula, names, numbers))
+            page.steps.append(Survey(page[chi].formula, names, numbers))
+
+
+def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None:
+    """Draw the region, and of one parameter the paths of the roots."""
+    if result.empty or result.critical.never:
+        return
+    if isinstance(result.region, LineRegion):
+        if result.region.points:
+            page.steps.append(Plot(picture_of_line(result.region), page[moved].formula))
+        if result.pole_map is not None:
+            page.steps.append(
+                Plot(result.pole_map, page[chi].formula, sentence("poles_move", {"names": _listed(result)}))
+            )
+    elif result.picture is not None:
+        page.steps.append(Plot(result.picture, page[moved].formula))
 
 
 def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:
@@ -203,8 +217,7 @@ def _parts(result: StabilityRegion, region: object) -> tuple[tuple[Relation, ...
     if isinstance(region, LineRegion):
         return tuple(interval_relations(region)) if len(region.intervals) > 1 else ()
     parts = result.parts
-    if not 0 < len(parts) <= MOST_PARTS or not all(map(is_written, parts)) or result.region is None:
+    assert isinstance(region, PlaneRegion)  # noqa: S101 - the other kind
+    if not 0 < len(parts) <= MOST_PARTS or not all(map(is_written, parts)) or not are_whole(region, parts):
         return ()
-    if result.region.holes:  # type: ignore[union-attr] - a region of two parameters
-        return ()
-    return tuple(relations_of(part, result.region.names) for part in parts)  # type: ignore[union-attr]
+    return tuple(relations_of(part, region.names) for part in parts)

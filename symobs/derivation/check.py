@@ -35,7 +35,7 @@ from symobs.derivation.steps import (
 )
 from symobs.derivation.tables import is_tabulated
 from symobs.errors import DerivationRejected
-from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, roots_are
+from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, product_of, roots_are
 from symobs.exact.functions import substitute
 from symobs.formula import (
     Apply,
@@ -47,6 +47,7 @@ from symobs.formula import (
     Formula,
     Letter,
     Literal,
+    Names,
     Predicate,
     Relation,
     Roots,
@@ -178,7 +179,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown)):
+        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -211,6 +212,9 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             _established(member, environment)
         if verify(fact, environment)[0] == "":
             _reject(plain_relation(fact, environment.variable))
+        return
+    if isinstance(fact, Names):
+        _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
         return
     if isinstance(fact, Together):
         for part in fact.relations:

@@ -12,11 +12,10 @@ from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.real import real_roots
 from symobs.formula import Exact, Literal, Relation, evaluate
-from symobs.notation import symbol_text
 from symobs.phrases.regions import counted, in_words, root_in_words
 from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.critical import Boundary, Critical
-from symobs.region.description import between, parts, relations_of
+from symobs.region.description import are_whole, between, parts, relations_of
 from symobs.region.inequalities import Bound, short_list
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
@@ -100,7 +99,9 @@ def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
     for hole in region.holes:
         if hole.y is not None:
             place = (("x", Literal(hole.x.scalar(x))), ("y", Literal(hole.y.scalar(y))))
-            yield Sentence("hole", (*place, ("names", f"({symbol_text(x)}, {symbol_text(y)})")))
+            yield Sentence(
+                "hole", (*place, ("first", Literal(Scalar.symbol(x))), ("second", Literal(Scalar.symbol(y))))
+            )
     for factor in region.surrounded():
         yield Sentence("curve_missing", (("curve", Relation((Literal(factor), Literal(Scalar.of(0))), ("=",))),))
     yield from _numbers([end for part in parts(region) for end in (part.low, part.high)], x)
@@ -169,12 +170,16 @@ def _declared(region: LineRegion) -> list[tuple[Scalar, str]]:
 def are_the_parts(region: PlaneRegion, said: tuple[tuple[Relation, ...], ...]) -> bool:
     """Tell whether these are the relations of the parts of a region, one after the other."""
     found = parts(region)
-    return are_parts(region, found) and said == tuple(relations_of(part, region.names) for part in found)
+    return (
+        are_parts(region, found)
+        and are_whole(region, found)
+        and said == tuple(relations_of(part, region.names) for part in found)
+    )
 
 
 def interval_relations(region: LineRegion) -> list[tuple[Relation, ...]]:
     """Return low < name < high for every interval."""
-    found = []
+    found: list[tuple[Relation, ...]] = []
     for piece in region.intervals:
         ends = [None if number is None else number.scalar(region.name) for number in (piece.low, piece.high)]
         written = between(region.name, ends[0], ends[1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import reduce
 from math import gcd
 from typing import TYPE_CHECKING, Any
@@ -46,7 +47,7 @@ def sides(coefficients: Sequence[Scalar]) -> tuple[int, int, int]:
     symmetric = whole.gcd(mirrored)
     left, right = _split(whole // symmetric)
     ascending = symmetric.coeffs()
-    zeros = next(k for k, c in enumerate(ascending) if c)
+    zeros = next(k for k, c in enumerate(ascending) if c != 0)
     squares = fmpz_poly(ascending[zeros::2])
     negative = sum(
         power * sum(root < RealNumber.of(0) for root in real_roots(factor)) for factor, power in squares.factor()[1]
@@ -81,3 +82,12 @@ def integers(coefficients: Sequence[Scalar]) -> list[int]:
     fractions = [c.fraction() for c in coefficients]
     below = reduce(lambda left, right: left * right // gcd(left, right), (f.denominator for f in fractions), 1)
     return [int(f * below) for f in fractions]
+
+
+def complex_roots(coefficients: Sequence[Scalar]) -> list[tuple[Fraction, Fraction]]:
+    """Return all roots with multiplicity as rational points near them, real and imaginary part."""
+    found = []
+    for root, multiplicity in _roots(fmpz_poly(list(reversed(integers(coefficients)))), 64):
+        place = tuple(Fraction(round(float(part.mid()) * (1 << 40)), 1 << 40) for part in (root.real, root.imag))
+        found += [(place[0], place[1])] * multiplicity
+    return found

@@ -147,7 +147,7 @@ class RealNumber:
     def minimal_polynomial(self, variable: str) -> Scalar:
         """Return the polynomial in a variable."""
         field = Field.of((variable,))
-        terms = {(k,): c for k, c in enumerate(self.polynomial.coeffs()) if c}
+        terms: dict[tuple[int, ...], int] = {(k,): int(c) for k, c in enumerate(self.polynomial.coeffs()) if c != 0}
         return Scalar(field, field.context.from_dict(terms), field.one)
 
     def __str__(self) -> str:
@@ -269,7 +269,7 @@ def _variations(chain: Sequence[fmpz_poly], point: Fraction | None, side: int) -
     else:
         where = fmpq(point.numerator, point.denominator)
         values = [p(where) for p in chain]
-        signs = [1 if value > 0 else -1 for value in values if value]
+        signs = [1 if value > 0 else -1 for value in values if value != 0]
     return sum(a != b for a, b in itertools.pairwise(signs))
 
 

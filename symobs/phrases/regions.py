@@ -11,18 +11,18 @@ PHRASES: dict[str, str] = {
     "sought_margin": "Sought are all values of {names} for which every root has a real part below {limit}.",
     "sought_radius": "Sought are all values of {names} for which every root has an absolute value below {limit}.",
     "polynomial_of_loop": "The characteristic polynomial is",
-    "moved_right": "Moved to the right by {margin}, the roots are those of",
-    "enlarged": "Divided by {radius}, the roots are those of",
+    "moved_right": "Moved to the right by {by}, the roots are those of",
+    "enlarged": "Divided by {by}, the roots are those of",
     "left_half_plane": "which must have all of them in the open left half plane.",
     "unit_disc": "which must have all of them in the open unit disc.",
     "mapped": "The map from $w$ to {image} carries the open left half plane to the open unit disc, so all roots lie in the disc exactly where those "
     "of this polynomial lie in the left half plane:",
-    "crossing_one": "As {names}, the root leaves the left half plane only through 0: where this vanishes.",
-    "crossing": "As {names}, a root leaves the left half plane only through 0 or with another one through the imaginary axis: where one of these "
+    "crossing_one": "As {names} {vary}, the root leaves the left half plane only through 0: where this vanishes.",
+    "crossing": "As {names} {vary}, a root leaves the left half plane only through 0 or with another one through the imaginary axis: where one of these "
     "vanishes.",
-    "crossing_infinite": "As {names}, a root leaves the left half plane only through 0, with another one through the imaginary axis or through infinity, "
+    "crossing_infinite": "As {names} {vary}, a root leaves the left half plane only through 0, with another one through the imaginary axis or through infinity, "
     "where the leading coefficient vanishes: where one of these is zero.",
-    "crossing_discrete": "As {names}, a root leaves the disc only at 1, at −1 or with another one through the circle: where one of these vanishes.",
+    "crossing_discrete": "As {names} {vary}, a root leaves the disc only at 1, at −1 or with another one through the circle: where one of these vanishes.",
     "hurwitz_determinant": "with the determinant of Hurwitz",
     "always_critical": "One of them is zero whatever the values: there is always a root that is not stable.",
     "region_is": "So all roots are stable exactly where",
@@ -35,9 +35,10 @@ PHRASES: dict[str, str] = {
     "connected_bounded": "The region is connected and bounded.",
     "connected_unbounded": "The region is connected and not bounded.",
     "pieces": "The region has {count} that are not connected; {bounded} bounded.",
-    "hole": "The single point {names} = ({x}, {y}) does not belong to it, though everything around it does.",
+    "hole": "The single point ({first}, {second}) = ({x}, {y}) does not belong to it, though everything around it does.",
     "curve_missing": "The curve {curve} does not belong to it, though the region lies on both sides of a part of it.",
     "number_is_root": "Here {number} is {which} of {equation}.",
+    "poles_move": "As {names} grows, the roots move like this.",
     "parts_are": "Solved for the parameters:",
 }
 

@@ -18,6 +18,7 @@ from symobs.exact.half_plane import sides
 from symobs.exact.plane_proof import holds, is_line
 from symobs.exact.real import integer_factor
 from symobs.region.critical import irreducible
+from symobs.region.description import is_regular, meetings_of
 from symobs.region.inequalities import is_exact
 from symobs.region.plane import PlaneRegion
 
@@ -109,6 +110,13 @@ def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
     listed = [number for part in parts for number in part.cells]
     if sorted(listed) != [number for number, cell in enumerate(region.cells) if cell.stable]:
         return False
+    lefts, rights = ({k: m for m in meetings_of(region) for k in [getattr(m, side)]} for side in ("left", "right"))
+    for part in parts:
+        at_end, at_start = lefts.get(part.cells[-1]), rights.get(part.cells[0])
+        if part.reaches and not (at_end and at_end.left_alone and is_regular(part, part.high)):
+            return False
+        if part.begins and not (at_start and at_start.right_alone and is_regular(part, part.low)):
+            return False
     return all(_is_part(region, part, number) for part in parts for number in part.cells)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from math import cos, pi
 from typing import TYPE_CHECKING
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Nodes in every slab; they crowd towards the walls, where branches turn.
 NODES = 48
+#: Beyond this many samples only the stable ones are marked.
+MOST_MARKS = 16
 #: Coordinates are rounded to this fraction of the window.
 _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
@@ -41,13 +44,29 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
         areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
     curves += _verticals(region, window)
-    marks = [
-        Mark(cell.sample, "stable" if cell.stable else "unstable")
-        for cell in region.cells
-        if cell.allowed and _inside(cell.sample, window)
-    ]
+    seen = [cell for cell in region.cells if cell.allowed and _inside(cell.sample, window)]
+    shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
+    marks = [Mark(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
     marks += [Mark(hole.near, "excluded") for hole in region.holes]
     return RegionPicture(region.names, window, tuple(areas), tuple(curves), tuple(marks))
+
+
+def oriented(picture: RegionPicture, names: Sequence[str]) -> RegionPicture:
+    """Return the picture with the first of the names across."""
+    if picture.axes == tuple(names):
+        return picture
+
+    def turned(places: Iterable[Place]) -> tuple[Place, ...]:
+        return tuple((y, x) for x, y in places)
+
+    return replace(
+        picture,
+        axes=(picture.axes[1], picture.axes[0]),
+        window=(picture.window[1], picture.window[0]),
+        areas=tuple(map(turned, picture.areas)),
+        curves=tuple(replace(curve, points=turned(curve.points)) for curve in picture.curves),
+        marks=tuple(replace(mark, place=turned([mark.place])[0]) for mark in picture.marks),
+    )
 
 
 # -- the window -------------------------------------------------------------------------------------------------------
@@ -70,20 +89,21 @@ def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
     if not xs:
         xs = [_middle(wall.x) for wall in region.plane.walls]
         ys = [cell.sample[1] for cell in region.cells]
-    return _range(xs), _range(ys)
+    return range_around(xs), range_around(ys)
 
 
-def _range(values: Iterable[Fraction]) -> Interval:
-    """Return a range around most values, with round ends."""
+def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interval:
+    """Return a range around most values, with `spread` around all of them, with round ends."""
     known = sorted(values) or [Fraction(0)]
     middle = known[len(known) // 2]
     distances = sorted(abs(value - middle) for value in known)
     usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
-    near = [value for value in known if abs(value - middle) <= _FAR * usual]
+    near = known if spread else [value for value in known if abs(value - middle) <= _FAR * usual]
     low, high = near[0], near[-1]
-    room = max(
-        (high - low) * Fraction(2, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(high) / 5, abs(low) / 5
-    )
+    if spread:
+        room = (high - low) / 8 or Fraction(1)
+    else:
+        room = max((high - low) * Fraction(3, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(middle) / 5)
     step = _round_step(high - low + 2 * room)
     return _down(low - room, step), -_down(-high - room, step)
 
@@ -227,7 +247,7 @@ def equation_of(polynomial: Scalar) -> Relation:
 def picture_of_line(region: LineRegion) -> LinePicture:
     """Return the picture of a region of one parameter."""
     ends = [_middle(end) for piece in region.intervals for end in (piece.low, piece.high) if end is not None]
-    window = _range(ends or [Fraction(0)])
+    window = range_around(ends or [Fraction(0)])
     pieces = tuple((_end(piece.low), _end(piece.high)) for piece in region.intervals)
     return LinePicture(region.name, window, pieces, tuple((piece.sample, "stable") for piece in region.intervals))
 

@@ -19,7 +19,20 @@ from symobs.derivation import (
     Tabulate,
     Where,
 )
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Shown, Sum, Together, letters
+from symobs.formula import (
+    Exactly,
+    Letter,
+    Names,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    Shown,
+    Sum,
+    Together,
+    letters,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -104,5 +117,5 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value
-        elif not isinstance(value, str):
+        elif not isinstance(value, str | Names):
             yield value
