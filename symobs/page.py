@@ -14,6 +14,7 @@ from symobs.derivation import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Step,
@@ -41,6 +42,7 @@ from symobs.notation import sans_serif
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.picture import Picture
     from symobs.system import StateSpace
 
 Member: TypeAlias = Term | Scalar | Matrix | int
@@ -274,6 +276,10 @@ class Page:
     def diagram(self, name: str, **labels: Member) -> None:
         """Draw."""
         self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
+
+    def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
+        """Show where a polynomial is stable, or how its roots move: the picture is held against it."""
+        self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager
     def section(self, key: str, **slots: Slot) -> Iterator[None]:
