@@ -14,6 +14,7 @@ from symobs.derivation import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Step,
@@ -45,6 +46,7 @@ from symobs.region.routh import routh_table
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.picture import Picture
     from symobs.region.routh import RouthTable
     from symobs.system import StateSpace
 
@@ -297,6 +299,10 @@ class Page:
         because = sentence(say, slots) if say else None
         self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
         return table
+
+    def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
+        """Show where a polynomial is stable, or how its roots move: the picture is held against it."""
+        self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager
     def section(self, key: str, **slots: Slot) -> Iterator[None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -61,7 +62,7 @@ def critical(curves: Sequence[Scalar], window: Window) -> list[float]:
         found = sorted((y, place) for place, curve in enumerate(curves) for y in heights(curve, x))
         return tuple(place for _, place in found)
 
-    grid = [fraction(low + (high - low) * (j + 0.37) / 500) for j in range(-1, 500)]
+    grid = [fraction(low + (high - low) * (j + 0.37) / 200) for j in range(-1, 200)]
     changes: list[float] = [low]
     for first, second in pairwise(grid):
         a, c = first, second
@@ -151,11 +152,13 @@ JURY4 = z**4 + h1 * z**3 + h2 * z + Scalar.rational(1, 8)
 QUINTIC = s**5 + 3 * s**4 + (5 + h1) * s**3 + (6 + h2) * s**2 + (4 + h1 - h2) * s + 1 + h2
 
 
+@cache
 def hyperbola() -> RegionPicture:
     curves = {h1 * h2 - 1: equation(h1 * h2, 1)}
     return region(HYPERBOLA, curves, ((-1, 5), (-1, 5)))
 
 
+@cache
 def pendulum() -> RegionPicture:
     """Two walls whose equations keep their symbols: h1 = 1 and h2 = −b."""
     chi = at(PENDULUM, b=Fraction(1), omega=Fraction(1))
@@ -166,26 +169,31 @@ def pendulum() -> RegionPicture:
     )
 
 
+@cache
 def annulus() -> RegionPicture:
     curves = {h1**2 + h2**2 - 1: equation(h1**2 + h2**2, 1), h1**2 + h2**2 - 5: equation(h1**2 + h2**2, 5)}
     return region(ANNULUS, curves, ((-3, 3), (-3, 3)))
 
 
+@cache
 def ring_hole() -> RegionPicture:
     return region(RING, {h1**2 + h2**2 + 1: equation(0, 1)}, ((-2, 2), (-2, 2)), excluded=[(Fraction(0), Fraction(0))])
 
 
+@cache
 def three_components() -> RegionPicture:
     cubic = h1**3 + 2 * h1**2 + h1 * h2**2 - h1 * h2 - 4 * h1 + 2 * h2**2 - 9
     curves = {h1 * h2 + 1: equation(h1 * h2, -1), cubic: equation(cubic, 0)}
     return region(DISC_CUBIC, curves, ((-4, 5), (-4, 5)))
 
 
+@cache
 def triangle() -> RegionPicture:
     curves = {h2 - 1: equation(h2, 1), h2 - h1 + 1: equation(h2, h1 - 1), h2 + h1 + 1: equation(h2, -h1 - 1)}
     return region(JURY2, curves, ((-3, 3), (-2, 2)), discrete=True, marked=False)
 
 
+@cache
 def fourth_order() -> RegionPicture:
     conic = 64 * h1**2 - 576 * h1 * h2 + 512 * h2**2 - 441
     curves = {
@@ -196,6 +204,7 @@ def fourth_order() -> RegionPicture:
     return region(JURY4, curves, ((-2, 2), (-2, 2)), discrete=True)
 
 
+@cache
 def fifth_order() -> RegionPicture:
     long = 6 * h1**2 - 3 * h1 * h2**2 - 2 * h1 * h2 + 36 * h1 + h2**3 - 18 * h2**2 + 6 * h2 + 50
     curves = {h2 + 1: equation(h2, -1), 3 * h1 - h2 + 9: equation(h2, 3 * h1 + 9), long: equation(long, 0)}
@@ -205,6 +214,7 @@ def fifth_order() -> RegionPicture:
 # -- lines and poles --------------------------------------------------------------------------------------------------
 
 
+@cache
 def interval() -> LinePicture:
     """s³ + 6 s² + 11 s + 6 + k is stable for −6 < k < 60."""
     ends = (End(Fraction(-6), Scalar.of(-6)), End(Fraction(60), Scalar.of(60)))
@@ -216,6 +226,7 @@ INTERVAL = s**3 + 6 * s**2 + 11 * s + 6 + k
 PIECES = s**2 + s + (k + 2) * k * (k - 1) ** 2 * (k - 4) * (3 * k - 13)
 
 
+@cache
 def four_pieces() -> LinePicture:
     places = (Scalar.of(-2), Scalar.of(0), Scalar.of(1), Scalar.of(4), Scalar.rational(13, 3))
     a, c, d, e, f = (End(place.fraction(), place) for place in places)
@@ -273,14 +284,17 @@ THIRD_ORDER = s * (s + 1) * (s + 3) + k
 SAMPLED = z**2 - Scalar.rational(3, 2) * z + Scalar.rational(1, 2) + k * (z + 1) / 10
 
 
+@cache
 def second_order() -> PoleMap:
     return pole_map(SECOND_ORDER, (0, 2), ((-3, 1), (-2, 2)))
 
 
+@cache
 def third_order() -> PoleMap:
     return pole_map(THIRD_ORDER, (0, 20), ((-5, 2), (-4, 4)), through=("0.6311303",), margin=Fraction(1, 2))
 
 
+@cache
 def sampled() -> PoleMap:
     return pole_map(SAMPLED, (0, 6), ((-2, 2), (-2, 2)), radius=Fraction(1))
 

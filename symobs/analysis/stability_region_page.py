@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form, given, state_signs
 from symobs.analysis.stability_region_fields import solved
-from symobs.derivation import Plot, Survey, Where, findings_of_region
+from symobs.derivation import Survey, Where, findings_of_region
 from symobs.derivation.regions import interval_relations
 from symobs.exact import Scalar
 from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
@@ -197,13 +197,13 @@ def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None
         return
     if isinstance(result.region, LineRegion):
         if result.region.points:
-            page.steps.append(Plot(picture_of_line(result.region), page[moved].formula))
+            page.plot(picture_of_line(result.region), page[moved])
         if result.pole_map is not None:
             page.steps.append(
                 Plot(result.pole_map, page[chi].formula, sentence("poles_move", {"names": _listed(result)}))
             )
     elif result.picture is not None:
-        page.steps.append(Plot(result.picture, page[moved].formula))
+        page.plot(result.picture, page[moved])
 
 
 def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:

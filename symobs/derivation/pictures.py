@@ -248,19 +248,27 @@ def _of_line(picture: LinePicture, test: _Test) -> Iterator[str]:
     for a, b in zip(borders[::2], borders[1::2], strict=True):
         if b - a > 2 * near:
             yield from (f"{x} is not stable" for x in _between(a, b) if test.is_stable(x))
-    for end in (end for piece in picture.pieces for end in piece if end is not None):
-        around = [(end.place - near,), (end.place + near,)]
-        is_border = not all(test.is_stable(*place) for place in around)
-        if not is_border and not test.is_excluded((end.place,), around):
-            yield f"{end.place} is an end"
-        if not _is_labelled(end, near, dict(picture.drawn_for)):
-            yield f"{end.label} = {end.place}"
+    for (begin, end), (a, b) in zip(picture.pieces, drawn, strict=True):
+        inward = min(near, (b - a) / 3)
+        for found, step in ((begin, inward), (end, -inward)):
+            if found is not None:
+                yield from _of_end(found, step, near, dict(picture.drawn_for), test)
     for place, kind in picture.marks:
         around = [(place - near,), (place + near,)]
         is_stable = test.is_stable(place)
         agrees = {"stable": is_stable, "unstable": not is_stable, "excluded": test.is_excluded((place,), around)}
         if not agrees.get(kind, False):
             yield f"{place} is {kind}"
+
+
+def _of_end(end: End, inward: Fraction, near: Fraction, numbers: dict[str, Scalar], test: _Test) -> Iterator[str]:
+    """Stable on the inner side; on the outer not, unless the end alone is taken out."""
+    outward = end.place - near if inward > 0 else end.place + near
+    is_taken_out = test.is_excluded((end.place,), [(end.place - near,), (end.place + near,)])
+    if not test.is_stable(end.place + inward) or (test.is_stable(outward) and not is_taken_out):
+        yield f"{end.place} is an end"
+    if not _is_labelled(end, near, numbers):
+        yield f"{end.label} = {end.place}"
 
 
 def _between(a: Fraction, b: Fraction) -> Iterator[Fraction]:
@@ -350,10 +358,10 @@ def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) ->
     apart: list[tuple[Place, Fraction]] = []
     for path, along in zip(picture.paths, picture.along, strict=True):
         shifted = _shifted(polynomial, picture.moved, along[index], path[index], variable)
-        slope = _square(shifted[1])
-        if slope == 0:
+        constant, slope = _square(shifted[0]), _square(shifted[1])
+        if constant and not slope:
             continue
-        radius = (len(shifted) - 1) ** 2 * _square(shifted[0]) / slope
+        radius = (len(shifted) - 1) ** 2 * constant / slope if constant else Fraction(0)
         if all(_distance(path[index], place) > 2 * (radius + other) for place, other in apart):
             apart.append((path[index], radius))
     return len(apart) >= different

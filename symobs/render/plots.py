@@ -154,7 +154,7 @@ def _axes(frame: _Frame, names: tuple[Content, Content], measure: Measure) -> tu
     for value, label in ticks(*frame.horizontal):
         x, _ = frame.at(value, 0)
         strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
-        texts.append(Text(label, (x, -_TICK - 2), "north"))
+        texts.append(Text(label, (x, -_TICK - 3), "north"))
     for value, label in ticks(*frame.vertical, _fitting(height, measure)):
         _, y = frame.at(0, value)
         strokes.append(Stroke(((0, y), (-_TICK, y)), "tick"))
