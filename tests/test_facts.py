@@ -139,7 +139,7 @@ def test_a_region_is_the_whole_region() -> None:
     checked(phi, where(said(1, "<", c)))
     for lie in (said(c, ">=", 1), said(1, "<=", c), said(c, ">", 0), said(c, "<", 1), said(c, "!=", 1)):
         refused(phi, where(lie))
-    refused(phi, where(said(c, ">", 1), said(c, ">", 0)))
+    checked(phi, where(said(c, ">", 1), said(c, ">", 0)))  # says more than it must, and is true
     refused(phi, where())
     refused(phi, Conclude(slot(Exactly(replace(stable, name="unstable"), (said(c, ">", 1),)))))
     refused(Define(said(Letter("phi"), literal(s + 1))), where())

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.stability_region_fields import cells_of, components_of, excluded_of, intervals_of, stable_if
 from symobs.analysis.stability_region_question import Question, read_question
 from symobs.certificate import Claim, Statement
+from symobs.exact.half_plane import sides
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from symobs.picture import Picture, PoleMap
     from symobs.region.critical import Critical
     from symobs.region.description import Part
+    from symobs.region.inequalities import Bound
     from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
 
 
@@ -44,8 +46,7 @@ class StabilityRegion(Result):
     @classmethod
     def of(cls, question: Question, method_name: str) -> StabilityRegion:
         """Return the region of a question."""
-        region = region_of(question)
-        bounds = None if region is None or region.critical.never or region.empty else short_list(region)
+        bounds = _bounds_of(question)
         answer = {
             "polynomial": question.polynomial,
             "routh": routh_table(question.critical.written, question.critical.parameters),
@@ -76,6 +77,11 @@ class StabilityRegion(Result):
         table: RouthTable = self.answer["routh"]
         yield Statement("the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else "")
         bounds, region = self.answer["bounds"], self.region
+        if region is None:
+            wanted = (self.critical.order, 0, 0) if bounds is not None else None
+            found = sides(self.critical.coefficients)
+            how = "the roots isolated"
+            yield Statement("the verdict", lambda: how if (found == wanted) == (bounds is not None) else "")
         if region is not None:
             says = (
                 "stable nowhere"
@@ -110,15 +116,14 @@ class StabilityRegion(Result):
     @property
     def empty(self) -> bool:
         """Whether nothing is stable."""
-        return self.critical.never or self.region is None or self.region.empty
+        return self.answer["bounds"] is None
 
     @property
     def verdict(self) -> str:
         """`yes` where everything is stable, `no` where nothing is, else `conditional`."""
         if self.empty:
             return "no"
-        assert self.region is not None  # noqa: S101 - it is not empty
-        return "yes" if self.region.everywhere else "conditional"
+        return "yes" if self.region is None or self.region.everywhere else "conditional"
 
     @cached_property
     def stable_if(self) -> list[str]:
@@ -165,6 +170,14 @@ class StabilityRegion(Result):
         from symobs.analysis.stability_region_page import write_region  # noqa: PLC0415 - it stands on this type
 
         write_region(page, self)
+
+
+def _bounds_of(question: Question) -> tuple[Bound, ...] | None:
+    """Return inequalities that hold exactly on the region, None where it is empty."""
+    region, critical = region_of(question), question.critical
+    if region is None:
+        return () if critical.is_stable({}) else None
+    return None if critical.never or region.empty else short_list(region)
 
 
 def region_of(question: Question) -> LineRegion | PlaneRegion | None:

@@ -43,7 +43,8 @@ def write_region(page: Page, result: StabilityRegion) -> None:
     with page.section("stability_region"):
         if not chi:
             chi = _polynomial_of_loop(page, result)
-        _sought(page, result)
+        if result.question.parameters:
+            _sought(page, result)
         moved = _moved(page, result, chi)
         _table(page, result, moved)
         if result.region is not None:
@@ -199,9 +200,7 @@ def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None
         if result.region.points:
             page.plot(picture_of_line(result.region), page[moved])
         if result.pole_map is not None:
-            page.steps.append(
-                Plot(result.pole_map, page[chi].formula, sentence("poles_move", {"names": _listed(result)}))
-            )
+            page.plot(result.pole_map, page[chi], say="poles_move", names=_listed(result))
     elif result.picture is not None:
         page.plot(result.picture, page[moved])
 
