@@ -14,7 +14,7 @@ from tests.region_texts import Call, expression, rational_formula, statement
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from tests.region_problems import Problem
+    from tests.region_problem import Problem
     from tests.region_texts import Node
 
 

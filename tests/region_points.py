@@ -23,7 +23,7 @@ from tests.region_roots import count_real_roots, gcd_of, primitive, real_roots
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from tests.region_problems import Problem
+    from tests.region_problem import Problem
     from tests.region_roots import Root
 
 Point: TypeAlias = tuple[Fraction, ...]
@@ -60,7 +60,8 @@ def stable_at(coefficients: Sequence[int], *, discrete: bool) -> bool:
 def _seen(polynomial: Sequence[int], *, discrete: bool) -> bool | None:
     """Return what the balls say: all inside, one outside, or nothing."""
     sure = True
-    for root, _ in fmpz_poly(list(reversed(polynomial))).complex_roots():
+    roots: Any = fmpz_poly(list(reversed(polynomial))).complex_roots()
+    for root, _ in roots:
         size = _size(root, discrete=discrete)
         if size > 0:
             return False
@@ -199,7 +200,7 @@ class Points:
         return Fraction(self.random.randint(-24, 24), self.random.choice((1, 1, 2, 3, 4, 6)))
 
     def _wide(self) -> Fraction:
-        return self._uniform() * 10 ** self.random.randint(1, 6)
+        return self._uniform() * self.random.choice((10, 100, 10**4, 10**6))
 
     def _at_curve(self, curve: Polynomial) -> Iterator[Point]:
         """Yield points on one critical curve: exact where a root is rational, else on both sides of it, very near."""
@@ -209,9 +210,7 @@ class Points:
         if linear and self.random.random() < 0.5:
             solved = self.random.choice(linear)
         others: dict[str, Fraction] = {
-            name: self.random.choice((self._uniform, self._simple))()
-            for name in self.problem.names
-            if name != solved
+            name: self.random.choice((self._uniform, self._simple))() for name in self.problem.names if name != solved
         }
         along = self._through(curve, names, others) if self.random.random() < 0.4 else None
         if along is not None:

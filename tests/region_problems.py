@@ -1,108 +1,10 @@
-"""Regions of stability to be found: polynomials with one or two parameters, and what is known of their regions.
-
-`region` is the set as relations worked out by hand (Routh, Jury, or the roots themselves); None where the set has no
-description short enough for that.  It is held against the roots at thousands of points by `test_region_points`.
-"""
+"""Regions of stability to be found: degrees one to six, one and two parameters, continuous and discrete time."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from tests.region_problem import Problem, characteristic, in_powers
 
-from tests.region_algebra import Polynomial, bilinear, scaled, shifted, stable_where
-from tests.region_texts import polynomial
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from tests.region_algebra import Formula
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A polynomial, its parameters, and what is known of the region: components, bounded, holes, relations."""
-
-    name: str
-    text: str
-    parameters: tuple[str, ...] = ("h1", "h2")
-    region: str | None = None
-    components: int | None = None
-    bounded: bool | None = None
-    symbols: Mapping[str, str] = field(default_factory=dict)
-    margin: str = "0"
-    radius: str = "1"
-    excluded: tuple[tuple[str, ...], ...] = ()
-    window: int = 6
-
-    @property
-    def discrete(self) -> bool:
-        return "z" in polynomial(self.text).names
-
-    @property
-    def variable(self) -> str:
-        return "z" if self.discrete else "s"
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The parameters and the symbols that stand beside them."""
-        return *self.parameters, *self.symbols
-
-    @property
-    def empty(self) -> bool | None:
-        return None if self.components is None else self.components == 0
-
-    @property
-    def keywords(self) -> dict[str, Any]:
-        """What `symobs.stability_region` is called with beside the polynomial."""
-        found: dict[str, Any] = {"parameters": list(self.parameters)}
-        if self.symbols:
-            found["symbols"] = dict(self.symbols)
-        if self.discrete:
-            found["dt"] = True
-        if self.margin != "0":
-            found["margin"] = self.margin
-        if self.radius != "1":
-            found["radius"] = self.radius
-        return found
-
-    def coefficients(self) -> list[Polynomial]:
-        """Return the coefficients, the highest power first, moved so that Re < 0 or |z| < 1 is asked."""
-        found = polynomial(self.text).coefficients(self.variable)
-        return scaled(found, Fraction(self.radius)) if self.discrete else shifted(found, Fraction(self.margin))
-
-    def stable(self, form: str = "even") -> Formula:
-        """Return the region by Liénard and Chipart, or by Hurwitz."""
-        found = self.coefficients()
-        return stable_where(bilinear(found) if self.discrete else found, form)
-
-
-def characteristic(A: Sequence[Sequence[str]], L: Sequence[str], C: Sequence[str], variable: str = "s") -> str:
-    """Return det(λI − A + LC), by minors of the rows, as a text."""
-    order = len(A)
-    gains, output = [polynomial(text) for text in L], [polynomial(text) for text in C]
-    total = {(): Polynomial.of(1)}
-    for i in range(order):
-        row = [gains[i] * output[j] - polynomial(A[i][j]) for j in range(order)]
-        row[i] = row[i] + Polynomial.symbol(variable)
-        larger: dict[tuple[int, ...], Polynomial] = {}
-        for columns, minor in total.items():
-            for j in set(range(order)) - set(columns):
-                key = tuple(sorted((*columns, j)))
-                term = row[j] * minor
-                odd = sum(column > j for column in columns) % 2
-                larger[key] = larger.get(key, Polynomial.of(0)) + (-term if odd else term)
-        total = larger
-    return str(total[tuple(range(order))]).replace(" ", "*").replace("*-*", " - ").replace("*+*", " + ")
-
-
-def _in_powers(*coefficients: str, variable: str = "s") -> str:
-    """Return Σ cₖ λⁿ⁻ᵏ as a text."""
-    order = len(coefficients) - 1
-    return " + ".join(f"({c})*{variable}^{order - k}" for k, c in enumerate(coefficients))
-
-
-# The seventeen polynomials whose regions are on record, and those with symbols.
+# Polynomials whose regions are in the literature of the field or follow from a textbook's plant.
 RECORDED = [
     Problem("pend_hang", "s^2 + (1/2 + h2) s + 1 - h1", region="h1 < 1 /\\ h2 > -1/2", components=1, bounded=False),
     Problem(
@@ -118,47 +20,47 @@ RECORDED = [
         symbols={"b": "positive"},
         region="h1 > 1 /\\ h2 > -b",
     ),
-    Problem("cubic_hyper", _in_powers("1", "h1", "h2", "1"), region="h1 > 0 /\\ h1 h2 > 1", components=1, bounded=False),
+    Problem("cubic_hyper", in_powers("1", "h1", "h2", "1"), region="h1 > 0 /\\ h1 h2 > 1", components=1, bounded=False),
     Problem(
         "cubic_bilin",
-        _in_powers("1", "1 + h1", "2 + h2", "1 + h1*h2"),
+        in_powers("1", "1 + h1", "2 + h2", "1 + h1*h2"),
         region="2 h1 + h2 + 1 > 0 /\\ h1 h2 + 1 > 0",
         components=1,
         bounded=False,
     ),
     Problem(
         "quartic_lin",
-        _in_powers("1", "2", "3 + h1", "2 + h2", "1 + h1"),
+        in_powers("1", "2", "3 + h1", "2 + h2", "1 + h1"),
         region="h1 > -1 /\\ 2 h1 h2 - h2^2 + 2 h2 + 4 > 0",
         components=1,
         bounded=False,
     ),
     Problem(
         "quartic_hyper",
-        _in_powers("1", "3", "h1", "h2", "1"),
+        in_powers("1", "3", "h1", "h2", "1"),
         region="h2 > 0 /\\ h1 > (h2^2 + 9)/(3 h2)",
         components=1,
         bounded=False,
     ),
     Problem(
         "disc_2comp",
-        _in_powers("1", "h1^2 - 1", "1 - h2^2"),
+        in_powers("1", "h1^2 - 1", "1 - h2^2"),
         region="[h1 > 1 \\/ h1 < -1] /\\ -1 < h2 < 1",
         components=2,
         bounded=False,
     ),
     Problem(
         "disc_cubic",
-        _in_powers("1", "2 + h1", "h1^2 + h2^2 - 4", "h1*h2 + 1"),
+        in_powers("1", "2 + h1", "h1^2 + h2^2 - 4", "h1*h2 + 1"),
         region="h1 h2 + 1 > 0 /\\ h1^3 + 2 h1^2 + h1 h2^2 - h1 h2 - 4 h1 + 2 h2^2 - 9 > 0",
         components=3,
         bounded=False,
     ),
-    Problem("empty_2mass", _in_powers("1", "0", "2", "h2", "h1"), region="FALSE", components=0),
-    Problem("empty_sign", _in_powers("1", "h1", "-1 - h1^2", "1 + h2^2"), region="FALSE", components=0),
+    Problem("empty_2mass", in_powers("1", "0", "2", "h2", "h1"), region="FALSE", components=0),
+    Problem("empty_sign", in_powers("1", "h1", "-1 - h1^2", "1 + h2^2"), region="FALSE", components=0),
     Problem(
         "2mass_colloc",
-        _in_powers("1", "h2", "2 + h1", "h2", "h1"),
+        in_powers("1", "h2", "2 + h1", "h2", "h1"),
         region="h1 > 0 /\\ h2 > 0",
         components=1,
         bounded=False,
@@ -180,7 +82,7 @@ RECORDED = [
     ),
     Problem(
         "shift_a1",
-        _in_powers("1", "h1", "h2", "6"),
+        in_powers("1", "h1", "h2", "6"),
         margin="1",
         region="3 < h1 < 8 /\\ 2 (h1^2 - 4 h1 + 7)/(h1 - 2) < h2 < h1 + 5",
         components=1,
@@ -197,21 +99,21 @@ RECORDED = [
     ),
     Problem(
         "annulus",
-        _in_powers("1", "5 - h1^2 - h2^2", "h1^2 + h2^2 - 1"),
+        in_powers("1", "5 - h1^2 - h2^2", "h1^2 + h2^2 - 1"),
         region="1 < h1^2 + h2^2 < 5",
         components=1,
         bounded=True,
     ),
     Problem(
         "quintic_lin",
-        _in_powers("1", "3", "5 + h1", "6 + h2", "4 + h1 - h2", "1 + h2"),
+        in_powers("1", "3", "5 + h1", "6 + h2", "4 + h1 - h2", "1 + h2"),
         region="h2 > -1 /\\ 3 h1 - h2 + 9 > 0 /\\ 6 h1^2 - 3 h1 h2^2 - 2 h1 h2 + 36 h1 + h2^3 - 18 h2^2 + 6 h2 + 50 > 0",
         components=1,
         bounded=False,
     ),
     Problem(
         "sextic_lin",
-        _in_powers("1", "4", "8 + h1", "10 + h2", "8 + h1", "4 + h2", "1"),
+        in_powers("1", "4", "8 + h1", "10 + h2", "8 + h1", "4 + h2", "1"),
         region="h1 > -9/2 /\\ [(h1 + 5) h2 - (2 h1 + 9) (h1 + 5)]^2 < (2 h1 + 9)^2 (h1 + 5) (h1 + 9)".replace(
             "[", "("
         ).replace("]", ")"),
@@ -221,7 +123,7 @@ RECORDED = [
     ),
     Problem(
         "quintic_pid",
-        _in_powers("1", "7", "17", "17 + h1", "6 + h2", "2"),
+        in_powers("1", "7", "17", "17 + h1", "6 + h2", "2"),
         region="h1 > -17 /\\ h1 < 102 /\\ (h1 + 17)^2 > 56 /\\ h2 > -6 /\\ "
         "49 h2^2 + (h1^2 - 85 h1 - 1174) h2 + 6 h1^2 - 544 h1 - 5336 < 0",
         components=1,
@@ -230,7 +132,7 @@ RECORDED = [
     ),
     Problem(
         "quartic_quad",
-        _in_powers("1", "2 + h1", "3 + h2^2", "2 + h1*h2", "1 + h1 - h2"),
+        in_powers("1", "2 + h1", "3 + h2^2", "2 + h1*h2", "1 + h1 - h2"),
         components=1,
         bounded=False,
     ),
@@ -247,7 +149,7 @@ RECORDED = [
     ),
     Problem(
         "two_intervals",
-        _in_powers("1", "2", "2", "1 + h^2", "h^2 - h^4 + h"),
+        in_powers("1", "2", "2", "1 + h^2", "h^2 - h^4 + h"),
         ("h",),
         "h > 0 /\\ [3 h^3 + 3 h^2 + h - 3 < 0 \\/ [h > 1 /\\ h^3 - h - 1 < 0]]",
         2,
@@ -347,8 +249,8 @@ SHAPES = [
         bounded=False,
     ),
     Problem("first_order", "s + h1 - h2^2", region="h1 > h2^2", components=1, bounded=False),
-    Problem("quintic_bilin", _in_powers("1", "5", "10 + h1", "10 + h1*h2", "5 + h2", "1")),
-    Problem("sextic_two", _in_powers("1", "6", "15", "20", "15 + h1", "6 + h2", "1"), bounded=True, window=25),
+    Problem("quintic_bilin", in_powers("1", "5", "10 + h1", "10 + h1*h2", "5 + h2", "1")),
+    Problem("sextic_two", in_powers("1", "6", "15", "20", "15 + h1", "6 + h2", "1"), bounded=True, window=25),
 ]
 
 # Observers: det(sI − A + LC) with two entries of L free, margins, and discrete time.
@@ -360,7 +262,9 @@ OBSERVERS = [
     Problem("observer_3_products", characteristic(_CHAIN_3, ["h1", "1", "h2"], ["1", "0", "1"]), window=12),
     Problem("observer_3_margin", characteristic(_CHAIN_3, ["h1", "h2", "2"], ["1", "0", "0"]), margin="1/2", window=12),
     Problem("observer_4_masses", characteristic(_MASSES, ["h1", "h2", "1", "0"], ["1", "0", "0", "0"]), window=12),
-    Problem("observer_4_cart_pole", characteristic(_CART_POLE, ["12", "h1", "h2", "-400"], ["1", "0", "0", "0"]), window=300),
+    Problem(
+        "observer_4_cart_pole", characteristic(_CART_POLE, ["12", "h1", "h2", "-400"], ["1", "0", "0", "0"]), window=300
+    ),
     Problem(
         "observer_z",
         "z^2 + (h1 - 2) z + 1 - h1 + h2",
@@ -378,7 +282,9 @@ OBSERVERS = [
     ),
     Problem(
         "observer_z_3",
-        characteristic([["1", "1", "1/2"], ["0", "1", "1"], ["0", "0", "1/2"]], ["h1", "h2", "0"], ["1", "0", "0"], "z"),
+        characteristic(
+            [["1", "1", "1/2"], ["0", "1", "1"], ["0", "0", "1/2"]], ["h1", "h2", "0"], ["1", "0", "0"], "z"
+        ),
         components=1,
         bounded=True,
     ),
@@ -431,8 +337,10 @@ ONE_PARAMETER = [
     Problem("empty_touching", "s^2 - h^2 s + 1", ("h",), "FALSE", 0),
     Problem("jury_radius", "z^2 + h z + 1/8", ("h",), "-3/4 < h < 3/4", 1, bounded=True, radius="1/2"),
     Problem("leading_one", "h s^2 + (h - 1) s + h + 2", ("h",), "h > 1 \\/ h < -2", 2, bounded=False),
-    Problem("margin_one", "s^3 + 6 s^2 + 11 s + 6 + h", ("h",), "-15/8 < h < 24", 1, bounded=True, margin="1/2", window=30),
-    Problem("quintic_one", _in_powers("1", "5 + h", "10", "10 - h", "5", "1 + h^2"), ("h",)),
+    Problem(
+        "margin_one", "s^3 + 6 s^2 + 11 s + 6 + h", ("h",), "-15/8 < h < 24", 1, bounded=True, margin="1/2", window=30
+    ),
+    Problem("quintic_one", in_powers("1", "5 + h", "10", "10 - h", "5", "1 + h^2"), ("h",)),
     Problem("jury_five", "z^5 + h z^4 - h^2 z^2 + 1/3 z - 1/8", ("h",), window=3),
     Problem("symbols_one", "s^3 + a s^2 + h s + a", ("h",), "h > 1", symbols={"a": "positive"}),
 ]

@@ -9,18 +9,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import z3
+import z3  # type: ignore[import-untyped, unused-ignore]
 
 from tests.benchmarks import other_systems, qepcad
 from tests.region_algebra import All, Atom, Some, difference, names_of, opposite
+from tests.region_texts import Name, expression
 from tests.region_translation import Translation, between, conjunction, union
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from tests.region_algebra import Formula, Polynomial
     from tests.region_answers import Answer, Cell
-    from tests.region_problems import Problem
+    from tests.region_problem import Problem
 
 
 @dataclass(frozen=True)
@@ -107,10 +108,13 @@ def _same(problem: Problem, translation: Translation, ours: Formula, truth: Form
     return nothing_in(unequal, translation.definitions, limit)
 
 
-def cells_right(cells: Sequence[Cell], truth: Formula, limit: float = 20) -> Iterator[tuple[Cell, Proof]]:
-    """Prove of every cell that all of it is stable, or none of it."""
-    for cell in cells:
-        translation = Translation()
-        inside = All(tuple(between(translation, name, low, high) for name, low, high in cell.bounds))
-        wrong = opposite(truth) if cell.stable else truth
-        yield cell, nothing_in(All((inside, wrong)), translation.definitions, limit)
+def cell_right(cell: Cell, holes: Sequence[Mapping[str, str]], truth: Formula, limit: float = 20) -> Proof:
+    """Prove that all of a cell is stable but for single points left out, or that none of it is."""
+    translation = Translation()
+    inside: list[Formula] = [between(translation, name, low, high) for name, low, high in cell.bounds]
+    if cell.stable:
+        for hole in holes:
+            equal = (translation.relation(Name(name), "=", expression(str(value))) for name, value in hole.items())
+            inside.append(opposite(All(tuple(equal))))
+    wrong = opposite(truth) if cell.stable else truth
+    return nothing_in(All((*inside, wrong)), translation.definitions, limit)

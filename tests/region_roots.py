@@ -14,7 +14,7 @@ from math import gcd, isqrt, lcm, prod
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
-from flint.types._gr import gr_real_qqbar_ctx  # type: ignore[attr-defined, unused-ignore]
+from flint.types._gr import gr_real_qqbar_ctx  # type: ignore[import-not-found, unused-ignore]
 
 from tests.region_texts import Binary, Call, Name, Node, Number, Power, UnreadableError, fraction, rational
 

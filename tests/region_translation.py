@@ -138,9 +138,7 @@ class Translation:
         return self._known[node][0]
 
 
-def between(
-    translation: Translation, name: str, low: str, high: str, *, closed: bool = False
-) -> Formula:
+def between(translation: Translation, name: str, low: str, high: str, *, closed: bool = False) -> Formula:
     """Return low < name < high, or low ≤ name ≤ high; "-oo" and "oo" bound nothing."""
     more, less = (">=", "<=") if closed else (">", "<")
     parts: list[Formula] = []
