@@ -22,7 +22,7 @@ from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
 from symobs.region.pole_paths import pole_map
 from symobs.region.routh import RouthTable, is_routh_table, routh_table
-from symobs.system import StateSpace
+from symobs.system import StateSpace, Symbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -223,11 +223,13 @@ def stability_region(
     empty, bounded, sample_points.  One and two parameters without other symbols: exact; otherwise equivalent conditions.
     Raises `InputError`.
     """
+    where = "specification.parameters"
     if isinstance(plant, StateSpace):
-        asked = plant
+        asked = plant.with_symbols(plant.symbols.naming(parameters, where))
         if polynomial is not None and plant.polynomial is None:
-            asked = StateSpace.from_polynomial(polynomial, plant.dt, symbols=plant.symbols)
+            asked = StateSpace.from_polynomial(polynomial, plant.dt, symbols=asked.symbols)
     else:
-        asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=symbols)
+        known = Symbols.of(symbols).naming(parameters, where)
+        asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=known)
     question = read_question(asked, {"K": K, "L": L}, parameters, margin, radius)
     return choose("stability_region", method, "routh").solve(question).asked(method)

@@ -242,7 +242,8 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
     elif alone and not given and "polynomial" in (specification := _table(data, "specification", errors)):
         with errors:
-            return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=symbols)
+            known = symbols.naming(specification.get("parameters"), "specification.parameters")
+            return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
     elif "A" not in table:
         errors.note("the state matrix is missing", "plant.A", 'give it, for example A = "[0 1; 0 -1]"')
     else:

@@ -246,6 +246,14 @@ class StateSpace:
         told.is_from_floats = self.is_from_floats
         return told
 
+    def with_symbols(self, symbols: Symbols) -> StateSpace:
+        """Return the same plant where these symbols are known."""
+        if symbols is self.symbols:
+            return self
+        plant = copy(self)
+        plant.symbols = symbols
+        return plant
+
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices a task uses are given."""
         missing = [n for n in names if (n == "B" and not self.inputs) or (n == "C" and not self.outputs)]
