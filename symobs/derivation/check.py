@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
-from symobs.derivation.properties import PREDICATES, needed, polynomial_of, subjects
+from symobs.derivation.properties import PREDICATES, holds_exactly_where, polynomial_of, subjects
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -200,10 +200,10 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         found = evaluate(fact.property.subject, environment, Exact(environment))
         (value,) = subjects(fact.property.name, found, environment.variable)
         polynomial = polynomial_of(value, environment)
-        bounds = needed(fact.property.name, polynomial, environment, discrete)
-        said = {_positive_part(relation, environment) for relation in fact.where}
-        strict = {operator in {"<", ">"} for relation in fact.where for operator in relation.operators}
-        if not bounds or said != set(bounds) or strict != {fact.property.name == "stable"}:
+        said = tuple(_positive_part(relation, environment) for relation in fact.where)
+        strict = {operator in {"<", ">", "!="} for relation in fact.where for operator in relation.operators}
+        exactly = holds_exactly_where(fact.property.name, polynomial, said, environment, discrete)
+        if not exactly or strict != {fact.property.name == "stable"}:
             _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
         return
     _about_letters(fact.subject, environment)
@@ -214,12 +214,12 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
 
 
 def _positive_part(relation: Relation, environment: Environment) -> Scalar:
-    """Return what an inequality says is positive, or not negative."""
-    if relation.operators not in {(">",), ("<",), (">=",), ("<=",)}:
+    """Return what an inequality says is positive, or not negative; the square of what it says is not 0."""
+    if relation.operators not in {(">",), ("<",), (">=",), ("<=",), ("!=",)}:
         _reject(plain_relation(relation, environment.variable))
     left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
     difference: Scalar = left - right if relation.operators[0][0] == ">" else right - left
-    return difference
+    return difference**2 if relation.operators == ("!=",) else difference
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:

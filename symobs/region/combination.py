@@ -84,7 +84,7 @@ def _read(columns: Sequence[_Column], solution: Mapping[int, Fraction]) -> Combi
 
 def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Iterable[_Column]:
     """Return the unknown coefficients that might help: with multiples of monomials that occur elsewhere."""
-    products = [((k,), _terms(value)) for k, value in enumerate(known)]
+    products: list[tuple[tuple[int, ...], Terms]] = [((k,), _terms(value)) for k, value in enumerate(known)]
     pairs = combinations_with_replacement(range(len(known)), 2)
     products += [((j, k), _terms(known[j] * known[k])) for j, k in pairs if known[j].size * known[k].size <= _ROWS]
     wanted = _terms(goal)
@@ -109,7 +109,9 @@ def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) ->
 def _certain_part(monomial: Monomial, signs: Mapping[str, str]) -> Monomial:
     """Return the monomial without the odd powers of names that may have either sign."""
     up = {"positive", "nonnegative"}
-    return tuple((n, e - (e % 2 and signs.get(n, "real") not in up)) for n, e in monomial if e > 1 or signs.get(n) in up)
+    return tuple(
+        (n, e - (e % 2 and signs.get(n, "real") not in up)) for n, e in monomial if e > 1 or signs.get(n) in up
+    )
 
 
 def _quotients(targets: Iterable[Monomial], terms: Terms) -> set[Monomial]:

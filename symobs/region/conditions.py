@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar
+from symobs.region.decide import equivalence_of
 from symobs.region.simplify import Simplified, simplify
-from symobs.stability import bilinear, lienard_chipart
+from symobs.stability import as_inequality, bilinear, lienard_chipart
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from symobs.region.proof import Equivalence
 
 
 def stable_where(
@@ -33,12 +36,38 @@ def stable_where(
     """
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
     found = [simplify(raw, signs, ask=False) for raw in lists]
-    best = min(found, key=_length)
+    best = min(found, key=lambda one: _length(one.positive, signs))
     return best if best.is_settled else simplify(best.equivalence.raw, signs)
 
 
-def _length(found: Simplified) -> tuple[int, int]:
-    return len(found.positive), sum(value.size for value in found.positive)
+def _length(positive: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[int, int, int]:
+    """Return how many conditions there are, how many are solved for no parameter, and how long all are."""
+    written = [as_inequality(v, signs, beside=[o for o in positive if o != v]) for v in positive]
+    open_ = sum(left == value for (left, _, _), value in zip(written, positive, strict=True) if value.size > 2)
+    return len(positive), open_, sum(value.size for value in positive)
+
+
+def is_stable_where(
+    polynomial: Scalar,
+    variable: str,
+    said: Sequence[Scalar],
+    signs: Mapping[str, str],
+    *,
+    discrete: bool = False,
+    margin: Scalar | None = None,
+    radius: Scalar | None = None,
+    proof: Equivalence | None = None,
+) -> bool:
+    """Tell whether it is proven that all roots are stable exactly where all of `said` are positive (trusted).
+
+    A proof that comes along is checked against the lists computed here; else one is looked for.
+    """
+    lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
+    if proof is not None:
+        raw, kept = set(proof.raw), set(proof.kept)
+        return kept == set(said) and any(raw == set(found) for found in lists) and proof.holds(signs)
+    proofs = (equivalence_of(raw, said, signs) for raw in lists)
+    return any(found is not None and found.holds(signs) for found in proofs)
 
 
 def stability_conditions(

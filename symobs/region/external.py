@@ -57,7 +57,7 @@ def point_by_z3(
     values = [*positive, *([] if not_above is None else [not_above])]
     if not z3_is_there() or not _is_small(values, _TERMS, _DEGREE):
         return "maybe", {}
-    import z3  # noqa: PLC0415 - an extra
+    import z3
 
     context = z3.Context()
     solver = z3.SolverFor("QF_NRA", ctx=context)
@@ -92,9 +92,7 @@ def none_by_z3(positive: Sequence[Scalar], signs: Mapping[str, str], *, not_abov
     return point_by_z3(positive, signs, not_above=not_above)[0] == "no"
 
 
-def none_by_cells(
-    positive: Sequence[Scalar], signs: Mapping[str, str], *, not_above: Scalar | None = None
-) -> str:
+def none_by_cells(positive: Sequence[Scalar], signs: Mapping[str, str], *, not_above: Scalar | None = None) -> str:
     """Return `yes` where qepcad finds that no point makes all positive (and one value not), `no` where one does."""
     program = shutil.which("qepcad")
     values = [*positive, *([] if not_above is None else [not_above])]

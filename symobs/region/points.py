@@ -13,11 +13,12 @@ from itertools import pairwise
 from math import isfinite, lcm, sqrt
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.exact import Scalar
 from symobs.region.external import is_free, names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.exact import Scalar
 
 Point: TypeAlias = dict[str, Fraction]
 #: A coefficient and the places of the names with their exponents.
@@ -48,11 +49,11 @@ def value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> Fraction:
     filling = _powers(common, degree)
     total = 0
     for coefficient, places in terms:
-        left = degree
+        product, left = coefficient, degree
         for place, exponent in places:
-            coefficient *= powers[place][exponent]
+            product *= powers[place][exponent]
             left -= exponent
-        total += coefficient * filling[left]
+        total += product * filling[left]
     return Fraction(total, filling[degree] * int(polynomial.denominator.fraction()))
 
 
@@ -93,7 +94,9 @@ def find_point(
         for point in _rounded(met):
             named = dict(zip(names, point, strict=True))
             if respects(named, signs) and holds_at(positive, named):
-                return named if sum(value.size for value in positive) > _SIMPLIFIED else _simpler(named, positive, signs)
+                return (
+                    named if sum(value.size for value in positive) > _SIMPLIFIED else _simpler(named, positive, signs)
+                )
     return None
 
 

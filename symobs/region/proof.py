@@ -72,9 +72,7 @@ class Equivalence:
         return proves(self.forward, self.kept, self.raw, signs) and proves(self.backward, self.raw, self.kept, signs)
 
 
-def proves(
-    steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scalar], signs: Mapping[str, str]
-) -> bool:
+def proves(steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
     """Tell whether the steps, each of which is checked, lead from `known` > 0 to every goal > 0."""
     found = set(known)
     for step in steps:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: How many views are tried for one goal, how many ways on from each, and how large a polynomial may become.
 _VIEWS, _WAYS, _TERMS = 24, 3, 400
+#: How often a combination is looked for.
+_PROGRAMS = 3
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
@@ -42,6 +44,14 @@ class Open:
 
     polynomial: Scalar
     value: Scalar
+
+
+@dataclass(slots=True)
+class _Budget:
+    """What is left to be tried for one goal."""
+
+    views: int
+    programs: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +86,7 @@ def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tu
         return (by_signs(goal),)
     if not _is_manageable(goal):
         return None
-    budget = [_VIEWS]
+    budget = _Budget(_VIEWS, _PROGRAMS)
     return _prove_in(goal, goal, _first_view(known, signs), budget)
 
 
@@ -85,7 +95,7 @@ def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...
     for value in known:
         if sign_of(value, signs) in _DOWN:
             return (contradiction(value),)
-    budget = [_VIEWS]
+    budget = _Budget(_VIEWS, _PROGRAMS)
     return _prove_in(ZERO, ZERO, _first_view(known, signs), budget)
 
 
@@ -108,9 +118,9 @@ def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> View:
     return View(dict(signs), open=tuple(Open(value, value) for value in ordered))
 
 
-def _prove_in(goal: Scalar, image: Scalar, view: View, budget: list[int]) -> tuple[Step, ...] | None:
+def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _Budget) -> tuple[Step, ...] | None:
     """Return the steps to a goal whose form in the view is `image`."""
-    budget[0] -= 1
+    budget.views -= 1
     if not goal.is_zero and sign_of(image, view.signs) == "positive":
         steps = _read_back(goal, image, view)
         if steps is not None:
@@ -120,7 +130,7 @@ def _prove_in(goal: Scalar, image: Scalar, view: View, budget: list[int]) -> tup
             return _from_impossible(goal, known, view)
     tried = False
     for moved, put in _ways_on(image, view):
-        if budget[0] <= 0:
+        if budget.views <= 0:
             return None
         tried = True
         moved_image = image.substitute(put)
@@ -129,7 +139,10 @@ def _prove_in(goal: Scalar, image: Scalar, view: View, budget: list[int]) -> tup
         steps = _prove_in(goal, moved_image, moved, budget)
         if steps is not None:
             return steps
-    return None if tried else _by_combination(goal, image, view)
+    if tried or not budget.programs:
+        return None
+    budget.programs -= 1
+    return _by_combination(goal, image, view)
 
 
 def _ways_on(image: Scalar, view: View) -> Iterator[tuple[View, Mapping[str, Scalar]]]:

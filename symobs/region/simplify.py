@@ -7,31 +7,30 @@ dropped.  Only where each that is left has a point at which it alone fails is th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.conditions import FACTORED_UP_TO, never_zero, sign_of
-from symobs.exact import Scalar, product_of
+from symobs.conditions import sign_of
 from symobs.region.external import QUESTION, point_by_z3
-from symobs.region.points import Point, find_point, find_points, holds_at, point_where_zero, respects, value_at
+from symobs.region.parts import State, cleared, in_parts, split_products
+from symobs.region.points import Point, find_point, holds_at, point_where_zero, respects, value_at
 from symobs.region.proof import (
     ZERO,
     Asked,
-    Combined,
     Equivalence,
     Step,
-    by_signs,
     contradiction,
     from_contradiction,
     is_product,
-    is_quotient,
 )
-from symobs.region.prover import prove, prove_by_opposite, refute
+from symobs.region.prover import prove, refute
 from symobs.stability import root_of_square
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from symobs.exact import Scalar
 
 Signs: TypeAlias = "Mapping[str, str]"
 
@@ -45,7 +44,8 @@ class Simplified:
     """An equivalent list.
 
     `positive` must be > 0, where f² stands for f ≠ 0; (0,) means nowhere.  `point` is one where all are positive, and
-    `witnesses` are points at which one of them fails and the others hold.
+    `witnesses` are points at which one of them fails and the others hold.  What was given beside is in both lists of
+    the equivalence.
     """
 
     positive: tuple[Scalar, ...]
@@ -71,51 +71,27 @@ class Simplified:
         return self.verdict != "conditional" or (self.irredundant and self.point is not None)
 
 
-def simplify(raw: Sequence[Scalar], signs: Signs, *, ask: bool = True) -> Simplified:
-    """Return a short list equivalent to all of `raw` > 0; with `ask`, z3 is asked about what stays open.
+def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = (), ask: bool = True) -> Simplified:
+    """Return a short list equivalent to all of `raw` > 0 where all of `beside` are; with `ask`, z3 may help.
 
     A rational function is taken as numerator times denominator.
     """
-    cleared = tuple(dict.fromkeys(value.numerator * value.denominator for value in raw))
-    state = _State(cleared)
-    for value in cleared:
+    given, asked_of = (tuple(dict.fromkeys(map(cleared, values))) for values in (beside, raw))
+    polynomials = tuple(dict.fromkeys((*asked_of, *given)))
+    state = State(polynomials)
+    for value in polynomials:
         if sign_of(value, signs) in _DOWN:
-            return _nowhere(cleared, (contradiction(value),))
-        state = _in_parts(state, value, signs)
+            return _nowhere(polynomials, (contradiction(value),))
+        if value not in given:
+            state = in_parts(state, value, signs)
     until = monotonic() + TOGETHER if ask else 0.0
     point, impossible = nonempty_or_not(state.current, signs, until)
     if impossible is not None:
-        return _nowhere(cleared, (*state.backward, *impossible))
-    state = _split(state, signs)
-    state, witnesses = _without_implied(state, signs, until)
-    equivalence = Equivalence(cleared, state.current, state.forward, state.backward)
-    return Simplified(state.current, equivalence, point, witnesses)
-
-
-@dataclass(frozen=True, slots=True)
-class _State:
-    """The list as it stands, the steps from it to the first one, and the steps from the first one to it."""
-
-    current: tuple[Scalar, ...]
-    forward: tuple[Step, ...] = ()
-    backward: tuple[Step, ...] = ()
-
-    def with_(
-        self, old: Scalar, new: Sequence[Scalar], forward: Sequence[Step], backward: Sequence[Step] = ()
-    ) -> _State:
-        """Replace one value: `forward` leads back to it from the new list, `backward` from it to the new values."""
-        place = self.current.index(old)
-        current = dict.fromkeys((*self.current[:place], *new, *self.current[place + 1 :]))
-        return replace(
-            self,
-            current=tuple(current),
-            forward=(*forward, *self.forward),
-            backward=(*self.backward, *backward),
-        )
-
-    def without(self, value: Scalar) -> tuple[Scalar, ...]:
-        """Return the others."""
-        return tuple(other for other in self.current if other != value)
+        return _nowhere(polynomials, (*state.backward, *impossible))
+    state = split_products(state, signs, given)
+    state, witnesses = _without_implied(state, signs, given, until)
+    equivalence = Equivalence(polynomials, state.current, state.forward, state.backward)
+    return Simplified(tuple(v for v in state.current if v not in given), equivalence, point, witnesses)
 
 
 def _nowhere(raw: tuple[Scalar, ...], steps: Sequence[Step]) -> Simplified:
@@ -144,98 +120,23 @@ def _left(until: float) -> int:
     return max(1, min(QUESTION, int(1000 * (until - monotonic()))))
 
 
-# -- factors ---------------------------------------------------------------------------------------------------------
-
-
-def _in_parts(state: _State, value: Scalar, signs: Signs) -> _State:
-    """Replace a value by what of it is open: a product of odd powers, squares, and factors that are never negative."""
-    if sign_of(value, signs) == "positive":
-        return state.with_(value, (), (by_signs(value),))
-    if value.size > FACTORED_UP_TO:
-        return state
-    unit, factors = value.factors()
-    odd, even, weak = Scalar.of(1 if unit.fraction() > 0 else -1), list[Scalar](), list[Scalar]()
-    forward, known = list[Step](), list[Scalar]()
-    for factor, power in factors:
-        sign = sign_of(factor, signs)
-        if sign in {"negative", "nonpositive"} and power % 2:
-            odd = -odd
-        if sign in {"positive", "negative"} or (power % 2 == 0 and sign == "nonzero"):
-            continue
-        if sign in {"nonnegative", "nonpositive"}:
-            weak.append(factor if sign == "nonnegative" else -factor)
-            known += [weak[-1]] * power
-        elif power % 2:
-            odd = odd * factor
-            known += [factor**2] * (power // 2)
-        else:
-            even.append(factor**2)
-            known += [factor**2] * (power // 2)
-    for square in {factor for factor in known if factor not in even and factor not in weak}:
-        rest = odd * odd / square
-        forward.append(Combined(square, ((rest, ()),), ((Scalar.of(1), (odd, odd)),)))
-    above = () if odd.is_one else (odd,)
-    certain = value / product_of([*known, *above])
-    forward.append(Combined(value, ((Scalar.of(1), ()),), ((certain, (*known, *above)),)))
-    backward = [is_quotient(odd, value, (), value / odd)] if above else []
-    backward += [is_quotient(part, value, above, value / odd / part) for part in [*even, *weak]]
-    new = (*above, *even, *weak)
-    return state if new == (value,) else state.with_(value, new, forward, backward)
-
-
-def _odd_factors(value: Scalar) -> tuple[Scalar, ...]:
-    """Return the factors of a product without squares; nothing of a square and of a long polynomial."""
-    if value.size > FACTORED_UP_TO:
-        return ()
-    factors = value.factors()[1]
-    return tuple(factor for factor, _ in factors) if all(power == 1 for _, power in factors) else ()
-
-
-def _split(state: _State, signs: Signs) -> _State:
-    """Split products as long as the others settle the sign of a factor."""
-    waiting = [value for value in state.current if len(_odd_factors(value)) > 1]
-    while waiting:
-        value = waiting.pop()
-        split = _split_one(state, value, signs)
-        if split is not None:
-            state = split
-            waiting = [value for value in state.current if len(_odd_factors(value)) > 1]
-    return state
-
-
-def _split_one(state: _State, value: Scalar, signs: Signs) -> _State | None:
-    others, points = state.without(value), find_points(state.current, signs)
-    either = [sign * factor for factor in _odd_factors(value) for sign in (1, -1)]
-    oriented = [factor for factor in either if all(value_at(factor, point) > 0 for point in points)]
-    for factor in oriented:
-        lemma = prove(factor, others, signs)
-        if lemma is not None:
-            rest = value / factor
-            forward = (*lemma, is_product(value, (factor, rest)))
-            return state.with_(value, (rest,), forward, (*lemma, is_quotient(rest, value, (factor,))))
-    for factor in oriented:
-        lemma = prove_by_opposite(factor, value, others, signs)
-        if lemma is not None:
-            rest = value / factor
-            backward = (*lemma, is_quotient(rest, value, (factor,)))
-            return state.with_(value, (factor, rest), (is_product(value, (factor, rest)),), backward)
-    return None
-
-
 # -- what is implied ---------------------------------------------------------------------------------------------------
 
 
-def _without_implied(state: _State, signs: Signs, until: float) -> tuple[_State, tuple[tuple[Scalar, Point], ...]]:
+def _without_implied(
+    state: State, signs: Signs, given: Sequence[Scalar], until: float
+) -> tuple[State, tuple[tuple[Scalar, Point], ...]]:
     """Drop what the others imply, the longest first; return the points which show that the rest is needed."""
     witnesses = []
-    for value in sorted(state.current, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < 100 else "")):
+    open_ = (value for value in state.current if value not in given)
+    for value in sorted(open_, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < 100 else "")):
         others = state.without(value)
-        point = _failing_alone(value, others, signs)
+        point = failing_alone(value, others, signs)
         steps = prove_value(value, others, signs) if point is None else None
         if point is None and steps is None and monotonic() < until:
-            point, steps = _asked(value, others, signs, until)
+            point, steps = asked(value, others, signs, until)
         if steps is not None:
-            state = state.with_(value, (), steps)
+            state = state.replaced(value, (), steps)
         elif point is not None:
             witnesses.append((value, point))
     return state, tuple(witnesses)
@@ -251,17 +152,21 @@ def prove_value(value: Scalar, known: Sequence[Scalar], signs: Signs) -> tuple[S
     return None
 
 
-def _failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Point | None:
+def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Point | None:
+    """Return a rational point where the others are positive and a value is not, None where none was met."""
     names = sorted(value.names)
+    if sign_of(value, signs) in _DOWN:
+        return find_point(others, signs, names=names)
     root = root_of_square(value)
     if root is None:
         return find_point((*others, -value), signs, names=names)
     return point_where_zero(root, others, signs)
 
 
-def _asked(
+def asked(
     value: Scalar, others: Sequence[Scalar], signs: Signs, until: float
 ) -> tuple[Point | None, tuple[Step, ...] | None]:
+    """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
     answer, model = point_by_z3(others, signs, not_above=value, milliseconds=_left(until))
     if answer == "no":
         return None, (Asked(value, tuple(others)),)
