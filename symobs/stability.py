@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 
 #: How many points are tried before it is left open whether a polynomial can be stable, and can be unstable.
 _POINTS = 60
+#: Coefficients and conditions of more terms are not held against each other.
+_COMPARED_UP_TO = 12
+#: A condition of more terms is not solved.
+_SOLVED_UP_TO = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,12 +194,12 @@ def as_inequality(
     if root is not None:
         left, _, right = as_inequality(root, signs, parameters)
         return left, "!=", right
-    found = []
-    for name in positive.names:
+    found, short = [], [value for value in beside if value.size <= _COMPARED_UP_TO]
+    for name in positive.names if positive.size <= _SOLVED_UP_TO else ():
         if positive.degree(name) != 1 or not positive.is_polynomial_in(name):
             continue
         lead = positive.coefficients(name)[0]
-        sign = sign_where(lead, signs, beside)
+        sign = sign_where(lead, signs, short if lead.size <= _COMPARED_UP_TO else ())
         if sign in {"positive", "negative"}:
             rank = (name not in parameters, signs.get(name, "real") != "real", not (lead**2).is_one, lead.size, name)
             found.append((rank, sign))

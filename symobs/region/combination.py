@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, islice
 from math import gcd
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.conditions import sign_of
 from symobs.exact import Scalar
 
 if TYPE_CHECKING:
@@ -51,7 +50,9 @@ class _Column:
 
 def combination(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Combination | None:
     """Return such a combination with a positive right side, None where this search finds none."""
-    columns = list(_columns(goal, known, signs))
+    if goal.size + sum(value.size for value in known) > _ROWS:
+        return None
+    columns = list(islice(_columns(goal, known, signs), _COLUMNS + 1))
     rows = sorted({monomial for column in columns for monomial in column.terms})
     if len(rows) > _ROWS or len(columns) > _COLUMNS:
         return None
@@ -149,7 +150,15 @@ def _scalar(monomial: Monomial) -> Scalar:
 
 
 def _sign(monomial: Monomial, signs: Mapping[str, str]) -> str:
-    return sign_of(_scalar(monomial), signs)
+    """Return `positive`, `nonnegative`, or `real` of what may be negative."""
+    weak = down = False
+    for name, exponent in monomial:
+        sign = signs.get(name, "real")
+        if exponent % 2 and sign in {"real", "nonzero"}:
+            return "real"
+        weak = weak or sign in {"real", "nonnegative", "nonpositive"}
+        down = down != (exponent % 2 == 1 and sign in {"negative", "nonpositive"})
+    return "real" if down else "nonnegative" if weak else "positive"
 
 
 def _feasible(rows: Sequence[Monomial], columns: Sequence[Mapping[Monomial, int]]) -> dict[int, Fraction] | None:

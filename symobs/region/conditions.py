@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar
 from symobs.region.decide import equivalence_of
+from symobs.region.prover import prove
 from symobs.region.simplify import Simplified, simplify
 from symobs.stability import as_inequality, bilinear, lienard_chipart
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.region.proof import Equivalence
+
+
+#: Of lists with more terms only the shorter one is made simpler, without z3.
+_COMPARED_UP_TO = 1_000
 
 
 def stable_where(
@@ -35,16 +40,23 @@ def stable_where(
     Roots are stable in Re s < −margin, in discrete time in |z| < radius.
     """
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
+    shortest = min(lists, key=_terms)
+    if _terms(shortest) > _COMPARED_UP_TO:
+        return simplify(shortest, signs, ask=False)
     found = [simplify(raw, signs, ask=False) for raw in lists]
     best = min(found, key=lambda one: _length(one.positive, signs))
     return best if best.is_settled else simplify(best.equivalence.raw, signs)
+
+
+def _terms(values: Sequence[Scalar]) -> int:
+    return sum(value.size for value in values)
 
 
 def _length(positive: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[int, int, int]:
     """Return how many conditions there are, how many are solved for no parameter, and how long all are."""
     written = [as_inequality(v, signs, beside=[o for o in positive if o != v]) for v in positive]
     open_ = sum(left == value for (left, _, _), value in zip(written, positive, strict=True) if value.size > 2)
-    return len(positive), open_, sum(value.size for value in positive)
+    return len(positive), open_, _terms(positive)
 
 
 def is_stable_where(
@@ -60,8 +72,11 @@ def is_stable_where(
 ) -> bool:
     """Tell whether it is proven that all roots are stable exactly where all of `said` are positive (trusted).
 
-    A proof that comes along is checked against the lists computed here; else one is looked for.
+    A proof that comes along is checked against the lists computed here; else one is looked for.  Saying something that
+    is seen to follow from the rest is refused.
     """
+    if any(prove(value, [other for other in said if other != value], signs) is not None for value in said):
+        return False
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
     if proof is not None:
         raw, kept = set(proof.raw), set(proof.kept)
@@ -81,7 +96,7 @@ def stability_conditions(
 ) -> list[Scalar]:
     """Return the polynomials that are positive exactly where all roots lie in Re s < −margin, |z| < radius."""
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
-    return min(lists, key=lambda found: sum(value.size for value in found))
+    return min(lists, key=_terms)
 
 
 def condition_lists(

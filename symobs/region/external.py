@@ -9,7 +9,6 @@ import shutil
 import subprocess
 import threading
 from fractions import Fraction
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact.functions import PI, known
@@ -38,11 +37,6 @@ def is_free(name: str) -> bool:
     return name != PI and known(name) is None
 
 
-def z3_is_there() -> bool:
-    """Tell whether z3 can be imported."""
-    return find_spec("z3") is not None
-
-
 def point_by_z3(
     positive: Sequence[Scalar],
     signs: Mapping[str, str],
@@ -55,9 +49,12 @@ def point_by_z3(
     A point comes back rounded where it is no rational number: who needs it has to look.
     """
     values = [*positive, *([] if not_above is None else [not_above])]
-    if not z3_is_there() or not _is_small(values, _TERMS, _DEGREE):
+    if not _is_small(values, _TERMS, _DEGREE):
         return "maybe", {}
-    import z3
+    try:
+        import z3
+    except ImportError:
+        return "maybe", {}
 
     context = z3.Context()
     solver = z3.SolverFor("QF_NRA", ctx=context)
@@ -80,7 +77,7 @@ def point_by_z3(
         if verdict != "sat":
             return ("no" if verdict == "unsat" else "maybe"), {}
         model = solver.model()
-        return "maybe", {name: _fraction(model.eval(s, model_completion=True), z3) for name, s in symbols.items()}
+        return "maybe", {name: _fraction(model.evaluate(s, model_completion=True), z3) for name, s in symbols.items()}
     except z3.Z3Exception:
         return "maybe", {}
     finally:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: How many views are tried for one goal, how many ways on from each, and how large a polynomial may become.
 _VIEWS, _WAYS, _TERMS = 24, 3, 400
+#: A known value of more terms is left aside.
+_SOLVED = 60
 #: How often a combination is looked for.
 _PROGRAMS = 3
 _DOWN = {"negative", "nonpositive", "zero"}
@@ -114,7 +116,7 @@ def _is_manageable(value: Scalar) -> bool:
 
 
 def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> View:
-    ordered = sorted((v for v in known if _is_manageable(v)), key=lambda v: (v.size, str(v)))
+    ordered = sorted((v for v in known if v.size <= _SOLVED and _is_manageable(v)), key=lambda v: (v.size, str(v)))
     return View(dict(signs), open=tuple(Open(value, value) for value in ordered))
 
 
@@ -149,7 +151,8 @@ def _ways_on(image: Scalar, view: View) -> Iterator[tuple[View, Mapping[str, Sca
     """Yield the views in which one more parameter is replaced by a known value."""
     found = []
     for place, known in enumerate(view.open):
-        for name in known.polynomial.names - set(view.stands_for):
+        names = known.polynomial.names - set(view.stands_for) if known.polynomial.size <= _SOLVED else ()
+        for name in names:
             sign = view.signs.get(name, "real")
             if known.polynomial.degree(name) != 1 or sign in {"nonnegative", "nonpositive"}:
                 continue
