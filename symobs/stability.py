@@ -11,14 +11,18 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.conditions import sign_of
-from symobs.exact import Matrix, Scalar, from_coefficients
+from symobs.conditions import FACTORED_UP_TO, sign_of, sign_where
+from symobs.exact import Matrix, Scalar, from_coefficients, product_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 #: How many points are tried before it is left open whether a polynomial can be stable, and can be unstable.
 _POINTS = 60
+#: Coefficients and conditions of more terms are not held against each other.
+_COMPARED_UP_TO = 12
+#: A condition of more terms is not solved.
+_SOLVED_UP_TO = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +47,11 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
         return Stability("yes")
     coefficients = [c / found[0] for c in found]  # the leading coefficient may be of any sign
     if discrete:
-        coefficients = _bilinear(coefficients)
-    return _decide([*coefficients[:discrete], *_lienard_chipart(coefficients)], signs)
+        coefficients = bilinear(coefficients)
+    return _decide([*coefficients[:discrete], *lienard_chipart(coefficients)], signs)
 
 
-def _bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:
+def bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:
     """Return the coefficients of Σ aₖ (w + 1)ⁿ⁻ᵏ (w − 1)ᵏ."""
     w = Scalar.symbol("s")
     order = len(coefficients) - 1
@@ -69,12 +73,13 @@ def hurwitz_matrix(coefficients: Sequence[Scalar]) -> Matrix:
     return Matrix.of([[entry(i, j) for j in range(order)] for i in range(order)])
 
 
-def _lienard_chipart(coefficients: Sequence[Scalar]) -> list[Scalar]:
+def lienard_chipart(coefficients: Sequence[Scalar], *, others: bool = False) -> list[Scalar]:
+    """Return what must be positive for a₀ > 0: aₙ, aₙ₋₂, … with Δₙ₋₁, Δₙ₋₃, …; or, of the others, aₙ, aₙ₋₁, aₙ₋₃, …."""
     order = len(coefficients) - 1
-    conditions = [coefficients[k] for k in range(order, 0, -2)]
+    conditions = [coefficients[k] for k in ([order, *range(order - 1, 0, -2)] if others else range(order, 0, -2))]
     hurwitz = hurwitz_matrix(coefficients)
     conditions += [hurwitz.select(range(k), range(k)).determinant() for k in range(order - 1, 1, -2)]
-    if order % 2 == 0:
+    if order % 2 == 0 and coefficients[1] not in conditions:
         conditions.append(coefficients[1])
     return conditions
 
@@ -88,11 +93,11 @@ def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability
             continue
         if sign in {"negative", "nonpositive", "zero"}:
             return Stability("no")
-        needed[_essential(condition, signs)] = None
+        needed[essential(condition, signs)] = None
     return Stability("conditional", tuple(needed)) if needed else Stability("yes")
 
 
-def _essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
+def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
     """Return the part of a condition whose sign is not settled: factors of known sign and even powers are dropped.
 
     An even power is kept as the factor's square where the factor may vanish, since the inequality is strict.
@@ -118,7 +123,7 @@ def on_boundary(factor: Scalar, variable: str, signs: Mapping[str, str], *, disc
         size = coefficients[1] ** 2 if discrete else coefficients[1] ** 2 + 1
         return size.is_one
     if discrete:
-        coefficients = tuple(_bilinear(coefficients))
+        coefficients = tuple(bilinear(coefficients))
     if coefficients[0].is_zero or any(not c.is_zero for c in coefficients[1::2]):
         return False
     order = len(coefficients) - 1
@@ -165,7 +170,7 @@ def is_beyond(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
             if not stable and not on_boundary(factor, variable, signs, discrete=discrete):
                 return True
         if {"positive", "negative"} <= {
-            sign_of(c, signs) for c in (_bilinear(coefficients) if discrete else coefficients)
+            sign_of(c, signs) for c in (bilinear(coefficients) if discrete else coefficients)
         }:
             return True
     return False
@@ -177,18 +182,42 @@ def monic(polynomial: Scalar, variable: str) -> Scalar:
     return from_coefficients([c / coefficients[0] for c in coefficients], variable)
 
 
-def as_inequality(positive: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, str, Scalar]:
-    """Return value > 0 solved for a name of unknown sign that stands in it with coefficient ±1: h₁ < 1, h₂ > −b."""
-    for name in sorted(positive.names, key=lambda n: (signs.get(n, "real") != "real", n)):
+def as_inequality(
+    positive: Scalar, signs: Mapping[str, str], parameters: Sequence[str] = (), beside: Sequence[Scalar] = ()
+) -> tuple[Scalar, str, Scalar]:
+    """Return value > 0 solved for a name: h₁ < 1, h₂ > −b, h₁ > (h₂² + 9)/(3 h₂), and a square as f ≠ 0.
+
+    The name stands in it with a coefficient of certain sign, by the declared signs or where `beside` are positive.
+    Parameters are preferred, then names of unknown sign, then a coefficient ±1.
+    """
+    root = root_of_square(positive)
+    if root is not None:
+        left, _, right = as_inequality(root, signs, parameters)
+        return left, "!=", right
+    found, short = [], [value for value in beside if value.size <= _COMPARED_UP_TO]
+    for name in positive.names if positive.size <= _SOLVED_UP_TO else ():
         if positive.degree(name) != 1 or not positive.is_polynomial_in(name):
             continue
-        lead, rest = positive.coefficients(name)
-        symbol = Scalar.symbol(name)
-        if lead.is_one:
-            return symbol, ">", -rest
-        if (-lead).is_one:
-            return symbol, "<", rest
-    return positive, ">", Scalar.of(0)
+        lead = positive.coefficients(name)[0]
+        sign = sign_where(lead, signs, short if lead.size <= _COMPARED_UP_TO else ())
+        if sign in {"positive", "negative"}:
+            rank = (name not in parameters, signs.get(name, "real") != "real", not (lead**2).is_one, lead.size, name)
+            found.append((rank, sign))
+    if not found:
+        return positive, ">", Scalar.of(0)
+    (*_, name), sign = min(found)
+    lead, rest = positive.coefficients(name)
+    return Scalar.symbol(name), ">" if sign == "positive" else "<", -rest / lead
+
+
+def root_of_square(positive: Scalar) -> Scalar | None:
+    """Return f of f², which stands for f ≠ 0."""
+    if positive.size > FACTORED_UP_TO or positive.is_constant:
+        return None
+    unit, factors = positive.factors()
+    if not unit.is_one or any(power != 2 for _, power in factors):
+        return None
+    return product_of(factor for factor, _ in factors)
 
 
 def stable_somewhere(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> set[bool]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
-from symobs.conditions import never_zero
+from symobs.conditions import never_zero, sign_of
 from symobs.exact import Matrix, Scalar
+from symobs.region.conditions import is_stable_where
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from symobs.formula import Environment
 
@@ -51,6 +52,27 @@ def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bo
     if name == "marginal":
         return marginal_where(polynomial, variable, signs, discrete=discrete)
     return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
+def holds_exactly_where(
+    name: str,
+    polynomial: Scalar,
+    said: Sequence[Scalar],
+    environment: Environment,
+    discrete: bool,  # noqa: FBT001
+) -> bool:
+    """Tell whether a polynomial has the property exactly where all that is said is positive, or not negative.
+
+    Each must be, up to a factor that is positive by the declared signs, one of the conditions computed here.  A list of
+    another form needs a proof that it says the same.
+    """
+    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
+    if not bounds or not said:
+        return False
+    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
+    if all(map(any, same)) and all(map(any, zip(*same, strict=True))):
+        return True
+    return name == "stable" and is_stable_where(polynomial, environment.variable, said, signs, discrete=discrete)
 
 
 #: What each property asks of a scalar, of the environment, and of discrete time.

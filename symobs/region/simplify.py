@@ -1,0 +1,179 @@
+"""Lists of polynomials that must be positive, made short: every list returned is equivalent, with a proof.
+
+Each polynomial is freed of factors of certain sign; an even power says that its factor is not 0, and stays as its
+square.  A product whose factors have certain signs where the others are positive is split.  What the others imply is
+dropped.  Only where each that is left has a point at which it alone fails is the list called irredundant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import monotonic
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.conditions import sign_of
+from symobs.region.external import QUESTION, point_by_z3
+from symobs.region.parts import State, cleared, in_parts, split_products
+from symobs.region.points import Point, find_point, holds_at, point_where_zero, respects, value_at
+from symobs.region.proof import (
+    ZERO,
+    Asked,
+    Equivalence,
+    Step,
+    contradiction,
+    from_contradiction,
+    is_product,
+)
+from symobs.region.prover import prove, refute
+from symobs.stability import root_of_square
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symobs.exact import Scalar
+
+Signs: TypeAlias = "Mapping[str, str]"
+
+#: Seconds that all questions to z3 about one list may take together.
+TOGETHER = 6.0
+_DOWN = {"negative", "nonpositive", "zero"}
+
+
+@dataclass(frozen=True, slots=True)
+class Simplified:
+    """An equivalent list.
+
+    `positive` must be > 0, where f² stands for f ≠ 0; (0,) means nowhere.  `point` is one where all are positive, and
+    `witnesses` are points at which one of them fails and the others hold.  What was given beside is in both lists of
+    the equivalence.
+    """
+
+    positive: tuple[Scalar, ...]
+    equivalence: Equivalence
+    point: Point | None = None
+    witnesses: tuple[tuple[Scalar, Point], ...] = ()
+
+    @property
+    def verdict(self) -> str:
+        """`yes` where nothing is left to ask, `no` where all cannot be positive together, else `conditional`."""
+        if not self.positive:
+            return "yes"
+        return "no" if self.positive == (ZERO,) else "conditional"
+
+    @property
+    def irredundant(self) -> bool:
+        """Whether it is proven that none of the list can be left out."""
+        return {value for value, _ in self.witnesses} == set(self.positive) or self.verdict == "no"
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether neither emptiness nor redundance is open."""
+        return self.verdict != "conditional" or (self.irredundant and self.point is not None)
+
+
+def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = (), ask: bool = True) -> Simplified:
+    """Return a short list equivalent to all of `raw` > 0 where all of `beside` are; with `ask`, z3 may help.
+
+    A rational function is taken as numerator times denominator.
+    """
+    given, asked_of = (tuple(dict.fromkeys(map(cleared, values))) for values in (beside, raw))
+    polynomials = tuple(dict.fromkeys((*asked_of, *given)))
+    state = State(polynomials)
+    for value in polynomials:
+        if sign_of(value, signs) in _DOWN:
+            return _nowhere(polynomials, (contradiction(value),))
+        if value not in given:
+            state = in_parts(state, value, signs)
+    until = monotonic() + TOGETHER if ask else 0.0
+    point, impossible = nonempty_or_not(state.current, signs, until)
+    if impossible is not None:
+        return _nowhere(polynomials, (*state.backward, *impossible))
+    state = split_products(state, signs, given)
+    state, witnesses = _without_implied(state, signs, given, until)
+    equivalence = Equivalence(polynomials, state.current, state.forward, state.backward)
+    return Simplified(tuple(v for v in state.current if v not in given), equivalence, point, witnesses)
+
+
+def _nowhere(raw: tuple[Scalar, ...], steps: Sequence[Step]) -> Simplified:
+    forward = tuple(from_contradiction(value) for value in raw)
+    return Simplified((ZERO,), Equivalence(raw, (ZERO,), forward, tuple(steps)))
+
+
+def nonempty_or_not(
+    positive: Sequence[Scalar], signs: Signs, until: float
+) -> tuple[Point | None, tuple[Step, ...] | None]:
+    """Return a point where all are positive, or the steps to a contradiction, or neither; z3 is asked before `until`."""
+    point = find_point(positive, signs)
+    if point is not None:
+        return point, None
+    steps = refute(positive, signs)
+    if steps is not None or monotonic() >= until:
+        return None, steps
+    answer, model = point_by_z3(positive, signs, milliseconds=_left(until))
+    if answer == "no":
+        return None, (Asked(ZERO, tuple(positive)),)
+    good = bool(model) and respects(model, signs) and holds_at(positive, model)
+    return (dict(model) if good else None), None
+
+
+def _left(until: float) -> int:
+    return max(1, min(QUESTION, int(1000 * (until - monotonic()))))
+
+
+# -- what is implied ---------------------------------------------------------------------------------------------------
+
+
+def _without_implied(
+    state: State, signs: Signs, given: Sequence[Scalar], until: float
+) -> tuple[State, tuple[tuple[Scalar, Point], ...]]:
+    """Drop what the others imply, the longest first; return the points which show that the rest is needed."""
+    witnesses = []
+    open_ = (value for value in state.current if value not in given)
+    for value in sorted(open_, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < 100 else "")):
+        others = state.without(value)
+        point = failing_alone(value, others, signs)
+        steps = prove_value(value, others, signs) if point is None else None
+        if point is None and steps is None and monotonic() < until:
+            point, steps = asked(value, others, signs, until)
+        if steps is not None:
+            state = state.replaced(value, (), steps)
+        elif point is not None:
+            witnesses.append((value, point))
+    return state, tuple(witnesses)
+
+
+def prove_value(value: Scalar, known: Sequence[Scalar], signs: Signs) -> tuple[Step, ...] | None:
+    """Return steps from the known values to value > 0; of a square, to its root, of either sign."""
+    root = root_of_square(value)
+    for goal in (value,) if root is None else (root, -root):
+        steps = prove(goal, known, signs)
+        if steps is not None:
+            return steps if root is None else (*steps, is_product(value, (goal, goal)))
+    return None
+
+
+def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Point | None:
+    """Return a rational point where the others are positive and a value is not, None where none was met."""
+    names = sorted(value.names)
+    if sign_of(value, signs) in _DOWN:
+        return find_point(others, signs, names=names)
+    root = root_of_square(value)
+    if root is None:
+        return find_point((*others, -value), signs, names=names)
+    return point_where_zero(root, others, signs)
+
+
+def asked(
+    value: Scalar, others: Sequence[Scalar], signs: Signs, until: float
+) -> tuple[Point | None, tuple[Step, ...] | None]:
+    """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
+    answer, model = point_by_z3(others, signs, not_above=value, milliseconds=_left(until))
+    if answer == "no":
+        return None, (Asked(value, tuple(others)),)
+    fails = bool(model) and respects(model, signs) and holds_at(others, model) and value_at(value, model) <= 0
+    return (dict(model) if fails else None), None
+
+
+def is_needed(value: Scalar, others: Sequence[Scalar], point: Point, signs: Signs) -> bool:
+    """Tell whether a point shows that a value does not follow from others (trusted)."""
+    return respects(point, signs) and holds_at(others, point) and value_at(value, point) <= 0
