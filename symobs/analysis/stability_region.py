@@ -3,35 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.analysis.stability_region_fields import cells_of, components_of, excluded_of, intervals_of, stable_if
+from symobs.analysis.stability_region_fields import (
+    cells_of,
+    components_of,
+    excluded_of,
+    intervals_of,
+    of_conditions,
+    stable_if,
+)
 from symobs.analysis.stability_region_question import Question, read_question
 from symobs.certificate import Claim, Statement
-from symobs.exact.half_plane import sides
+from symobs.exact import Scalar
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.region.cells_proof import are_parts, is_region
+from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.description import parts
 from symobs.region.drawing import oriented, picture_of_line, picture_of_plane
-from symobs.region.inequalities import short_list
+from symobs.region.inequalities import Bound, short_list
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
 from symobs.region.pole_paths import pole_map
+from symobs.region.proof import asks_z3
 from symobs.region.routh import RouthTable, is_routh_table, routh_table
+from symobs.stability import root_of_square
 from symobs.system import StateSpace, Symbols
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.exact import Scalar
     from symobs.picture import Picture, PoleMap
     from symobs.region.critical import Critical
     from symobs.region.description import Part
-    from symobs.region.inequalities import Bound
+    from symobs.region.proof import Equivalence
+    from symobs.region.simplify import Simplified
     from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
 
 
@@ -46,12 +56,9 @@ class StabilityRegion(Result):
     @classmethod
     def of(cls, question: Question, method_name: str) -> StabilityRegion:
         """Return the region of a question."""
-        bounds = _bounds_of(question)
-        answer = {
-            "polynomial": question.polynomial,
-            "routh": routh_table(question.critical.written, question.critical.parameters),
-            "bounds": bounds,
-        }
+        bounds, proof = _bounds_of(question)
+        table = routh_table(question.critical.written, question.critical.parameters)
+        answer = {"polynomial": question.polynomial, "routh": table, "bounds": bounds, "proof": proof}
         return cls(question.plant, method_name, answer, question)
 
     @property
@@ -78,20 +85,36 @@ class StabilityRegion(Result):
         yield Statement("the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else "")
         bounds, region = self.answer["bounds"], self.region
         if region is None:
-            wanted = (self.critical.order, 0, 0) if bounds is not None else None
-            found = sides(self.critical.coefficients)
-            how = "the roots isolated"
-            yield Statement("the verdict", lambda: how if (found == wanted) == (bounds is not None) else "")
+            how = "Liénard and Chipart, products compared" + (", z3" if asks_z3(self.answer["proof"]) else "")
+            yield Statement(self._says(bounds), lambda: how if self._is_proved(bounds) else "")
         if region is not None:
-            says = (
-                "stable nowhere"
-                if bounds is None
-                else f"stable exactly where {' and '.join(self.stable_if) or 'defined'}"
-            )
             how = "every cell by the roots at a point of it, the cells by Sturm's theorem"
-            yield Statement(says, lambda: how if is_region(region, bounds) else "")
+            yield Statement(self._says(bounds), lambda: how if is_region(region, bounds) else "")
         if isinstance(region, PlaneRegion) and self.parts:
             yield Statement("the bounds over each interval", lambda: "exact" if are_parts(region, self.parts) else "")
+
+    def _says(self, bounds: Sequence[Bound] | None) -> str:
+        if bounds is None:
+            return "stable nowhere"
+        return f"stable exactly where {' and '.join(self.stable_if)}" if bounds else "stable everywhere"
+
+    def _is_proved(self, bounds: Sequence[Bound] | None) -> bool:
+        """Tell whether the proof leads from the conditions of the criterion to these inequalities and back."""
+        said = [Scalar.of(0)] if bounds is None else [positive_of(bound) for bound in bounds]
+        chi, question = self.question.polynomial, self.question
+        return is_stable_where(
+            chi, self.plant.variable, said, self.signs, **question.limits, proof=self.answer["proof"]
+        )
+
+    @property
+    def signs(self) -> Mapping[str, str]:
+        """The declared signs."""
+        return self.plant.symbols.signs
+
+    @cached_property
+    def short(self) -> Simplified | None:
+        """The list of inequalities with what is known of it, where there are other symbols or many parameters."""
+        return None if self.region is not None else conditions_of(self.question)
 
     def _claim_of_polynomial(self) -> Claim:
         """Return det(sI − A + …) = χ(s), or for a polynomial lead · det(sI − A) = χ(s)."""
@@ -120,15 +143,20 @@ class StabilityRegion(Result):
 
     @property
     def verdict(self) -> str:
-        """`yes` where everything is stable, `no` where nothing is, else `conditional`."""
+        """`yes` where everything is stable, `no` where nothing is, else `conditional`; `undecided` where that is open."""
         if self.empty:
             return "no"
-        return "yes" if self.region is None or self.region.everywhere else "conditional"
+        if self.region is not None:
+            return "yes" if self.region.everywhere else "conditional"
+        assert self.short is not None  # noqa: S101 - there is one where there is no region
+        if self.short.verdict == "yes":
+            return "yes"
+        return "conditional" if self.short.point is not None and self.short.witnesses else "undecided"
 
     @cached_property
     def stable_if(self) -> list[str]:
         """The conditions as texts."""
-        return stable_if(self.answer["bounds"], self.region, self.plant.symbols.signs)
+        return stable_if(self.answer["bounds"], self.region, self.signs, self.question.parameters)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -143,7 +171,9 @@ class StabilityRegion(Result):
         region = self.region
         if isinstance(region, LineRegion):
             found |= intervals_of(region)
-        elif isinstance(region, PlaneRegion):
+        elif self.short is not None:
+            found |= of_conditions(self.short, self.question)
+        if isinstance(region, PlaneRegion):
             found |= {"bounded": self.empty or region.bounded}
             found |= {"cells": cells_of(region), "components": components_of(region, self.parts)}
             found |= excluded_of(region)
@@ -172,12 +202,31 @@ class StabilityRegion(Result):
         write_region(page, self)
 
 
-def _bounds_of(question: Question) -> tuple[Bound, ...] | None:
-    """Return inequalities that hold exactly on the region, None where it is empty."""
-    region, critical = region_of(question), question.critical
-    if region is None:
-        return () if critical.is_stable({}) else None
-    return None if critical.never or region.empty else short_list(region)
+def _bounds_of(question: Question) -> tuple[tuple[Bound, ...] | None, Equivalence | None]:
+    """Return inequalities that hold exactly on the region, None where it is empty, and the proof where it is no region."""
+    region = region_of(question)
+    if region is not None:
+        return (None if region.critical.never or region.empty else short_list(region)), None
+    found = conditions_of(question)
+    bounds = None if found.verdict == "no" else tuple(map(bound_of, found.positive))
+    return bounds, found.equivalence
+
+
+@lru_cache(maxsize=16)
+def conditions_of(question: Question) -> Simplified:
+    """Return a short list of what must be positive, with its proof."""
+    return stable_where(question.polynomial, question.plant.variable, question.plant.symbols.signs, **question.limits)
+
+
+def bound_of(positive: Scalar) -> Bound:
+    """Return a value > 0, a square as its root ≠ 0."""
+    root = root_of_square(positive)
+    return Bound(positive) if root is None else Bound(root, "!=")
+
+
+def positive_of(bound: Bound) -> Scalar:
+    """Return what an inequality says is positive."""
+    return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 
 
 def region_of(question: Question) -> LineRegion | PlaneRegion | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs.region.bounds import box
 from symobs.region.line import LineRegion
 from symobs.stability import as_inequality
 
@@ -11,29 +12,51 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
+    from symobs.analysis.stability_region_question import Question
     from symobs.exact import RealNumber
     from symobs.region.description import Edge, Part
     from symobs.region.inequalities import Bound
     from symobs.region.line import Piece
     from symobs.region.plane import PlaneRegion
+    from symobs.region.simplify import Simplified
 
 DIGITS = 6
 
 
-def stable_if(bounds: Sequence[Bound] | None, region: object, signs: Mapping[str, str]) -> list[str]:
+def stable_if(
+    bounds: Sequence[Bound] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
+) -> list[str]:
     """Return the inequalities as texts; of a single interval its ends."""
     if bounds is None:
         return ["False"]
     if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
         return ends_of(region.intervals[0], region.name, signs)
-    return [" ".join(map(str, solved(bound, signs))) for bound in bounds]
+    return [" ".join(map(str, solved(bound, signs, parameters))) for bound in bounds]
 
 
-def solved(bound: Bound, signs: Mapping[str, str]) -> tuple[Any, str, Any]:
-    """Return an inequality solved for a parameter where that is simple."""
+def solved(bound: Bound, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
+    """Return an inequality solved for a parameter where its coefficient has a certain sign."""
     if bound.operator == "!=":
-        return bound.polynomial, "!=", 0
-    return as_inequality(bound.polynomial, signs)
+        left, operator, right = as_inequality(bound.polynomial, signs, parameters)
+        return left, "!=" if operator else operator, right
+    return as_inequality(bound.polynomial, signs, parameters)
+
+
+def of_conditions(found: Simplified, question: Question) -> dict[str, Any]:
+    """Return what is known of a region given by inequalities alone: whether it is empty, bounded, and a point of it."""
+    empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
+    limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None
+    fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant}
+    if limits is not None and not limits.needs:
+        fields["bounded"] = limits.bounded
+        fields["components"] = [{"bounded": limits.bounded, "sample": _texts(limits.sample)}]
+    point = limits.sample if limits is not None and limits.sample else found.point
+    fields["sample_points"] = [_texts(point)] if point else []
+    return fields
+
+
+def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
+    return {name: str(value) for name, value in (point or {}).items()}
 
 
 def ends_of(piece: Piece, name: str, signs: Mapping[str, str]) -> list[str]:

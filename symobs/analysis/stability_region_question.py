@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InputError
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Question:
     """The polynomial's origin (gains that are given, else the plant itself), the parameters, and what stable means."""
 
@@ -39,6 +39,17 @@ class Question:
         for matrix in moved or [m.A]:
             found = found * matrix.characteristic_polynomial(variable)
         return found
+
+    @property
+    def limits(self) -> dict[str, Any]:
+        """The boundary as keywords."""
+        margin, radius = self.boundary.margin, self.boundary.radius
+        discrete = self.boundary.discrete
+        return {
+            "discrete": discrete,
+            "margin": None if margin.is_zero else margin,
+            "radius": None if radius.is_one else radius,
+        }
 
     @cached_property
     def critical(self) -> Critical:

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.certificate import as_scalar
-from symobs.derivation.properties import needed
+from symobs.derivation.properties import holds_exactly_where
 from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.real import real_roots
@@ -31,23 +31,23 @@ if TYPE_CHECKING:
 def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
     """Tell whether a polynomial has a property exactly where some inequalities hold.
 
-    They are those that the criterion asks for, or with one or two parameters they describe the same region.
+    They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
     """
-    arithmetic = Exact(environment)
-    said = []
+    arithmetic, name = Exact(environment), fact.property.name
+    said: list[tuple[Scalar, str]] = []
     for relation in fact.where:
         values = [as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members]
         for (left, right), operator in zip(pairwise(values), relation.operators, strict=True):
             said.append((right - left if operator[0] == "<" else left - right, operator))
-    wanted = needed(fact.property.name, polynomial, environment, discrete)
-    signs = {">", "<"} if fact.property.name == "stable" else {">=", "<="}
-    if wanted and {value for value, _ in said} == set(wanted) and {operator for _, operator in said} <= signs:
-        return True
-    if fact.property.name != "stable" or not {operator for _, operator in said} <= {">", "<", "!="}:
+    allowed = {">", "<", "!="} if name == "stable" else {">=", "<="}
+    if not {operator for _, operator in said} <= allowed:
         return False
-    region = region_of(polynomial, environment, discrete=discrete)
+    region = region_of(polynomial, environment, discrete=discrete) if name == "stable" else None
     where = tuple((value, "!=" if operator == "!=" else ">") for value, operator in said)
-    return region is not None and holds_exactly(region, where)
+    if region is not None and holds_exactly(region, where):
+        return True
+    values = tuple(value**2 if operator == "!=" else value for value, operator in said)
+    return holds_exactly_where(name, polynomial, values, environment, discrete)
 
 
 def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
@@ -157,7 +157,7 @@ def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, s
     names = {name for value, _ in where for name in value.names}
     if not names <= set(region.critical.parameters) or region.critical.never:
         return False
-    return is_region(region, tuple(Bound(value, operator) for value, operator in where))
+    return is_region(region, tuple(Bound(value.numerator * value.denominator, operator) for value, operator in where))
 
 
 def _declared(region: LineRegion) -> list[tuple[Scalar, str]]:

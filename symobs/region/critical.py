@@ -14,13 +14,10 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.half_plane import all_to_the_left
-from symobs.stability import hurwitz_matrix
+from symobs.stability import bilinear, hurwitz_matrix, lienard_chipart
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-#: The variable of the polynomial whose roots are asked to lie in the left half-plane.
-W = "s"
 
 
 @dataclass(frozen=True)
@@ -132,14 +129,9 @@ class Critical:
 
     @cached_property
     def conditions(self) -> tuple[Scalar, ...]:
-        """What is positive exactly where the polynomial is stable (Liénard and Chipart 1914): with either half of the aₖ."""
-        a, n = self.coefficients, self.order
-        hurwitz = hurwitz_matrix(a)
-        minors = {k: hurwitz.select(range(k), range(k)).determinant() for k in range(n - 1, 1, -2)}
-        found = [a[0] * a[k] for k in range(n, 0, -2)]
-        found += [minor * a[0] ** (k % 2) for k, minor in minors.items()]
-        if n % 2 == 0:
-            found.append(a[0] * a[1])
+        """What is positive exactly where the polynomial is stable (Liénard and Chipart 1914); a₀ may be of either sign."""
+        a = self.coefficients
+        found = [*lienard_chipart([a[0] * c for c in a]), *lienard_chipart([a[0] * c for c in a], others=True)]
         return tuple(dict.fromkeys(found))
 
     def at(self, point: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
@@ -151,14 +143,3 @@ def irreducible(values: Iterable[Scalar]) -> tuple[Scalar, ...]:
     """Return the distinct irreducible factors that are not constant."""
     found = {f: None for value in values if not value.is_constant for f, _ in value.numerator.factors()[1]}
     return tuple(found)
-
-
-def bilinear(coefficients: tuple[Scalar, ...]) -> list[Scalar]:
-    """Return the coefficients of (w − 1)ⁿ a((w + 1)/(w − 1)), the leading one first, also where it is 0."""
-    w = Scalar.symbol(W)
-    order = len(coefficients) - 1
-    total = Scalar.of(0)
-    for k, coefficient in enumerate(coefficients):
-        total = total + coefficient * (w + 1) ** (order - k) * (w - 1) ** k
-    found = list(total.coefficients(W))
-    return [Scalar.of(0)] * (order + 1 - len(found)) + found
