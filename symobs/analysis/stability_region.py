@@ -25,6 +25,7 @@ from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.description import parts
 from symobs.region.drawing import oriented, picture_of_line, picture_of_plane
+from symobs.region.drawing_symbols import picture_with_symbols
 from symobs.region.inequalities import Bound, short_list
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
@@ -186,6 +187,8 @@ class StabilityRegion(Result):
             return self.pole_map or picture_of_line(self.region)
         if isinstance(self.region, PlaneRegion) and not self.critical.never:
             return oriented(picture_of_plane(self.region), self.question.parameters)
+        if self.region is None and not self.empty:
+            return picture_with_symbols(self.critical, self.question.parameters, self.question.symbols)
         return None
 
     @cached_property

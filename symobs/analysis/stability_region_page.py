@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import determinant_form, given, state_signs
+from symobs.analysis.pages import WRITTEN_UP_TO, determinant_form, given, state_signs
 from symobs.analysis.stability_region_fields import solved
-from symobs.derivation import Survey, Where, findings_of_region
+from symobs.conditions import sign_of
+from symobs.derivation import Survey, Where, findings_of_conditions, findings_of_region
 from symobs.derivation.regions import interval_relations
 from symobs.exact import Scalar
 from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
@@ -52,6 +53,8 @@ def write_region(page: Page, result: StabilityRegion) -> None:
                 _crossing(page, result, moved)
             _region(page, result, moved)
             _pictures(page, result, chi, moved)
+        elif result.question.parameters:
+            _conditions(page, result, moved)
 
 
 def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
@@ -164,6 +167,37 @@ def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
         page.remark("always_critical")
 
 
+def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
+    """Show the conditions of the criterion, the short list that says the same, and what can be said of its shape."""
+    short, signs, names = result.short, result.signs, result.question.parameters
+    assert short is not None  # noqa: S101 - there is one where there is no region
+    stable = predicate("stable", page[chi])
+    findings = findings_of_conditions(
+        page[chi].scalar, page.environment, names, discrete=result.question.boundary.discrete
+    )
+    if result.empty:
+        page.steps.append(Survey(page[chi].formula, names, findings))
+        return
+    relations = tuple(relation(*solved(bound, signs, names)) for bound in result.answer["bounds"])
+    raw = short.equivalence.raw
+    known = tuple(relation(value, ">", 0) for value in raw if sign_of(value, signs) != "positive")
+    say = "region_is"
+    if relations and len(raw) > len(relations):
+        say = "shortened"
+        if sum(value.size for value in raw) <= WRITTEN_UP_TO:
+            page.steps.append(Where(Exactly(stable, known), sentence("criterion", {})))
+        else:
+            page.remark("criterion_long", count=str(len(raw)))
+    if relations:
+        page.steps.append(Where(Exactly(stable, relations), sentence(say, {}), answer=True))
+    if findings:
+        page.steps.append(Survey(page[chi].formula, names, findings))
+    if not result.question.symbols and len(names) == 2:
+        page.remark("not_divided")
+    if result.picture is not None:
+        page.plot(result.picture, page[chi])
+
+
 def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show the inequalities, and the region in words and parts."""
     region, bounds = result.region, result.answer["bounds"]
@@ -208,8 +242,8 @@ def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None
 def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:
     if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
         return tuple(r for found in interval_relations(region) for r in found)
-    signs = result.plant.symbols.signs
-    return tuple(relation(*solved(bound, signs)) for bound in result.answer["bounds"])
+    names = result.question.parameters
+    return tuple(relation(*solved(bound, result.signs, names)) for bound in result.answer["bounds"])
 
 
 def _parts(result: StabilityRegion, region: object) -> tuple[tuple[Relation, ...], ...]:

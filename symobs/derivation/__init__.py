@@ -1,7 +1,7 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
-from symobs.derivation.regions import findings_of_region
+from symobs.derivation.regions import findings_of_conditions, findings_of_region
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -39,5 +39,6 @@ __all__ = [
     "Tabulate",
     "Where",
     "findings_of",
+    "findings_of_conditions",
     "findings_of_region",
 ]

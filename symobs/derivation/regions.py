@@ -13,7 +13,9 @@ from symobs.exact import Scalar
 from symobs.exact.real import real_roots
 from symobs.formula import Exact, Literal, Relation, evaluate
 from symobs.phrases.regions import counted, in_words, root_in_words
+from symobs.region.bounds import box
 from symobs.region.cells_proof import are_parts, is_region
+from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.critical import Boundary, Critical
 from symobs.region.description import are_whole, between, parts, relations_of
 from symobs.region.inequalities import Bound, short_list
@@ -53,6 +55,9 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
 def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
     """Tell whether what a step says of a region is so."""
     region = region_of(value, environment, discrete=discrete, names=step.names)
+    if region is None and not step.parts:
+        found = findings_of_conditions(value, environment, step.names, discrete=discrete)
+        return bool(step.findings) and set(step.findings) <= set(found)
     if region is None or not is_region(region, None if region.empty else short_list(region)):
         return False
     if not set(step.findings) <= set(findings_of_region(region)):
@@ -62,6 +67,23 @@ def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete
     if isinstance(region, LineRegion):
         return step.parts == tuple(interval_relations(region))
     return are_the_parts(region, step.parts)
+
+
+def findings_of_conditions(
+    polynomial: Scalar, environment: Environment, names: tuple[str, ...], *, discrete: bool
+) -> tuple[Sentence, ...]:
+    """Return what can be said of a region that is known by its inequalities: nowhere, or a product of intervals."""
+    signs = environment.signs
+    found = stable_where(polynomial, environment.variable, signs, discrete=discrete)
+    said = found.positive
+    if not is_stable_where(polynomial, environment.variable, said, signs, discrete=discrete, proof=found.equivalence):
+        return ()
+    if found.verdict == "no":
+        return (Sentence("region_empty"),)
+    limits = box(said, names, signs)
+    if limits is None or limits.needs or not said:
+        return ()
+    return (Sentence("box_bounded" if limits.bounded else "box_unbounded"),)
 
 
 def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]:

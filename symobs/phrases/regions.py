@@ -32,6 +32,13 @@ PHRASES: dict[str, str] = {
     "cells_decide": "These curves, with lines through the points where they turn or meet, cut the plane into {cells}. Inside one nothing changes, so one "
     "rational point decides for all of it: {stable} stable.",
     "point_missing": "The value {name} = {point} itself is not among them.",
+    "criterion": "By the criterion of Liénard and Chipart all roots are stable exactly where",
+    "criterion_long": "The criterion of Liénard and Chipart asks for {count} polynomials to be positive.",
+    "shortened": "What the others and the declared signs imply can be left out. So all roots are stable exactly where",
+    "box_bounded": "The region is a product of intervals: it is connected, convex and bounded.",
+    "box_unbounded": "The region is a product of intervals: it is connected and convex, and not bounded.",
+    "not_divided": "The curves on which stability can change are too many or of too high a degree for the plane to be divided here: the "
+    "inequalities are exact, the shape of the region is not described.",
     "connected_bounded": "The region is connected and bounded.",
     "connected_unbounded": "The region is connected and not bounded.",
     "pieces": "The region has {count} that are not connected; {bounded} bounded.",
@@ -47,8 +54,10 @@ RESTS_ON: dict[str, str] = {
     "points_decide": "sturm",
     "crossing": "orlando",
     "crossing_infinite": "orlando",
+    "crossing_discrete": "orlando",
+    "criterion": "lienard_chipart",
+    "criterion_long": "lienard_chipart",
 }
-RESTS_ON |= {"crossing_discrete": "orlando"}
 
 NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped")
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import cos, pi
 from typing import TYPE_CHECKING
 
+from symobs.exact import Scalar
 from symobs.exact.fibre import heights_on
 from symobs.exact.real import FIRST_BITS, RealNumber, real_roots
 from symobs.formula import Literal, Relation
@@ -15,7 +16,6 @@ from symobs.picture import Curve, End, LinePicture, Mark, RegionPicture
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symobs.exact import Scalar
     from symobs.exact.plane import Slab
     from symobs.picture import Interval, Place
     from symobs.region.line import LineRegion
@@ -230,14 +230,15 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
     return found
 
 
-def equation_of(polynomial: Scalar) -> Relation:
-    """Return the equation of a curve, solved for a name that stands alone in it with a number before it."""
-    for name in sorted(polynomial.names):
+def equation_of(polynomial: Scalar, parameters: Sequence[str] = ()) -> Relation:
+    """Return the equation of a curve, solved for a parameter that stands alone in it."""
+    for name in sorted(polynomial.names, key=lambda n: (n not in parameters, n)):
         if polynomial.degree(name) == 1:
             lead, rest = polynomial.coefficients(name)
-            if lead.is_constant and (rest.is_constant or polynomial.degrees()[0] == 1):
-                return Relation((Literal(type(lead).symbol(name)), Literal(-rest / lead)), ("=",))
-    constant = polynomial.substitute({name: type(polynomial).of(0) for name in polynomial.names})
+            others = (lead.names | rest.names).intersection(parameters) if parameters else lead.names | rest.names
+            if not others or (lead.is_constant and polynomial.degrees()[0] == 1):
+                return Relation((Literal(Scalar.symbol(name)), Literal(-rest / lead)), ("=",))
+    constant = polynomial.substitute(dict.fromkeys(polynomial.names, Scalar.of(0)))
     return Relation((Literal(polynomial - constant), Literal(-constant)), ("=",))
 
 
