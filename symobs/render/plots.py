@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symobs.render.scene import Content, Measure, Point
 
 WIDEST, HIGHEST = 270.0, 205.0  # points
-_LINE = 290.0
+_LINE, _LONGEST_END = 290.0, 0.3
 _SMALLEST_SIDE = 100.0
 #: Windows that are not much longer than high are drawn with equal scales.
 _EQUAL_UP_TO = 2.0
@@ -201,7 +201,7 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
     ends: dict[float, Content] = {}
     for begin, end in picture.pieces:
         strokes.append(Stroke(((at(begin.place if begin else low), 0), (at(end.place if end else high), 0)), "piece"))
-        ends |= {at(found.place): _label(found) for found in (begin, end) if found is not None}
+        ends |= {at(found.place): _label(found, measure) for found in (begin, end) if found is not None}
     signs = [Sign(_SIGNS[kind], (at(place), 7.0)) for place, kind in picture.marks if kind != "excluded"]
     signs += [Sign("ring", (x, 0)) for x in {*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")}]
     texts = [Text(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
@@ -218,8 +218,12 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
     return Scene(frame.box, whole, (), tuple(strokes), tuple(signs), tuple(texts))
 
 
-def _label(end: End) -> Content:
-    return end.label if isinstance(end.label, str) else Literal(end.label)
+def _label(end: End, measure: Measure) -> Content:
+    """Return what is written at an end: a decimal number where the exact one is too long for the picture."""
+    if isinstance(end.label, str):
+        return end.label
+    exact = Literal(end.label)
+    return exact if measure(exact)[0] <= _LONGEST_END * _LINE else f"≈{float(end.place):.4g}"
 
 
 def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
