@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import shutil
 import subprocess
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -401,6 +402,17 @@ def test_a_second_reader_finds_the_same(coefficients: list[Any]) -> None:
     assert tally.compared + len(tally.unknown) == values_of(facts_in(steps))
     assert tally.compared > len(coefficients)
     assert is_true(derivation)
+
+
+@pytest.mark.parametrize("coefficients", [[1, 2, 3, 1], [1, 1, 2, 2, 3], [1, 2, 24, 48, -25, -50], [1, h1, h2, 1]])
+def test_both_readers_would_see_a_false_table(coefficients: list[Any]) -> None:
+    define, table = shown(coefficients)
+    for change in changes_of(table.table):
+        lie = Derivation((define, replace(table, table=change.value)), START)
+        with pytest.raises(AssertionError):
+            Reader(lie, {}, lambda: iter([{}])).read()
+        with suppress(IndexError, ValueError, ZeroDivisionError):
+            assert not is_true(lie) or ".power" in change.where or ".origin" in change.where
 
 
 @pytest.mark.parametrize("coefficients", LETTERED)
