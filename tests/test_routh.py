@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import shutil
 import subprocess
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -356,7 +357,11 @@ def test_a_zero_in_the_first_column_is_no_table() -> None:
 
 
 def test_an_epsilon_of_the_polynomial_is_not_that_of_the_table() -> None:
+    """s³ + ε s + 2, whose table would be made of one ε that is a number and of one that is as small as we like."""
     table = routh_table(whole([1, 0, 3, 2]))
+    mixed = routh_table([Scalar.of(1), Scalar.of(0), h1, Scalar.of(2)])
+    rows = (replace(row, entries=tuple(e.substitute({"h1": small}) for e in row.entries)) for row in mixed.rows)
+    assert not is_routh_table(replace(mixed, rows=tuple(rows)), [Scalar.of(1), Scalar.of(0), small, Scalar.of(2)])
     with_it = replace(table, rows=(RouthRow(3, (Scalar.of(1), small), "coefficients"), *table.rows[1:]))
     assert not is_routh_table(with_it, [Scalar.of(1), Scalar.of(0), small, Scalar.of(2)])
 
@@ -397,6 +402,17 @@ def test_a_second_reader_finds_the_same(coefficients: list[Any]) -> None:
     assert tally.compared + len(tally.unknown) == values_of(facts_in(steps))
     assert tally.compared > len(coefficients)
     assert is_true(derivation)
+
+
+@pytest.mark.parametrize("coefficients", [[1, 2, 3, 1], [1, 1, 2, 2, 3], [1, 2, 24, 48, -25, -50], [1, h1, h2, 1]])
+def test_both_readers_would_see_a_false_table(coefficients: list[Any]) -> None:
+    define, table = shown(coefficients)
+    for change in changes_of(table.table):
+        lie = Derivation((define, replace(table, table=change.value)), START)
+        with pytest.raises(AssertionError):
+            Reader(lie, {}, lambda: iter([{}])).read()
+        with suppress(IndexError, ValueError, ZeroDivisionError):
+            assert not is_true(lie) or ".power" in change.where or ".origin" in change.where
 
 
 @pytest.mark.parametrize("coefficients", LETTERED)
@@ -449,6 +465,8 @@ def test_the_table_is_that_of_the_letter() -> None:
     refused(Define(said(CHI, s**3 + 2 * s**2 + 3 * s + 2)), table, match="the table of")
     refused(define, replace(table, variable="w"))
     refused(Define(said(CHI, 1 / (s + 1))), Tabulate(CHI, routh_table(whole([1, 1])), "s"))
+    one = 1 / (s + 2)
+    refused(Define(said(CHI, (s + 1) * one)), Tabulate(CHI, routh_table([one, one]), "s"))
     refused(Define(said(CHI, 7)), Tabulate(CHI, routh_table(whole([7])), "s"))
     checked(define, replace(table, sentence=Sentence("routh_table", (("polynomial", CHI),))))
     refused(define, replace(table, sentence=Sentence("routh_table", (("polynomial", Letter("phi")),))))
@@ -518,6 +536,24 @@ def test_a_page_shows_a_table_and_what_it_says() -> None:
     assert (step.table, step.variable) == (table, "s")
     assert [finding.key for finding in step.findings] == ["routh_zero_row", "routh_divides", "routh_changes_axis"]
     page.tabulate(chi, tell=False)
+    silent = page.steps[-1]
+    assert isinstance(silent, Tabulate)
+    assert silent.findings == ()
+    page.derivation().check()
+
+
+def test_a_page_in_discrete_time_names_the_variable() -> None:
+    plant = StateSpace("[0 1; 0 -h]", "[0; 1]", "[1 0]", dt=1, symbols={"epsilon": "real", "h": "real"})
+    page = Page(plant)
+    z = Scalar.symbol("z")
+    chi, mapped = (
+        page.define("chi", z**2 + Scalar.symbol("h")),
+        page.define("phi", 3 * w**3 + Scalar.symbol("h") * w + 1),
+    )
+    found = page.tabulate(chi), page.tabulate(mapped, "w")
+    assert [len(table.rows) for table in found] == [3, 4]
+    assert found[1].epsilon == "epsilon_1"
+    assert [step.variable for step in page.steps if isinstance(step, Tabulate)] == ["z", "w"]
     page.derivation().check()
 
 

@@ -131,6 +131,7 @@ WIDE = [
     (s**2 + Scalar.symbol("b1") ** 2 + Scalar.symbol("kappa")) ** 2 * polynomial(1, "h1", "h2", "h3", "h4"),
     (polynomial(1, "m", "n")) ** 3 * polynomial("k", 1, "l"),
     polynomial(*range(1, 42)),
+    s**4 + s**2 * sum((Scalar.symbol(f"h{k}") * k for k in range(1, 15)), Scalar.of(1)) + Scalar.symbol("k"),
     polynomial(*(int(f"{k}" * 30) for k in range(1, 10))),
 ]
 

@@ -150,7 +150,7 @@ def _follows(
         )
     agree = [entry * factor == product for entry, product in zip(row.entries, wanted, strict=True)]
     if row.origin == "epsilon":
-        is_epsilon = bool(epsilon) and row.entries[0] == Scalar.symbol(epsilon)
+        is_epsilon = row.entries[0] == Scalar.symbol(epsilon)
         return is_epsilon and wanted[0].is_zero and any(wanted) and all(agree[1:])
     return row.origin == rule and all(agree)
 

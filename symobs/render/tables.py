@@ -60,9 +60,8 @@ def fitted(
         return sum(widest) + (columns - 1) * gap
 
     plain = _written(block.table, {}, printer)
-    for remarks in (longest, shortest):
-        if width(plain) <= room(remarks):
-            return Fitted(heads, plain, remarks, (), fits=True)
+    if width(plain) <= room(longest):
+        return Fitted(heads, plain, longest, (), fits=True)
     bound = room(shortest)
     names = _named(block.table, bound, printer)
     while bound > _NARROWEST and width(_written(block.table, names, printer)) > room(shortest):
