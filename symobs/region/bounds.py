@@ -20,17 +20,20 @@ _HELPED_UP_TO = 60
 
 
 def solved(
-    positive: Sequence[Scalar], signs: Mapping[str, str], parameters: Sequence[str] = ()
+    positive: Sequence[Scalar],
+    signs: Mapping[str, str],
+    parameters: Sequence[str] = (),
+    beside: Sequence[Scalar] = (),
 ) -> list[tuple[Scalar, str, Scalar]]:
     """Return each condition > 0 as (left, operator, right), solved for a parameter where one stands in it linearly.
 
-    Its coefficient has a certain sign by the declared signs, or where the other conditions hold.
+    Its coefficient has a certain sign by the declared signs, or where `beside` and the other conditions are positive.
     """
     found = {value: as_inequality(value, signs, parameters) for value in positive}
     wanted = [value for value in positive if not _is_solved(found[value], signs, parameters)]
     plain = list(positive)  # what is said without the help of a condition that is itself said with help
     for value in wanted:
-        others = [other for other in plain if other != value]
+        others = [*beside, *(other for other in plain if other != value)]
         helped = _with_help(value, signs, parameters, others)
         if helped is not None:
             found[value] = helped

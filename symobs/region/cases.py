@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of, sign_where
+from symobs.region.decide import decide_empty
 from symobs.region.simplify import Simplified, simplify
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ def _cases(case: SignCase, parameters: Sequence[str], depth: int, *, ask: bool) 
     if expression is None:
         return [case]
     inside = [_where(case, expression, operator, ask=ask) for operator in _possible(expression, case.signs)]
-    return [found for one in inside for found in _cases(one, parameters, depth - 1, ask=ask)]
+    possible = [one for one in inside if decide_empty(one.assumed, one.signs, ask=False).verdict != "yes"]
+    return [found for one in possible for found in _cases(one, parameters, depth - 1, ask=ask)]
 
 
 def _uncertain(case: SignCase, parameters: Sequence[str]) -> Scalar | None:

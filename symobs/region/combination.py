@@ -1,15 +1,15 @@
 """Positive combinations by linear programming in exact fractions.
 
-Wanted are m, c and fₖ, sums of monomials of certain sign with coefficients ≥ 0, such that
-m · goal = c + Σ fₖ · (product of one or two known values): linear equations, one for each monomial, in coefficients
-that must not be negative.  With m = 0 the known values contradict each other.
+Wanted are m, c and fₖ, sums of monomials of certain sign with coefficients ≥ 0, and squares (u ± v)² of monomials,
+such that m · goal = c + Σ squares + Σ fₖ · (product of one or two known values): linear equations, one for each
+monomial, in coefficients that must not be negative.  With m = 0 the known values contradict each other.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations_with_replacement, islice
+from itertools import combinations, combinations_with_replacement, islice
 from math import gcd
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -31,21 +31,26 @@ _ROWS, _COLUMNS, _PIVOTS = 60, 160, 40
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """multiplier · goal = certain + Σ factor · (the known values at these places)."""
+    """multiplier · goal = certain + Σ squares + Σ factor · (the known values at these places)."""
 
     multiplier: Scalar
     certain: Scalar
+    squares: tuple[Scalar, ...]
     multiples: tuple[tuple[Scalar, tuple[int, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Column:
-    """One unknown coefficient: of a monomial times the goal (None), or times known values (none: by itself)."""
+    """One unknown coefficient: of a monomial times the goal (None), or times known values (none: by itself).
+
+    Of a square, the monomial is one of its two and `root` the sum or difference of both.
+    """
 
     monomial: Monomial
     places: tuple[int, ...] | None
     terms: Terms
     strict: bool
+    root: Scalar | None = None
 
 
 def combination(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Combination | None:
@@ -68,19 +73,22 @@ _RIGHT = -1
 
 
 def _read(columns: Sequence[_Column], solution: Mapping[int, Fraction]) -> Combination:
-    multiplier, certain, multiples = ZERO, ZERO, []
+    multiplier, certain = ZERO, ZERO
+    squares, multiples = list[Scalar](), list[tuple[Scalar, tuple[int, ...]]]()
     for place, amount in solution.items():
         if not amount:
             continue
         column = columns[place]
         value = Scalar.of(amount) * _scalar(column.monomial)
-        if column.places is None:
+        if column.root is not None:
+            squares.append(Scalar.of(amount) * column.root**2)
+        elif column.places is None:
             multiplier = multiplier + value
         elif column.places:
             multiples.append((value, column.places))
         else:
             certain = certain + value
-    return Combination(multiplier, certain, tuple(multiples))
+    return Combination(multiplier, certain, tuple(squares), tuple(multiples))
 
 
 def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Iterable[_Column]:
@@ -96,6 +104,7 @@ def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) ->
         targets.update(moved)
         yield _Column(monomial, None, moved, strict=False)
     targets.update(m for places, terms in products if len(places) == 1 for m in terms)
+    targets.add(NOTHING)
     for places, terms in products:
         for monomial in sorted(_quotients(targets, terms)):
             sign = _sign(monomial, signs)
@@ -105,6 +114,28 @@ def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) ->
         sign = _sign(monomial, signs)
         if sign in {"positive", "nonnegative"}:
             yield _Column(monomial, (), {monomial: 1}, strict=sign == "positive")
+    yield from _squares(targets, signs)
+
+
+def _squares(targets: set[Monomial], signs: Mapping[str, str]) -> Iterable[_Column]:
+    """Return (u ± v)² for monomials u, v of which the product may have either sign."""
+    roots = sorted({_half(monomial) for monomial in targets} - {None}, key=str)
+    for first, second in combinations([root for root in roots if root is not None], 2):
+        if _sign(_product(first, second), signs) == "real" and _product(first, second) in targets:
+            for sign in (1, -1):
+                root = _scalar(first) + sign * _scalar(second)
+                terms = _terms(root**2)
+                yield _Column(first, (), terms, strict=False, root=root)
+
+
+def _half(monomial: Monomial) -> Monomial | None:
+    """Return the monomial whose square this is."""
+    return tuple((name, e // 2) for name, e in monomial) if all(e % 2 == 0 for _, e in monomial) else None
+
+
+def _product(left: Monomial, right: Monomial) -> Monomial:
+    (found,) = _times({left: 1}, right, 1)
+    return found
 
 
 def _certain_part(monomial: Monomial, signs: Mapping[str, str]) -> Monomial:

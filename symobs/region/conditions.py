@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar
 from symobs.region.decide import equivalence_of
+from symobs.region.parts import cleared
 from symobs.region.prover import prove
 from symobs.region.simplify import Simplified, simplify
 from symobs.stability import as_inequality, bilinear, lienard_chipart
@@ -79,10 +80,21 @@ def is_stable_where(
         return False
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
     if proof is not None:
-        raw, kept = set(proof.raw), set(proof.kept)
-        return kept == set(said) and any(raw == set(found) for found in lists) and proof.holds(signs)
-    proofs = (equivalence_of(raw, said, signs) for raw in lists)
-    return any(found is not None and found.holds(signs) for found in proofs)
+        return set(proof.kept) == set(said) and _is_checked(proof, lists, signs)
+    found = stable_where(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
+    if _is_equivalent(found.positive, said, signs) and _is_checked(found.equivalence, lists, signs):
+        return True
+    return any(_is_equivalent(raw, said, signs) for raw in lists)
+
+
+def _is_checked(proof: Equivalence, lists: Sequence[Sequence[Scalar]], signs: Mapping[str, str]) -> bool:
+    """Tell whether a proof is about one of the lists, and holds."""
+    return any(set(proof.raw) == set(map(cleared, found)) for found in lists) and proof.holds(signs)
+
+
+def _is_equivalent(first: Sequence[Scalar], second: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
+    found = equivalence_of(first, second, signs)
+    return found is not None and found.holds(signs)
 
 
 def stability_conditions(

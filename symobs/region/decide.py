@@ -70,23 +70,30 @@ def implies(conditions: Sequence[Scalar], other: Scalar, signs: Mapping[str, str
 def same_region(
     first: Sequence[Scalar], second: Sequence[Scalar], signs: Mapping[str, str], *, ask: bool = True
 ) -> Decision:
-    """Tell whether two lists of conditions > 0 hold at the same points; a point of a no lies in one region only."""
+    """Tell whether two lists of conditions > 0 hold at the same points; a point of a no lies in one region only.
+
+    `equivalence_of` gives the proof of a yes.
+    """
     found = [implies(first, other, signs, ask=ask) for other in second]
     found += [implies(second, other, signs, ask=ask) for other in first]
     for verdict in ("no", "undecided"):
         for decision in found:
             if decision.verdict == verdict:
                 return decision
-    by = "qepcad" if any(decision.by == "qepcad" for decision in found) else "proof"
-    return Decision("yes", steps=tuple(step for decision in found for step in decision.steps), by=by)
+    return Decision("yes", by="qepcad" if any(decision.by == "qepcad" for decision in found) else "proof")
 
 
-def equivalence_of(raw: Sequence[Scalar], said: Sequence[Scalar], signs: Mapping[str, str]) -> Equivalence | None:
-    """Return the proof that two lists of conditions hold at the same points, without z3; None where none is found."""
+def equivalence_of(
+    raw: Sequence[Scalar], said: Sequence[Scalar], signs: Mapping[str, str], *, ask: bool = False
+) -> Equivalence | None:
+    """Return the proof that two lists of conditions hold at the same points; None where none is found.
+
+    Rational functions stand in it as numerator times denominator.
+    """
     raw, said = tuple(map(cleared, raw)), tuple(map(cleared, said))
-    forward = [implies(said, other, signs, ask=False) for other in raw]
-    backward = [implies(raw, other, signs, ask=False) for other in said]
-    if any(decision.verdict != "yes" for decision in (*forward, *backward)):
+    forward = [implies(said, other, signs, ask=ask) for other in raw]
+    backward = [implies(raw, other, signs, ask=ask) for other in said]
+    if any(decision.verdict != "yes" or decision.by == "qepcad" for decision in (*forward, *backward)):
         return None
     there, back = (tuple(step for decision in found for step in decision.steps) for found in (forward, backward))
     return Equivalence(raw, said, there, back)

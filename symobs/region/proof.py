@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs.conditions import sign_of
+from symobs.conditions import never_zero, sign_of
 from symobs.exact import Scalar, product_of
 from symobs.region.external import none_by_z3
 
@@ -93,7 +93,7 @@ def _follows(step: Step, known: set[Scalar], signs: Mapping[str, str]) -> bool:
             terms = (*multiplier, *total)
             if not all(known.issuperset(factors) for _, factors in terms):
                 return False
-            if not all(sign_of(c, signs) in {"positive", "nonnegative", "zero"} for c, _ in terms):
+            if not all(_is_never_negative(c, signs) for c, _ in terms):
                 return False
             return any(sign_of(c, signs) == "positive" for c, _ in total) and value * _sum(multiplier) == _sum(total)
         case Opposite(value, multiple, steps):
@@ -103,6 +103,12 @@ def _follows(step: Step, known: set[Scalar], signs: Mapping[str, str]) -> bool:
             return known.issuperset(given) and none_by_z3((*given,), signs, not_above=value)
         case _:
             assert_never(step)
+
+
+def _is_never_negative(coefficient: Scalar, signs: Mapping[str, str]) -> bool:
+    """Tell whether a coefficient is defined everywhere, and nowhere negative."""
+    weak = {"positive", "nonnegative", "zero"}
+    return sign_of(coefficient, signs) in weak and never_zero(coefficient.denominator, signs)
 
 
 def _sum(products: Sequence[Product]) -> Scalar:

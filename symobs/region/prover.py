@@ -266,7 +266,7 @@ def _by_combination(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...]
     found = combination(parts[0], [known.polynomial for known in view.open], view.signs)
     if found is None:
         return None
-    total = list(view.products(found.certain))
+    total = [*view.products(found.certain), *((square.substitute(view.stands_for), ()) for square in found.squares)]
     for factor, places in found.multiples:
         values = tuple(view.open[place].value for place in places)
         total += [(c, (*values, *factors)) for c, factors in view.products(factor)]
