@@ -48,8 +48,8 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
     where = tuple((value, "!=" if operator == "!=" else ">") for value, operator in said)
     if region is not None and holds_exactly(region, where):
         return True
-    values = tuple(value**2 if operator == "!=" else value for value, operator in said)
-    return holds_exactly_where(name, polynomial, values, environment, discrete)
+    positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
+    return holds_exactly_where(name, polynomial, positive, environment, discrete)
 
 
 def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:

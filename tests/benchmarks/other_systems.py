@@ -5,8 +5,8 @@ What giac and gp are given stands in `giac/*.giac` and `pari/*.gp`, one file for
 
 from __future__ import annotations
 
-import re
 import os
+import re
 import resource
 import shutil
 import signal
