@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import reduce
-from math import gcd
+from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
 from flint import ctx, fmpz_poly
@@ -14,10 +14,8 @@ from symobs.exact.real import RealNumber, real_roots
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exact.scalar import Scalar
 
-
-def all_to_the_left(coefficients: Sequence[Scalar]) -> bool:
+def all_to_the_left(coefficients: Sequence[Fraction]) -> bool:
     """Tell it by Routh's table without fractions; the leading coefficient must not be 0 for the answer to be yes."""
     whole = integers(coefficients)
     if not whole[0]:
@@ -36,7 +34,7 @@ def all_to_the_left(coefficients: Sequence[Scalar]) -> bool:
     return True
 
 
-def sides(coefficients: Sequence[Scalar]) -> tuple[int, int, int]:
+def sides(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:
     """Return how many roots lie to the left of the imaginary axis, on it and to the right, by isolating them.
 
     Those on the axis, and pairs r, −r, are roots of the greatest common divisor of p(s) and p(−s), which is sᵏ q(s²):
@@ -77,14 +75,13 @@ def _roots(polynomial: fmpz_poly, bits: int) -> list[Any]:
         ctx.prec = before
 
 
-def integers(coefficients: Sequence[Scalar]) -> list[int]:
+def integers(coefficients: Sequence[Fraction]) -> list[int]:
     """Return rational coefficients times a positive number that makes them whole."""
-    fractions = [c.fraction() for c in coefficients]
-    below = reduce(lambda left, right: left * right // gcd(left, right), (f.denominator for f in fractions), 1)
-    return [int(f * below) for f in fractions]
+    below = lcm(*(c.denominator for c in coefficients))
+    return [int(c * below) for c in coefficients]
 
 
-def complex_roots(coefficients: Sequence[Scalar]) -> list[tuple[Fraction, Fraction]]:
+def complex_roots(coefficients: Sequence[Fraction]) -> list[tuple[Fraction, Fraction]]:
     """Return all roots with multiplicity as rational points near them, real and imaginary part."""
     found = []
     for root, multiplicity in _roots(fmpz_poly(list(reversed(integers(coefficients)))), 64):

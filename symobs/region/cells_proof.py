@@ -8,6 +8,7 @@ inequalities against the cells of a division in which nothing listed changes its
 from __future__ import annotations
 
 import random
+from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from symobs.region.critical import irreducible
 from symobs.region.description import is_regular, meetings_of
 from symobs.region.inequalities import is_exact
 from symobs.region.plane import PlaneRegion
+from symobs.region.points import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,14 +45,14 @@ def are_critical(critical: Critical) -> bool:
     generator = random.Random(f"{critical.polynomial} {critical.boundary}")  # noqa: S311 - repeatable by design
     order = critical.order
     for _ in range(_POINTS):
-        point = {name: Scalar.of(generator.getrandbits(61)) for name in critical.parameters}
+        point = {name: Fraction(generator.getrandbits(61)) for name in critical.parameters}
         a = critical.at(point)
         ratios = {_ratio(critical, a, point, Scalar.of(generator.getrandbits(61))) for _ in range(2)}
         if len(ratios) != 1 or ratios.pop().is_zero:
             return False
         rows = [[a[2 * j - i] if 0 <= 2 * j - i <= order else 0 for j in range(1, order)] for i in range(1, order)]
-        last = Matrix.of(rows).determinant() if rows else Scalar.of(1)
-        found = [v.substitute(point) for v in critical.values]
+        last = Matrix.of(rows).determinant().fraction() if rows else Fraction(1)
+        found = [value_at(v, point) for v in critical.values]
         if set(found) != {a[0], a[-1], *([last] if order > 1 else [])}:
             return False
     return all(_is_product(value, critical.factors) for value in (*critical.values, critical.denominator))
@@ -64,13 +66,14 @@ def _is_product(value: Scalar, factors: Sequence[Scalar]) -> bool:
     return value.is_constant
 
 
-def _ratio(critical: Critical, a: Sequence[Scalar], point: Mapping[str, Scalar], w: Scalar) -> Scalar:
+def _ratio(critical: Critical, a: Sequence[Fraction], point: Mapping[str, Fraction], w: Scalar) -> Scalar:
     """Return Σ aₖ wⁿ⁻ᵏ divided by the polynomial at the number that w stands for, times (w − 1)ⁿ in discrete time."""
     boundary, value = critical.boundary, Scalar.of(0)
     for coefficient in a:
         value = value * w + coefficient
     where = (w + 1) / (w - 1) * boundary.radius if boundary.discrete else w - boundary.margin
-    polynomial = critical.polynomial.substitute({**point, boundary.variable: where})
+    there = {name: Scalar.of(value) for name, value in point.items()}
+    polynomial = critical.polynomial.substitute({**there, boundary.variable: where})
     return value / (polynomial * (w - 1) ** critical.order if boundary.discrete else polynomial)
 
 

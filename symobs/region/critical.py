@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.half_plane import all_to_the_left
+from symobs.region.points import value_at
 from symobs.stability import bilinear, hurwitz_matrix, lienard_chipart
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from fractions import Fraction
 
 
 @dataclass(frozen=True)
@@ -114,18 +116,18 @@ class Critical:
         signed = [Scalar.symbol(name) for name in self.parameters if self.signs.get(name, "real") != "real"]
         return tuple(dict.fromkeys([*self.proper, *signed]))
 
-    def allows(self, point: Mapping[str, Scalar]) -> bool:
+    def allows(self, point: Mapping[str, Fraction]) -> bool:
         """Tell whether the declared signs allow a rational point off the critical set."""
         up, down = {"positive", "nonnegative"}, {"negative", "nonpositive"}
         return all(
-            value.fraction() < 0 if self.signs.get(name) in down else value.fraction() > 0
+            value < 0 if self.signs.get(name) in down else value > 0
             for name, value in point.items()
             if self.signs.get(name) in up | down
         )
 
-    def is_stable(self, point: Mapping[str, Scalar]) -> bool:
+    def is_stable(self, point: Mapping[str, Fraction]) -> bool:
         """Tell whether the polynomial is stable at a rational point, by Routh's table; never where it has no meaning."""
-        return not self.denominator.substitute(point).is_zero and all_to_the_left(self.at(point))
+        return value_at(self.denominator, point) != 0 and all_to_the_left(self.at(point))
 
     @cached_property
     def conditions(self) -> tuple[Scalar, ...]:
@@ -134,9 +136,9 @@ class Critical:
         found = [*lienard_chipart([a[0] * c for c in a]), *lienard_chipart([a[0] * c for c in a], others=True)]
         return tuple(dict.fromkeys(found))
 
-    def at(self, point: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
+    def at(self, point: Mapping[str, Fraction]) -> tuple[Fraction, ...]:
         """Return the coefficients at a point."""
-        return tuple(c.substitute(point) for c in self.coefficients)
+        return tuple(value_at(c, point) for c in self.coefficients)
 
 
 def irreducible(values: Iterable[Scalar]) -> tuple[Scalar, ...]:

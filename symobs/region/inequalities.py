@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from symobs.exact import Scalar
 from symobs.region.critical import irreducible
+from symobs.region.points import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from fractions import Fraction
 
     from symobs.region.critical import Critical
 
@@ -26,20 +28,17 @@ class Bound(NamedTuple):
     polynomial: Scalar
     operator: str = ">"
 
-    def holds(self, value: Scalar) -> bool:
-        """Tell whether it holds where the polynomial has this rational value."""
-        return value.fraction() > 0 if self.operator == ">" else not value.is_zero
-
-    def at(self, point: dict[str, Scalar]) -> bool:
+    def at(self, point: dict[str, Fraction]) -> bool:
         """Tell whether it holds at a rational point."""
-        return self.holds(self.polynomial.substitute(point))
+        value = value_at(self.polynomial, point)
+        return value > 0 if self.operator == ">" else value != 0
 
 
 @dataclass(frozen=True)
 class Sample:
     """A rational point of an open cell, and whether the polynomial is stable in the cell."""
 
-    point: dict[str, Scalar]
+    point: dict[str, Fraction]
     stable: bool
 
 
@@ -99,7 +98,7 @@ def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[
     """Return those polynomials of one sign at all stable samples, turned so that it is positive."""
     found = []
     for polynomial in polynomials:
-        signs = {polynomial.substitute(sample.point).fraction() > 0 for sample in samples if sample.stable}
+        signs = {value_at(polynomial, sample.point) > 0 for sample in samples if sample.stable}
         if len(signs) == 1:
             found.append(Bound(polynomial if signs.pop() else -polynomial))
     return found

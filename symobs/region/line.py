@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
 from symobs.exact.real import rational_between, roots_of_scalar
 from symobs.region.inequalities import Sample
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from symobs.exact import RealNumber
+    from symobs.exact import RealNumber, Scalar
     from symobs.region.critical import Critical
 
 
@@ -51,7 +50,7 @@ class LineRegion:
         found = []
         for low, high in itertools.pairwise(ends):
             sample = rational_between(low, high)
-            point = {self.name: Scalar.of(sample)}
+            point = {self.name: sample}
             if self.critical.allows(point):
                 found.append(Piece(low, high, sample, self.critical.is_stable(point)))
         return tuple(found)
@@ -72,7 +71,7 @@ class LineRegion:
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
         """Return a point of every open interval, none of the further polynomials changing its sign inside one."""
         pieces = self._pieces(self.divided(further)) if further else self.pieces
-        return [Sample({self.name: Scalar.of(piece.sample)}, piece.stable) for piece in pieces]
+        return [Sample({self.name: piece.sample}, piece.stable) for piece in pieces]
 
     def divided(self, further: Sequence[Scalar]) -> tuple[RealNumber, ...]:
         """Return the critical points and the roots of further irreducible polynomials, ascending."""

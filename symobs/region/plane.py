@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
 from symobs.exact.fibre import Fibre, curves_between, fibre, point_between
 from symobs.exact.plane import Branch, Plane, Slab, Wall
 from symobs.region.inequalities import Sample
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.exact import RealNumber
+    from symobs.exact import RealNumber, Scalar
     from symobs.region.critical import Critical
 
 #: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
@@ -207,10 +206,18 @@ class PlaneRegion:
 
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
         """Return a point of every open cell, none of the further polynomials changing its sign inside one."""
-        if self.divided(further) is self.plane:
+        plane = self.divided(further)
+        if plane is self.plane:
             return [Sample(self._point(*cell.sample), cell.stable) for cell in self.cells if cell.allowed]
-        points = [self._point(slab.x, y) for slab in self.divided(further).slabs for y in slab.samples]
-        return [Sample(point, self.critical.is_stable(point)) for point in points if self.critical.allows(point)]
+        if plane not in self._sampled:
+            points = [self._point(slab.x, y) for slab in plane.slabs for y in slab.samples]
+            allowed = [point for point in points if self.critical.allows(point)]
+            self._sampled[plane] = [Sample(point, self.critical.is_stable(point)) for point in allowed]
+        return self._sampled[plane]
+
+    @cached_property
+    def _sampled(self) -> dict[Plane, list[Sample]]:
+        return {}
 
     def divided(self, further: Sequence[Scalar]) -> Plane:
         """Return the plane divided by further irreducible polynomials besides."""
@@ -226,8 +233,8 @@ class PlaneRegion:
     def _finer(self) -> dict[frozenset[Scalar], Plane]:
         return {}
 
-    def _point(self, x: Fraction, y: Fraction) -> dict[str, Scalar]:
-        return {self.names[0]: Scalar.of(x), self.names[1]: Scalar.of(y)}
+    def _point(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        return {self.names[0]: x, self.names[1]: y}
 
     def surrounded(self) -> tuple[Scalar, ...]:
         """Return critical factors that vanish on every curve with the region on both sides."""
@@ -267,6 +274,7 @@ def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
     return list(pairwise(values))
 
 
+@lru_cache(maxsize=64)
 def plane_region(critical: Critical, names: tuple[str, str]) -> PlaneRegion:
     """Return the region, its stacks standing over that name in whose place the other has the lower degree."""
 

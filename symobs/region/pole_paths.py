@@ -80,7 +80,7 @@ def _nodes(polynomial: Scalar, variable: str, name: str, low: Fraction, high: Fr
 
 def _roots(polynomial: Scalar, variable: str, name: str, value: Fraction) -> list[Place]:
     there = polynomial.substitute({name: Scalar.of(value)})
-    return sorted(complex_roots(there.coefficients(variable)))
+    return sorted(complex_roots([c.fraction() for c in there.coefficients(variable)]))
 
 
 def _paired(before: Sequence[Place], after: Sequence[Place]) -> list[Place]:
