@@ -107,12 +107,16 @@ class Polynomial:
 
     def __str__(self) -> str:
         """Write it as QEPCAD reads it: `3/4 h1^2 h2 - 1`."""
+        return self.text(" ")
+
+    def text(self, times: str) -> str:
+        """Write it with this sign between factors."""
         text = ""
         for monomial, c in self.terms.items():
             factors = [name if power == 1 else f"{name}^{power}" for name, power in monomial]
             size = [] if abs(c) == 1 and factors else [str(abs(c))]
-            text += (" - " if c < 0 else " + ") + " ".join([*size, *factors])
-        return text.removeprefix(" + ").strip() or "0"
+            text += (" - " if c < 0 else " + ") + times.join([*size, *factors])
+        return text.removeprefix(" + ").replace(" - ", "-", text.startswith(" - ")) or "0"
 
 
 def _polynomial(value: Polynomial | Fraction | int) -> Polynomial:

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import re
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.region_algebra import All, Membership
-from tests.region_roots import UndefinedError, compare
-from tests.region_texts import Call, expression, rational_formula, statement
+from tests.region_algebra import All, Membership, sign_holds
+from tests.region_roots import UndefinedError, compare, sign
+from tests.region_texts import Binary, Relation, UnreadableError, bound, rational_formula, statement
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from tests.region_algebra import Formula
     from tests.region_problem import Problem
     from tests.region_texts import Node
 
@@ -69,28 +72,9 @@ def _point(sample: Mapping[str, Any]) -> dict[str, Fraction]:
 
 def _cell(cell: Mapping[str, Any], parameters: Sequence[str]) -> Cell:
     bounds = [(name, str(cell[name][0]), str(cell[name][1])) for name in parameters]
-    if any(_names(text) for text in bounds[0][1:]):
+    if len(parameters) == 2 and re.search(rf"\b{parameters[1]}\b", " ".join(bounds[0][1:])):
         bounds.reverse()
     return Cell(tuple(bounds), cell["stable"], _point(cell["sample"]), cell.get("component"))
-
-
-def _names(text: str) -> bool:
-    """Tell whether a bound depends on a parameter: the generator of a CRootOf is none."""
-    node = expression(text) if text not in {"oo", "-oo"} else None
-    return node is not None and not (isinstance(node, Call) and node.function == "CRootOf") and bool(_in(node))
-
-
-def _in(node: Node) -> set[str]:
-    match node:
-        case Call("CRootOf"):
-            return set()
-        case Call(_, arguments):
-            return set().union(*(_in(argument) for argument in arguments))
-    found: set[str] = set()
-    for part in ("left", "right", "base"):
-        if hasattr(node, part):
-            found |= _in(getattr(node, part))
-    return found | ({node.name} if hasattr(node, "name") else set())
 
 
 def ask(problem: Problem) -> Answer:
@@ -110,21 +94,39 @@ def call(problem: Problem) -> Any:
 
 def holds(relations: Sequence[str], names: Sequence[str]) -> Callable[[Sequence[Fraction]], bool]:
     """Return the test whether a conjunction holds at a point."""
-    return Membership(All(tuple(rational_formula(statement(text)) for text in relations)), names)
+    rational: list[Formula] = []
+    others: list[Relation] = []
+    for found in map(statement, relations):
+        try:
+            rational.append(rational_formula(found))
+        except UnreadableError:
+            if not isinstance(found, Relation):
+                raise
+            others.append(found)
+    member = Membership(All(tuple(rational)), names)
+
+    def inside(point: Sequence[Fraction]) -> bool:
+        return member(point) and all(_relation_holds(r, dict(zip(names, point, strict=True))) for r in others)
+
+    return inside
+
+
+def _relation_holds(relation: Relation, point: Mapping[str, Fraction]) -> bool:
+    """Tell whether a relation with roots holds; where a part is undefined it does not."""
+    try:
+        return sign_holds(sign(Binary("-", relation.left, relation.right), point), relation.op)
+    except UndefinedError:
+        return False
 
 
 def in_intervals(intervals: Sequence[tuple[str, str]]) -> Callable[[Fraction], bool]:
     """Return the test whether a number lies in a union of open intervals."""
-    read = [(_bound(low), _bound(high)) for low, high in intervals]
+    read = [(bound(low, ()), bound(high, ())) for low, high in intervals]
 
     def inside(x: Fraction) -> bool:
         return any(_above(x, low, {}) and _below(x, high, {}) for low, high in read)
 
     return inside
-
-
-def _bound(text: str) -> Node | None:
-    return None if text in {"oo", "-oo"} else expression(text)
 
 
 def _above(x: Fraction, low: Node | None, point: Mapping[str, Fraction]) -> bool:
@@ -138,9 +140,13 @@ def _below(x: Fraction, high: Node | None, point: Mapping[str, Fraction]) -> boo
 def in_cells(cells: Sequence[Cell]) -> Callable[[Mapping[str, Fraction]], bool | None]:
     """Return the test which says "stable" of the cell a point lies in, None on the lines between cells.
 
-    Raises where two cells hold the point.
+    Raises where two cells hold the point.  A cell whose bounds are words is not looked at.
     """
-    read = [[(name, _bound(low), _bound(high)) for name, low, high in cell.bounds] for cell in cells]
+    readable: list[tuple[Cell, list[tuple[str, Node | None, Node | None]]]] = []
+    for cell in cells:
+        with suppress(UnreadableError):
+            names = [name for name, _, _ in cell.bounds]
+            readable.append((cell, [(n, bound(low, names), bound(high, names)) for n, low, high in cell.bounds]))
 
     def inside(bounds: Sequence[tuple[str, Node | None, Node | None]], point: Mapping[str, Fraction]) -> bool:
         known: dict[str, Fraction] = {}
@@ -154,7 +160,7 @@ def in_cells(cells: Sequence[Cell]) -> Callable[[Mapping[str, Fraction]], bool |
         return True
 
     def verdict(point: Mapping[str, Fraction]) -> bool | None:
-        found = [cell for cell, bounds in zip(cells, read, strict=True) if inside(bounds, point)]
+        found = [cell for cell, bounds in readable if inside(bounds, point)]
         if len(found) > 1:
             raise AssertionError(f"{dict(point)} lies in {len(found)} cells: {found}")
         return found[0].stable if found else None

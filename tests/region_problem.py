@@ -93,7 +93,7 @@ def characteristic(A: Sequence[Sequence[str]], L: Sequence[str], C: Sequence[str
                 odd = sum(column > j for column in columns) % 2
                 larger[key] = larger.get(key, Polynomial.of(0)) + (-term if odd else term)
         total = larger
-    return str(total[tuple(range(order))]).replace(" ", "*").replace("*-*", " - ").replace("*+*", " + ")
+    return total[tuple(range(order))].text("*")
 
 
 def in_powers(*coefficients: str, variable: str = "s") -> str:

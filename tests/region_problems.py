@@ -315,7 +315,7 @@ OBSERVERS = [
 ONE_PARAMETER = [
     Problem(
         "three_intervals",
-        "s^2 + s + h (h^2 - 1) (h^2 - 4)",
+        "s^2 + s + h*(h^2 - 1)*(h^2 - 4)",
         ("h",),
         "-2 < h < -1 \\/ 0 < h < 1 \\/ h > 2",
         3,

@@ -111,7 +111,8 @@ def _same(problem: Problem, translation: Translation, ours: Formula, truth: Form
 def cell_right(cell: Cell, holes: Sequence[Mapping[str, str]], truth: Formula, limit: float = 20) -> Proof:
     """Prove that all of a cell is stable but for single points left out, or that none of it is."""
     translation = Translation()
-    inside: list[Formula] = [between(translation, name, low, high) for name, low, high in cell.bounds]
+    names = [name for name, _, _ in cell.bounds]
+    inside: list[Formula] = [between(translation, name, low, high, names) for name, low, high in cell.bounds]
     if cell.stable:
         for hole in holes:
             equal = (translation.relation(Name(name), "=", expression(str(value))) for name, value in hole.items())

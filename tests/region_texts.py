@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from tests.region_algebra import FALSE, TRUE, All, Atom, Not, Polynomial, Some
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from tests.region_algebra import Formula
 
@@ -239,6 +239,31 @@ def expression(text: str) -> Node:
     if isinstance(found, (Relation, AllOf, SomeOf, NotOf)):
         raise UnreadableError(text)
     return found
+
+
+def names_in(node: Node) -> set[str]:
+    """Return the variables of an expression; those of a CRootOf, of which one is its own, are not among them."""
+    match node:
+        case Number() | Call("CRootOf"):
+            return set()
+        case Name(name):
+            return {name}
+        case Binary(_, left, right):
+            return names_in(left) | names_in(right)
+        case Power(base):
+            return names_in(base)
+        case Call(_, arguments):
+            return set().union(*map(names_in, arguments))
+
+
+def bound(text: str, names: Collection[str]) -> Node | None:
+    """Read an end of an interval in these variables; None for an infinity."""
+    if text in {"oo", "-oo"}:
+        return None
+    node = expression(text)
+    if not names_in(node) <= {*names}:
+        raise UnreadableError(f"{text!r} stands for itself")
+    return node
 
 
 def statement(text: str) -> Statement:

@@ -24,14 +24,14 @@ from tests.region_texts import (
     Relation,
     SomeOf,
     UnreadableError,
+    bound,
     combined,
-    expression,
     fraction,
     statement,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from tests.region_algebra import Formula
     from tests.region_texts import Node, Statement
@@ -138,15 +138,10 @@ class Translation:
         return self._known[node][0]
 
 
-def between(translation: Translation, name: str, low: str, high: str, *, closed: bool = False) -> Formula:
-    """Return low < name < high, or low ≤ name ≤ high; "-oo" and "oo" bound nothing."""
-    more, less = (">=", "<=") if closed else (">", "<")
-    parts: list[Formula] = []
-    if low != "-oo":
-        parts.append(translation.relation(Name(name), more, expression(low)))
-    if high != "oo":
-        parts.append(translation.relation(Name(name), less, expression(high)))
-    return All(tuple(parts))
+def between(translation: Translation, name: str, low: str, high: str, names: Collection[str] = ()) -> Formula:
+    """Return low < name < high, the ends in these variables; "-oo" and "oo" bound nothing."""
+    ends = ((">", bound(low, names)), ("<", bound(high, names)))
+    return All(tuple(translation.relation(Name(name), op, end) for op, end in ends if end is not None))
 
 
 def conjunction(translation: Translation, relations: Iterable[str]) -> Formula:

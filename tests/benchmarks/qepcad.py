@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tests.region_problem import Problem
 
 _ANSWER = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\s*(?:=====|Before Solution)", re.DOTALL)
-_REPEATED = (8, 100)  # the starts of two processes differ by up to 20 ms
+_REPEATED = (8, 100)  # more where it is quick: two starts differ by some milliseconds
 _LONG = 0.05
 _CELLS = 20_000_000  # of saclib, where the default does not suffice: reserving them takes 0.1 s
 
@@ -119,14 +119,14 @@ def ask(question: Question, limit: float = 60) -> Reply | None:
 
 
 def seconds(question: Question, limit: float = 60) -> float | None:
-    """Return the wall time of a question alone: many in one process less one, divided."""
+    """Return the processor time of a question alone: many in one process less one, divided."""
     one = _run(question, limit)
     found = None
     for times in _REPEATED:
         many = _run(question, limit, times + 1)
         if one is None or many is None or len(_ANSWER.findall(many.output)) != times + 1:
             break
-        found = max(many.wall - one.wall, 0.0) / times
+        found = max(many.seconds - one.seconds, 0.0) / times
         if found > _LONG:
             break
     return found

@@ -1,9 +1,11 @@
 """Regions of stability beside QEPCAD: `python -m tests.benchmarks.regions` prints a line for each problem.
 
 symobs is timed in process from the text of the polynomial to the JSON of the checked result, its caches emptied before
-each repetition, and once as a process of its own.  QEPCAD is given the strict inequalities of Liénard and Chipart, which
-it does not have to make itself, in the form and with the order of variables it is fastest in; "alone" is without its
-start-up: 101 times the same in one process less once, divided by 100 (8 where it is slow).
+each repetition, and once as a process of its own (`solve`).  QEPCAD is given the strict inequalities of Liénard and
+Chipart, which it does not have to make itself, in the form and with the order of variables it is fastest in; "alone" is
+without its start-up: 101 times the same in one process less once, divided by 100 (8 where it is slow).  These two are
+processor time; whole processes are wall time.  Three ratios: QEPCAD alone over symobs in process, QEPCAD as a process
+over symobs in process (what a program in Python waits for), and process over process.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from tests.region_algebra import TRUE
 from tests.region_problems import PROBLEMS, by_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from tests.region_answers import Answer
     from tests.region_problem import Problem
@@ -35,7 +37,7 @@ _SIGNIFICANT = 0.0005  # less than this the clocks do not tell from nothing
 
 @dataclass(frozen=True)
 class Measured:
-    """What one problem took, in seconds of wall time; None where it gave no answer."""
+    """What one problem took, in seconds; None where it gave no answer."""
 
     problem: Problem
     ours: float | None
@@ -48,6 +50,11 @@ class Measured:
     def ratio(self) -> float | None:
         """QEPCAD without its start-up over symobs in process."""
         return self.alone / self.ours if self.alone is not None and self.ours else None
+
+    @property
+    def ratio_with_start(self) -> float | None:
+        """QEPCAD as a process over symobs in process."""
+        return self.started / self.ours if self.started is not None and self.ours else None
 
     @property
     def ratio_of_processes(self) -> float | None:
@@ -84,9 +91,9 @@ def ours(problem: Problem, repetitions: int) -> tuple[float, Answer]:
     for _ in range(repetitions):
         forget()
         gc.collect()
-        start = time.perf_counter()
+        start = time.process_time()
         text = region_answers.call(problem).to_json()
-        found.append(time.perf_counter() - start)
+        found.append(time.process_time() - start)
     return statistics.median(found), region_answers.from_json(text, problem.parameters)
 
 
@@ -145,24 +152,32 @@ def start_up(repetitions: int) -> float | None:
     return statistics.median(reply.run.wall for reply in replies) if replies else None
 
 
-def median_ratio(rows: Sequence[Measured]) -> float | None:
-    """Return the median of the ratios of all problems that have one."""
-    ratios = [row.ratio for row in rows if row.ratio is not None]
-    return statistics.median(ratios) if ratios else None
+def median(ratios: Iterable[float | None]) -> float | None:
+    """Return the median of the ratios there are."""
+    found = [ratio for ratio in ratios if ratio is not None]
+    return statistics.median(found) if found else None
 
 
 def table(rows: Sequence[Measured]) -> str:
     """Return the rows in columns, the medians of the ratios below."""
-    head: tuple[str, ...] = ("problem", "symobs", "command line", "QEPCAD alone", "QEPCAD", "ratio alone", "ratio", "")
-    lines = [head]
-    for row in rows:
+    head = (
+        "problem",
+        "symobs",
+        "solve",
+        "QEPCAD alone",
+        "QEPCAD",
+        "alone/in process",
+        "QEPCAD/in process",
+        "QEPCAD/solve",
+    )
+    lines: list[tuple[str, ...]] = [(*head, "")]
+    ratios = [(row.ratio, row.ratio_with_start, row.ratio_of_processes) for row in rows]
+    for row, of_row in zip(rows, ratios, strict=True):
         times = (row.ours, row.process, row.alone, row.started)
-        ratios = (row.ratio, row.ratio_of_processes)
-        lines.append((row.problem.name, *map(_milliseconds, times), *map(_ratio, ratios), row.verdict))
-    processes = [row.ratio_of_processes for row in rows if row.ratio_of_processes is not None]
-    middle = statistics.median(processes) if processes else None
-    lines.append(("median", "", "", "", "", _ratio(median_ratio(rows)), _ratio(middle), ""))
-    widths = [max(len(line[column]) for line in lines) for column in range(len(head))]
+        lines.append((row.problem.name, *map(_milliseconds, times), *map(_ratio, of_row), row.verdict))
+    middle = [median(column) for column in zip(*ratios, strict=True)]
+    lines.append(("median", "", "", "", "", *map(_ratio, middle), ""))
+    widths = [max(len(line[column]) for line in lines) for column in range(len(head) + 1)]
     return "\n".join(
         "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
     )
