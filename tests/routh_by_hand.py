@@ -96,7 +96,7 @@ def is_so(
             right, axis = located(coefficients)
             told = slots["right"] == LIE[right] and slots.get("axis", LIE[0]) == LIE[axis]
             if key == "routh_misleads":
-                return told and axis > 0 and changes(rows, small) != right and slots["epsilon"] == small
+                return told and changes(rows, small) != right and slots["epsilon"] == small
             return told and slots["changes"] == TIMES[changes(rows, small)] and changes(rows, small) == right
     return all(_at_a_point(key, slots, rows, coefficients, point) for point in points)
 

@@ -41,7 +41,8 @@ s, w = Scalar.symbol("s"), Scalar.symbol("w")
 h1, h2, h3, h4, b, omega, small = (Scalar.symbol(name) for name in ("h1", "h2", "h3", "h4", "b", "omega", "epsilon"))
 CHI = Letter("chi")
 
-#: Where ε does not count right: found by search, each with two roots on the imaginary axis.
+#: Where ε does not count right, found by search: standing in two places, or beside two roots on the imaginary axis.
+MISCOUNTED_TWICE = [[-1, 0, -1, 0, 0, 0, -1, 1, 2, 2, 1], [2, 0, 1, 0, 0, 0, -1, -1, -1, -1, -1]]
 MISCOUNTED = [
     [-1, 0, 0, -1, 1, -1],
     [3, -3, 0, 0, -1, 3, 2],
@@ -212,7 +213,7 @@ def test_every_row_and_every_count_is_found_again(coefficients: list[int]) -> No
     assert sign_changes(table) == changes(expected, sympy.Symbol("epsilon"))
     right, axis = located(coefficients)
     assert (right_half_plane_roots(whole(coefficients)), imaginary_axis_roots(whole(coefficients))) == (right, axis)
-    if axis == 0 or table.epsilon == "":
+    if (axis == 0 and origins(table).count("e") < 2) or table.epsilon == "":
         assert sign_changes(table) == right
 
 
@@ -238,14 +239,14 @@ def test_the_first_column_holds_the_quotients_of_the_determinants_of_hurwitz(coe
     assert (sign_changes(table) == 0) == stable
 
 
-@pytest.mark.parametrize("coefficients", MISCOUNTED)
-def test_epsilon_misleads_beside_roots_on_the_axis(coefficients: list[int]) -> None:
+@pytest.mark.parametrize("coefficients", [*MISCOUNTED, *MISCOUNTED_TWICE])
+def test_epsilon_misleads_beside_roots_on_the_axis_and_in_two_places(coefficients: list[int]) -> None:
     table = routh_table(whole(coefficients))
     right, axis = located(coefficients)
-    assert axis == 2
+    assert (axis, origins(table).count("e")) == ((0, 2) if coefficients in MISCOUNTED_TWICE else (2, 1))
     assert sign_changes(table) != right == right_half_plane_roots(whole(coefficients))
     findings = findings_of(table, whole(coefficients), "s", {})
-    assert [finding.key for finding in findings] == ["routh_epsilon", "routh_misleads"]
+    assert (findings[0].key, findings[-1].key) == ("routh_epsilon", "routh_misleads")
 
 
 PARI = r"""
@@ -282,7 +283,7 @@ def test_counts_agree_with_pari(record_property: Any) -> None:
         assert is_routh_table(table, whole(numbers))
         (stated,) = [f for f in findings_of(table, whole(numbers), "s", {}) if RESTS_ON.get(f.key) or "mis" in f.key]
         assert (stated.key == "routh_misleads") == (sign_changes(table) != right)
-        assert sign_changes(table) == right or (axis and table.epsilon)
+        assert sign_changes(table) == right or (axis and table.epsilon) or origins(table).count("e") > 1
         on_axis += axis > 0
     record_property("with roots on the axis", on_axis)
     assert COUNT / 5 < on_axis < COUNT
@@ -314,6 +315,7 @@ LETTERED: list[list[Any]] = [
     [1, b, 2 * omega**2, b * omega**2, omega**4],
     [1, 0, h1, h2],
     *MISCOUNTED,
+    MISCOUNTED_TWICE[0],
 ]
 
 

@@ -75,7 +75,7 @@ def _counted(table: RouthTable, coefficients: Sequence[Scalar]) -> Sentence:
     slots = {"changes": changes_sign(changes), "right": roots_lie(right), "axis": roots_lie(axis)}
     if changes != right:
         small = ("epsilon", Literal(Scalar.symbol(table.epsilon)))
-        return Sentence("routh_misleads", (small, ("axis", slots["axis"]), ("right", slots["right"])))
+        return Sentence("routh_misleads", (small, ("right", slots["right"]), ("axis", slots["axis"])))
     if axis:
         return Sentence("routh_changes_axis", tuple(slots.items()))
     if table.is_regular and changes == 0:

@@ -19,8 +19,8 @@ PHRASES: dict[str, str] = {
     "routh_not_stable": "A zero in the first column means that not all roots lie in the open left half plane.",
     "routh_changes": "The first column {changes}, so {right} in the open right half plane.",
     "routh_changes_axis": "The first column {changes}, so {right} in the open right half plane; {axis} on the imaginary axis.",
-    "routh_misleads": "The signs of the first column for small {epsilon} do not tell the number of roots here, since {axis} on the imaginary axis: "
-    "counted exactly, {right} in the open right half plane.",
+    "routh_misleads": "The signs of the first column for small {epsilon} do not tell the number of roots here: counted exactly, {right} in the "
+    "open right half plane, and {axis} on the imaginary axis.",
 }
 
 RESTS_ON: dict[str, str] = dict.fromkeys(

@@ -161,7 +161,8 @@ def _follows(
 def sign_changes(table: RouthTable) -> int:
     """Return how often the first column of a table without parameters changes sign, as ε tends to 0 from above.
 
-    It is the number of roots with Re s > 0, except that ε may mislead where there are roots on the imaginary axis.
+    It is the number of roots with Re s > 0, except that ε may mislead: where there are roots on the imaginary axis, and
+    where it stands in several places, which one ε makes equally small.
     """
     return sum(left != right for left, right in pairwise(_sign(entry, table.epsilon) for entry in table.first_column))
 
