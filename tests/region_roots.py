@@ -198,14 +198,20 @@ def root_of(node: Call, point: Mapping[str, Fraction]) -> Root:
     above, below = fraction(node.arguments[0])
     if below.constant is None or below.constant < 0:
         raise UnreadableError(f"{node}: no polynomial")
-    generators = above.names - point.keys() if len(above.names) > 1 else above.names
+    match node.arguments[1:-1]:
+        case (Name(name),):
+            generators = frozenset({name})
+        case _:
+            generators = above.names - point.keys() if len(above.names) > 1 else above.names
     if len(generators) != 1:
         raise UnreadableError(f"{node}: which variable?")
     (generator,) = generators
+    if not above.names - generators <= point.keys():
+        raise UnreadableError(f"{node}: depends on a variable")
     values = above.at({name: point[name] for name in above.names - generators})
     constants = [c.constant for c in values.coefficients(generator)]
     found = _roots_cached(primitive([c for c in constants if c is not None]))
-    k = rational(node.arguments[1])
+    k = rational(node.arguments[-1])
     if not 0 <= k < len(found):
         raise UndefinedError(f"{node} is not real")
     return found[int(k)]
@@ -222,6 +228,8 @@ def value(node: Node, point: Mapping[str, Fraction]) -> Fraction:
         case Number(number):
             return number
         case Name(name):
+            if name not in point:
+                raise UnreadableError(f"{name} has no value")
             return point[name]
         case Binary(op, left, right):
             a, b = value(left, point), value(right, point)

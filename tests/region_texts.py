@@ -50,7 +50,7 @@ class Power:
 
 @dataclass(frozen=True)
 class Call:
-    """`sqrt(a)`, `Abs(a)`, or `CRootOf(p, k)`."""
+    """`sqrt(a)`, `Abs(a)`, `CRootOf(p, k)`, or `CRootOf(p, x, k)` where p has other variables too."""
 
     function: str
     arguments: tuple[Node, ...]
@@ -88,7 +88,7 @@ class NotOf:
 _TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?)|([A-Za-z_]\w*)|(/\\|\\/|\*\*|[=!<>/]=|[-+*/^()\[\],<>=~]))")
 _RELATIONS = {">": ">", ">=": ">=", "=": "=", "==": "=", "!=": "!=", "/=": "!=", "<": "<", "<=": "<="}
 _FUNCTIONS = {"sqrt": "sqrt", "abs": "Abs", "Abs": "Abs", "CRootOf": "CRootOf", "rootof": "CRootOf"}
-_ARGUMENTS = {"sqrt": 1, "Abs": 1, "CRootOf": 2}
+_ARGUMENTS = {"sqrt": (1,), "Abs": (1,), "CRootOf": (2, 3)}
 
 
 class _Reader:
@@ -221,8 +221,8 @@ class _Reader:
             arguments.append(self.sum())
         self.skip(")")
         function = _FUNCTIONS[token]
-        if len(arguments) != _ARGUMENTS[function]:
-            raise UnreadableError(f"{self.text!r}: {token} takes {_ARGUMENTS[function]}")
+        if len(arguments) not in _ARGUMENTS[function]:
+            raise UnreadableError(f"{self.text!r}: {token} with {len(arguments)} arguments")
         return Call(function, tuple(arguments))
 
     def whole(self, read: Callable[[], Node | Statement]) -> Node | Statement:

@@ -309,7 +309,7 @@ def test_relations_and_cells_may_have_roots_in_them() -> None:
     oracle = Oracle(by_name("disc"))
     assert all(inside(point) == oracle(point) for point in Points(by_name("disc")).take(300))
     words = Cell((("h1", "-oo", "oo"), ("h2", "-oo", "the second root")), stable=True, sample={})
-    roots = ("CRootOf(h2**3 - 3*h2 + h1, 0)", "CRootOf(h2**3 - 3*h2 + h1, 1)")
+    roots = ("CRootOf(h2**3 - 3*h2 + h1, 0)", "CRootOf(h2**3 - 3*h2 + h1, h2, 1)")
     between = Cell((("h1", "-2", "2"), ("h2", *roots)), stable=True, sample={})
     verdict = region_answers.in_cells([words, between])
     point = {"h1": Fraction(0), "h2": Fraction(-1)}
