@@ -55,7 +55,7 @@ def test_python_gives_the_values_in_its_comments() -> None:
         (comment,) = re.findall(rf"^{name}\.stable_if  # (.*)$", README, re.MULTILINE)
         assert list(names[name].stable_if) == eval(comment)  # noqa: S307
     (component,) = names["region"].components
-    assert (component["bounded"], component["parts"][0]["h1"]) == (True, ["3", "8"])
+    assert (component["bounded"], component["parts"][0]["h1"]) == (True, ("3", "8"))
 
 
 def test_every_promised_value_is_on_a_line_of_its_own() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -16,11 +16,13 @@ from symobs.analysis.stability_region_fields import (
 )
 from symobs.analysis.stability_region_question import Question, read_question
 from symobs.certificate import Claim, Statement
+from symobs.conditions import Condition
 from symobs.exact import Scalar
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.region.cases import SignCase, sign_cases
 from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.description import parts
@@ -179,6 +181,29 @@ class StabilityRegion(Result):
             found |= {"cells": cells_of(region), "components": components_of(region, self.parts)}
             found |= excluded_of(region)
         return found
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """What is true where the coefficient of a parameter is positive, negative or zero, if its sign is open."""
+        if self.short is None or self.verdict != "conditional":
+            return ()
+        found = sign_cases(self.short.positive, self.question.parameters, self.signs)
+        if len(found) < 2 or any(case.assumed or len(case.when) > 1 for case in found):
+            return ()
+        return tuple(self._case(case) for case in found)
+
+    def _case(self, case: SignCase) -> Case:
+        chi = self.answer["polynomial"].substitute(case.substitution)
+        when = tuple(Condition("case", value, operator) for value, operator in case.when)
+        variable, question = self.plant.variable, self.question
+        if chi.degree(variable) != self.answer["polynomial"].degree(variable):
+            return Case(when, case.substitution, None)
+        symbols = replace(self.plant.symbols, signs=case.signs)
+        plant = StateSpace.from_polynomial(chi, self.plant.dt, symbols=symbols)
+        names = tuple(name for name in question.parameters if name in chi.names)
+        return Case(
+            when, case.substitution, type(self).of(Question(plant, None, None, names, question.boundary), self.method)
+        )
 
     @cached_property
     def picture(self) -> Picture | None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from symobs.analysis.pages import WRITTEN_UP_TO, determinant_form, given, state_signs
 from symobs.analysis.stability_region_fields import solved
 from symobs.conditions import sign_of
-from symobs.derivation import Survey, Where, findings_of_conditions, findings_of_region
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude, Step, Survey, Where, findings_of_conditions, findings_of_region
 from symobs.derivation.regions import interval_relations
 from symobs.exact import Scalar
 from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
@@ -21,6 +22,7 @@ from symobs.stability import hurwitz_matrix
 if TYPE_CHECKING:
     from symobs.analysis.stability_region import StabilityRegion
     from symobs.formula import Formula, Relation
+    from symobs.method import Case
     from symobs.page import Page
 
 #: A region in more parts than this is left to its inequalities and its picture.
@@ -182,7 +184,7 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
     raw = short.equivalence.raw
     known = tuple(relation(value, ">", 0) for value in raw if sign_of(value, signs) != "positive")
     say = "region_is"
-    if relations and len(raw) > len(relations):
+    if relations and len(known) > len(relations):
         say = "shortened"
         if sum(value.size for value in raw) <= WRITTEN_UP_TO:
             page.steps.append(Where(Exactly(stable, known), sentence("criterion", {})))
@@ -192,10 +194,29 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
         page.steps.append(Where(Exactly(stable, relations), sentence(say, {}), answer=True))
     if findings:
         page.steps.append(Survey(page[chi].formula, names, findings))
+    page.steps += [_case(page, case, chi) for case in result.case_tree if case.result is not None]
     if not result.question.symbols and len(names) == 2:
         page.remark("not_divided")
     if result.picture is not None:
         page.plot(result.picture, page[chi])
+
+
+def _case(page: Page, case: Case, chi: str) -> Step:
+    """Say where all roots are stable if a coefficient has a certain sign."""
+    found = cast("StabilityRegion", case.result)
+    (condition,) = case.when
+    when = relation(condition.expression, condition.operator.replace("==", "="), 0)
+    stable = predicate("stable", page[chi])
+    steps: tuple[Step, ...]
+    if found.empty:
+        steps = (Conclude(sentence("case_nowhere", {}), (predicate("unstable", page[chi]),)),)
+    elif not found.answer["bounds"]:
+        steps = (Conclude(sentence("case_everywhere", {}), (stable,)),)
+    else:
+        names = found.question.parameters
+        relations = tuple(relation(*solved(bound, found.signs, names)) for bound in found.answer["bounds"])
+        steps = (Where(Exactly(stable, relations), sentence("case_region", {})),)
+    return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
 def _region(page: Page, result: StabilityRegion, chi: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -35,6 +36,7 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
 
     They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
     """
+    environment = _with_signs(environment)
     arithmetic, name = Exact(environment), fact.property.name
     said: list[tuple[Scalar, str]] = []
     for relation in fact.where:
@@ -50,6 +52,16 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
         return True
     positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
     return holds_exactly_where(name, polynomial, positive, environment, discrete)
+
+
+def _with_signs(environment: Environment) -> Environment:
+    """Return the environment with what is known to be above 0 as a sign, where it is a symbol or minus one."""
+    signs = dict(environment.signs)
+    for value in environment.above:
+        for sign, symbol in (("positive", value), ("negative", -value)):
+            if str(symbol) in symbol.names:
+                signs[str(symbol)] = sign
+    return replace(environment, signs=signs)
 
 
 def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:

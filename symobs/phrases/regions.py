@@ -35,6 +35,9 @@ PHRASES: dict[str, str] = {
     "criterion": "By the criterion of Liénard and Chipart all roots are stable exactly where",
     "criterion_long": "The criterion of Liénard and Chipart asks for {count} polynomials to be positive.",
     "shortened": "What the others and the declared signs imply can be left out. So all roots are stable exactly where",
+    "case_region": "All roots are stable exactly where",
+    "case_everywhere": "All roots are stable.",
+    "case_nowhere": "Not all roots are stable, whatever the values.",
     "box_bounded": "The region is a product of intervals: it is connected, convex and bounded.",
     "box_unbounded": "The region is a product of intervals: it is connected and convex, and not bounded.",
     "not_divided": "The curves on which stability can change are too many or of too high a degree for the plane to be divided here: the "
@@ -58,6 +61,8 @@ RESTS_ON: dict[str, str] = {
     "criterion": "lienard_chipart",
     "criterion_long": "lienard_chipart",
 }
+
+ASSERTS: dict[str, tuple[str, ...]] = {"case_everywhere": ("stable",), "case_nowhere": ("unstable",)}
 
 NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped")
 

@@ -5,8 +5,8 @@ Both are asked one question: is there a real point where polynomials are all pos
 
 from __future__ import annotations
 
-import shutil
 import os
+import shutil
 import signal
 import subprocess
 import threading
