@@ -190,10 +190,14 @@ class StabilityRegion(Result):
         found = sign_cases(self.short.positive, self.question.parameters, self.signs)
         if len(found) < 2 or any(case.assumed or len(case.when) > 1 for case in found):
             return ()
-        return tuple(self._case(case) for case in found)
+        return tuple(case for case in map(self._case, found) if case is not None)
 
-    def _case(self, case: SignCase) -> Case:
-        chi = self.answer["polynomial"].substitute(case.substitution)
+    def _case(self, case: SignCase) -> Case | None:
+        """Return the result where a coefficient has a sign; None where there is no polynomial."""
+        try:
+            chi = self.answer["polynomial"].substitute(case.substitution)
+        except ZeroDivisionError:
+            return None
         when = tuple(Condition("case", value, operator) for value, operator in case.when)
         variable, question = self.plant.variable, self.question
         if chi.degree(variable) != self.answer["polynomial"].degree(variable):
@@ -202,7 +206,11 @@ class StabilityRegion(Result):
         plant = StateSpace.from_polynomial(chi, self.plant.dt, symbols=symbols)
         names = tuple(name for name in question.parameters if name in chi.names)
         return Case(
-            when, case.substitution, type(self).of(Question(plant, None, None, names, question.boundary), self.method)
+            when,
+            case.substitution,
+            type(self).of(
+                Question(plant, None, None, names, question.boundary.substitute(case.substitution)), self.method
+            ),
         )
 
     @cached_property

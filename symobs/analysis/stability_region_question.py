@@ -118,8 +118,8 @@ def _boundary(plant: StateSpace, margin: object, radius: object) -> Boundary:
             message = f"the margin is {found}, which is negative"
             raise InputError(message, where=where, repair="all roots shall lie in Re s < -margin: give a margin >= 0")
         return Boundary(plant.variable, margin=found)
-    if sign_of(found, signs) in {"zero", "negative", "nonpositive"}:
-        message = f"the radius is {found}, which is not positive"
+    if sign_of(found, signs) in {"zero", "negative", "nonpositive"} or sign_of(found - 1, signs) == "positive":
+        message = f"the radius is {found}, which is not between 0 and 1"
         raise InputError(
             message, where=where, repair="all roots shall lie in |z| < radius: give a radius > 0, at most 1"
         )

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from symobs.certificate import as_scalar
 from symobs.derivation.properties import polynomial_of
-from symobs.exact import Complex, Scalar, product_of
+from symobs.exact import Complex, RealNumber, Scalar, product_of
 from symobs.exact.enclosure import sign_of_number
+from symobs.exact.real import roots_of_scalar
 from symobs.formula import Exact, evaluate
 from symobs.formula.plain import plain_relation
 from symobs.picture import LinePicture, PoleMap, RegionPicture
@@ -93,8 +94,11 @@ class _Test:
         self.degree = polynomial.degree(variable)
 
     def is_stable(self, *place: Fraction) -> bool:
-        """Whether all roots are stable; where the degree drops a root has gone to infinity."""
-        there = self.polynomial.substitute(_at(self.axes, place))
+        """Whether all roots are stable; where the degree drops a root has gone to infinity, or there is no polynomial."""
+        try:
+            there = self.polynomial.substitute(_at(self.axes, place))
+        except ZeroDivisionError:
+            return False
         if there.degree(self.variable) < self.degree:
             return False
         return stability(there, self.variable, {}, discrete=self.discrete).verdict == "yes"
@@ -171,7 +175,16 @@ def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bo
         signs.add(found > 0)
         if found == 0 or len(signs) == 2:
             return True
-    return False
+    return any(_has_root(value, axes, place, step, along) for along in (0, 1))
+
+
+def _has_root(value: Scalar, axes: Sequence[str], place: Place, step: Place, along: int) -> bool:
+    """Whether the curve meets one arm of the cross: where two branches are that close no sign changes."""
+    on_line = value.substitute({axes[1 - along]: Scalar.of(place[1 - along])})
+    if axes[along] not in on_line.names:
+        return on_line.is_zero
+    low, high = (RealNumber.of(place[along] + side * step[along]) for side in (-1, 1))
+    return any(low <= root <= high for root in roots_of_scalar(on_line, axes[along]))
 
 
 def _sign(value: Scalar, axes: Sequence[str], place: Place) -> int:

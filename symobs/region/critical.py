@@ -8,7 +8,7 @@ vanishes stability is constant on connected pieces, and on it nothing is stable.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -40,6 +40,10 @@ class Boundary:
     def names(self) -> frozenset[str]:
         """The names in margin and radius."""
         return self.margin.names | self.radius.names
+
+    def substitute(self, values: Mapping[str, Scalar]) -> Boundary:
+        """Return the boundary with symbols replaced."""
+        return replace(self, margin=self.margin.substitute(values), radius=self.radius.substitute(values))
 
     def moved(self, polynomial: Scalar) -> Scalar:
         """Return χ(s − margin), or χ(radius z): stable in the usual sense where χ is stable in this one."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from math import cos, pi
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 NODES = 48
 #: Beyond this many samples only the stable ones are marked.
 MOST_MARKS = 16
+#: How often nodes are added where a branch is farther off a straight line than this part of the window.
+_PASSES, _STRAIGHT = 2, Fraction(1, 100)
 #: Coordinates are rounded to this fraction of the window.
 _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
@@ -149,7 +152,22 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
             for height in (bottom, top):
                 found |= {x for root in real_roots(curve.on_horizontal(height)) if low < (x := _middle(root)) < high}
     inside = [x for x in found if (slab.left is None or slab.left < RealNumber.of(x))]
-    return sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    nodes = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    for _ in range(_PASSES):
+        nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)
+    return nodes
+
+
+def _finer(region: PlaneRegion, nodes: Sequence[Fraction], off: Fraction) -> list[Fraction]:
+    """Return the nodes and the middles between them where some branch is farther than this off the straight line."""
+    rows = [_heights(region, x) for x in nodes]
+    found = list(nodes)
+    for (x, low), (z, high) in pairwise(zip(nodes, rows, strict=True)):
+        middle = (x + z) / 2
+        between = _heights(region, middle)
+        if any(abs(2 * b - a - c) > 2 * off for a, b, c in zip(low, between, high, strict=True)):
+            found.append(middle)
+    return sorted(found)
 
 
 def _heights(region: PlaneRegion, x: Fraction) -> list[Fraction]:

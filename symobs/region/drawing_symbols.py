@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.region.critical import Boundary, Critical
+from symobs.region.critical import Critical
 from symobs.region.drawing import equation_of, oriented, picture_of_line, picture_of_plane
 from symobs.region.line import LineRegion
 from symobs.region.plane import can_be_divided, plane_region
@@ -42,10 +42,8 @@ def _choices(symbols: Sequence[str], signs: Mapping[str, str]) -> Iterator[dict[
 
 def _drawn(critical: Critical, parameters: Sequence[str], values: dict[str, Scalar]) -> Picture | None:
     """Return the picture at these values, None where nothing is stable there."""
-    old = critical.boundary
-    boundary = Boundary(old.variable, old.discrete, old.margin.substitute(values), old.radius.substitute(values))
     try:
-        there = Critical(critical.polynomial.substitute(values), boundary, critical.signs)
+        there = Critical(critical.polynomial.substitute(values), critical.boundary.substitute(values), critical.signs)
     except ZeroDivisionError:
         return None
     if there.never or there.parameters != tuple(sorted(parameters)):
