@@ -10,6 +10,7 @@ import os
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ import pytest
 
 from symobs import StateSpace, compensator, observability, observer
 from symobs.analysis.observability import RankResult
+from symobs.analysis.stability_region import StabilityRegion
 from symobs.design.compensator import CompensatorDesign
 from symobs.design.gain import GainDesign
 from symobs.design.output_feedback import OutputFeedback
@@ -26,11 +28,13 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import symbols_in
 from symobs.page import Page
 from symobs.problem import read
+from symobs.region.proof import Combined, Opposite
 from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import Change, answer_changes, changes, lines_of, parts_of
-from tests.plain import multiply, observability_rows, rank_of, transposed
+from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
 from tests.plain_fractions import World, determinant, identity, inverse, plus, times
+from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
 from tests.truth import is_true, still_true
 
 if TYPE_CHECKING:
@@ -119,6 +123,8 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         if part.task == "controllability":
             A, C = transposed(A), transposed(B)
         return _is_rank(A, C, answer, world)
+    if isinstance(part, StabilityRegion):
+        return _is_region(part, answer, world)
     if isinstance(part, GainDesign):
         gain = world.value(answer[part.letter])
         moved = multiply(gain, C) if part.letter == "L" else multiply(B, gain)
@@ -135,6 +141,49 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
     if isinstance(part, TrackingDesign):
         return _is_followed(part, answer, A, B, world)
     return False
+
+
+def _is_region(part: StabilityRegion, answer: Mapping[str, Any], world: World) -> bool:
+    """Tell whether χ is that of the loop, the table its own, and the inequalities hold where its roots are stable."""
+    chi = answer["polynomial"]
+    if chi is None or answer["routh"] is None or world.value(chi) != loop_polynomial(part, world):
+        return False
+    discrete, signs = part.plant.is_discrete, part.plant.symbols.signs
+    samples = points(sorted(chi.names - {part.plant.variable}), signs, world.seed, 200)
+    bounds = answer["bounds"]
+    return (
+        is_table(part, answer["routh"], world)
+        and all(inside(bounds, point) == is_stable(moved_at(part, point), discrete=discrete) for point in samples)
+        and proof_holds(answer["proof"], world)
+    )
+
+
+def inside(bounds: Sequence[Any] | None, point: Mapping[str, Fraction]) -> bool:
+    """Tell whether inequalities hold at a point; nowhere, where there are none."""
+    if bounds is None:
+        return False
+    values = [(value_at(bound.polynomial, point), bound.operator) for bound in bounds]
+    return all(value > 0 if operator == ">" else value != 0 for value, operator in values)
+
+
+def proof_holds(proof: Any, world: World) -> bool:
+    """Tell whether every product in a proof is equal to what it is compared with, and no coefficient is negative."""
+    steps = [] if proof is None else [*proof.forward, *proof.backward]
+    while steps:
+        step = steps.pop()
+        if isinstance(step, Opposite):
+            steps += step.steps
+        elif isinstance(step, Combined):
+            left, right = (_products(terms, world) for terms in (step.multiplier, step.total))
+            if world.value(step.value) * sum(left) != sum(right):
+                return False
+            if any(world.value(c) < 0 for c, _ in (*step.multiplier, *step.total)):
+                return False
+    return True
+
+
+def _products(terms: Sequence[Any], world: World) -> list[Fraction]:
+    return [world.value(c) * prod((world.value(f) for f in factors), start=Fraction(1)) for c, factors in terms]
 
 
 def _is_followed(part: TrackingDesign, answer: Mapping[str, Any], A: Rows, B: Rows, world: World) -> bool:
