@@ -472,7 +472,11 @@ class World:
         return self.variable == "z"
 
     def polynomial_of(self, subject: Formula) -> Scalar | None:
-        """Return the value of a letter that is a polynomial in the variable, None where it is none."""
+        """Return the value of a letter that is a polynomial in the variable, up to a number, None where it is none."""
+        if isinstance(subject, Negative):
+            return self.polynomial_of(subject.operand)
+        if isinstance(subject, Sum) and len(set(subject.terms)) == 1:
+            return self.polynomial_of(subject.terms[0])
         value = self.letters.get(subject.name) if isinstance(subject, Letter) else None
         value = value.value if isinstance(value, Literal) else value
         is_one = isinstance(value, Scalar) and self.variable not in value.denominator.names

@@ -294,6 +294,8 @@ def _of_boundaries(picture: RegionPicture, seen: Seen, step: Sequence[Fraction])
         for k in range(1, len(places) - 1, max(1, len(places) // 8)):
             (x, y), before, after = places[k], places[k - 1], places[k + 1]
             across = -(after[1] - before[1]) / step[1], (after[0] - before[0]) / step[0]
+            if not any(across):
+                continue
             size = 40 * max(map(abs, across))
             off = (across[0] / size * step[0], across[1] / size * step[1])
             sides = [(x + off[0], y + off[1]), (x - off[0], y - off[1])]
@@ -461,23 +463,28 @@ def is_table(part: StabilityRegion, table: RouthTable, world: World) -> bool:
         a = [value_at(part.question.critical.scale, point) * c for c in in_w(a)]
     at = {**point, table.epsilon: world.number(table.epsilon)}
     rows = [[value_at(entry, at) for entry in row.entries] for row in table.rows]
-    if len(rows) != len(a) or [row.power for row in table.rows] != list(range(len(a) - 1, -1, -1)):
-        return False
+    powers = [row.power for row in table.rows]
+    return powers == list(range(len(a) - 1, -1, -1)) and rows == table_at(table, a, at)
+
+
+def table_at(table: RouthTable, a: Sequence[Fraction], at: Mapping[str, Fraction]) -> list[list[Fraction]] | None:
+    """Return the entries by the rule, the zeros replaced as the rows say; None where a row says what is not so."""
     expected: list[list[Fraction]] = []
     for index, row in enumerate(table.rows):
-        natural = a[index::2] if index < 2 else _by_rule(expected[-2], expected[-1], len(a) - 1 - index)
+        power = len(a) - 1 - index
+        natural = list(a[index::2]) if index < 2 else _by_rule(expected[-2], expected[-1], power)
         if row.origin == "auxiliary":
             if any(natural):
-                return False
-            natural = [(row.power + 1 - 2 * k) * expected[-1][k] for k in range(len(natural))]
+                return None
+            natural = [(power + 1 - 2 * k) * expected[-1][k] for k in range(len(natural))]
         elif row.origin == "epsilon":
             if natural[0]:
-                return False
+                return None
             natural = [at[table.epsilon], *natural[1:]]
         elif row.origin != ("coefficients" if index < 2 else "recurrence") or not natural[0]:
-            return False
+            return None
         expected.append(natural)
-    return rows == expected
+    return expected
 
 
 def _by_rule(p: Sequence[Fraction], q: Sequence[Fraction], power: int) -> list[Fraction]:

@@ -33,7 +33,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.tables import is_tabulated
+from symobs.derivation.tables import is_tabulated, last_determinant
 from symobs.errors import DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, product_of, roots_are
 from symobs.exact.functions import substitute
@@ -138,11 +138,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
-        case Tabulate(polynomial, variable=variable):
-            _about_letters(polynomial, environment)
-            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
-            if not is_tabulated(step, value, environment):
-                _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+        case Tabulate():
+            environment = _tabulated(step, environment, discrete)
         case Where(fact):
             _fact(fact, environment, discrete)
         case Survey(polynomial):
@@ -163,6 +160,19 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             assert_never(step)
     _sentence(getattr(step, "sentence", None), environment, discrete)
     return environment
+
+
+def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    """Verify a table and whose it is said to be; let Δₙ₋₁ mean what it does beside this table."""
+    polynomial, variable = step.polynomial, step.variable
+    _about_letters(polynomial, environment)
+    value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+    if not is_tabulated(step, value, environment):
+        _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+    for name, slot in step.sentence.slots if step.sentence else ():
+        if name == "polynomial" and isinstance(slot, Formula):
+            _fact(Relation((slot, polynomial), ("=",)), environment, discrete)
+    return environment.having(values=last_determinant(value, variable))
 
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
