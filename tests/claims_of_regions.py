@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from tests.plain import value_at
 from tests.region_answers import from_json, holds, in_cells, in_intervals
-from tests.region_roots import compare
-from tests.region_texts import bound
+from tests.region_roots import compare, value
+from tests.region_texts import bound, expression
 from tests.regions_in_plain_fractions import in_w, is_stable, moved_at, points, table_at
 
 if TYPE_CHECKING:
@@ -49,27 +49,26 @@ def region_holds(part: StabilityRegion, at: Point) -> None:
         if cells is not None and not is_on_wall(part, point):
             assert is_in_part(part, point) == found or point in holes_of(part)
         if said.bounded and names:
-            assert not stable({name: 10**9 * value + 10**8 for name, value in point.items()})
-    points_hold(part, stable)
+            assert not stable({name: 10**9 * x + 10**8 for name, x in point.items()})
+    for point in samples[:5]:
+        points_hold(part, stable, point)
     if fields.get("irredundant") and not said.empty:
         assert each_is_needed(said.stable_if, names, part)
 
 
-def points_hold(part: StabilityRegion, stable: Any) -> None:
+def points_hold(part: StabilityRegion, stable: Any, at: Point) -> None:
     """Hold the points that are named: samples of the region and of its cells, and what is left out."""
     fields = part.fields
     for sample in fields.get("sample_points", ()):
-        assert stable(read(sample))
+        assert stable(read(sample, at))
     for component in fields.get("components", ()):
-        assert stable(read(component["sample"]))
+        assert stable(read(component["sample"], at))
         assert not (component["bounded"] is False and fields["bounded"])
     for cell in fields.get("cells", ()):
         assert stable(read(cell["sample"])) == cell["stable"] == (cell["component"] is not None)
     for hole in holes_of(part):
         assert not stable(hole)
-        near = [
-            {**hole, name: value + d} for name, value in hole.items() for d in (Fraction(-1, 10**9), Fraction(1, 10**9))
-        ]
+        near = [{**hole, name: x + d} for name, x in hole.items() for d in (Fraction(-1, 10**9), Fraction(1, 10**9))]
         assert all(map(stable, near))
     assert not fields.get("excluded_curves")
     assert fields["empty"] == (fields["stable_if"] == ["False"])
@@ -82,8 +81,9 @@ def points_hold(part: StabilityRegion, stable: Any) -> None:
             assert compare(node, Fraction(shown) - _HALF, {}) > 0 > compare(node, Fraction(shown) + _HALF, {})
 
 
-def read(point: Mapping[str, str]) -> dict[str, Fraction]:
-    return {name: Fraction(value) for name, value in point.items()}
+def read(point: Mapping[str, str], at: Point | None = None) -> dict[str, Fraction]:
+    """Return a point that is named, its parts possibly in symbols whose values are given."""
+    return {**(at or {}), **{name: value(expression(text), at or {}) for name, text in point.items()}}
 
 
 def holes_of(part: StabilityRegion) -> list[dict[str, Fraction]]:

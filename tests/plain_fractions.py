@@ -479,8 +479,9 @@ class World:
             return self.polynomial_of(subject.terms[0])
         value = self.letters.get(subject.name) if isinstance(subject, Letter) else None
         value = value.value if isinstance(value, Literal) else value
-        is_one = isinstance(value, Scalar) and self.variable not in value.denominator.names
-        return value if is_one and not value.names & set(self.meanings) else None
+        if not isinstance(value, Scalar) or self.variable in value.denominator.names:
+            return None
+        return None if value.names & set(self.meanings) else value
 
     def names_of(self, subject: Formula) -> frozenset[str]:
         value = self.polynomial_of(subject)

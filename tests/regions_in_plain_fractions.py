@@ -135,9 +135,9 @@ def is_so(
             return not stable({name: place}) and all(stable({name: place + d}) for d in _small())
         case "hole":
             pair = [text(slots[key]) for key in ("first", "second")]
-            place = [Fraction(text(slots[key])) for key in ("x", "y")]
-            around = [(x, y) for d in _small() for x, y in ((place[0] + d, place[1]), (place[0], place[1] + d))]
-            return not stable(dict(zip(pair, place, strict=True))) and all(
+            centre = [Fraction(text(slots[key])) for key in ("x", "y")]
+            around = [(x, y) for d in _small() for x, y in ((centre[0] + d, centre[1]), (centre[0], centre[1] + d))]
+            return not stable(dict(zip(pair, centre, strict=True))) and all(
                 stable(dict(zip(pair, other, strict=True))) for other in around
             )
         case "number_is_root":
@@ -160,15 +160,15 @@ def _is_convex(
 
 def _is_root(number: Literal, which: str, equation: Relation) -> bool:
     """Tell whether a number is this root of its equation, the real roots counted from the left."""
-    polynomial, right = (expression(text(member)) for member in equation.members)
+    right = expression(text(equation.members[1]))
     assert isinstance(equation.members[0], Literal)
-    (name,) = equation.members[0].value.names  # type: ignore[union-attr]
+    (name,) = equation.members[0].value.names
     here = number_of(text(number))
     coefficients = coefficients_at(equation.members[0].value, name, {})  # type: ignore[arg-type]
     roots = real_roots(coefficients)
     place = next((k for k, root in enumerate(roots) if _is_at(root, here)), None)
     told = "the only real root" if len(roots) == 1 else f"the {ORDINALS[place or 0]} real root from the left"
-    return right == Number(Fraction(0)) and polynomial is not None and place is not None and which == told
+    return right == Number(Fraction(0)) and place is not None and which == told
 
 
 def _is_at(root: Root, here: Fraction) -> bool:
@@ -242,7 +242,7 @@ def _of_marks(marks: Sequence[tuple[tuple[Fraction, ...], str]], seen: Seen, ste
 
 def _nearly_unstable(coefficients: Sequence[Fraction], discrete: bool) -> bool:  # noqa: FBT001
     """Tell whether a root lies next to the boundary."""
-    roots = fmpz_poly(list(reversed(primitive(coefficients)))).complex_roots()
+    roots: Any = fmpz_poly(list(reversed(primitive(coefficients)))).complex_roots()
     sizes = [float(abs(root)) - 1 if discrete else float(root.real) for root, _ in roots]
     return max(sizes) > -1e-4
 

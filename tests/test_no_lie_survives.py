@@ -49,6 +49,8 @@ EXAMPLES = FILES
 WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = 12, 130
+#: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
+LEAST = 110
 #: Pages of nothing but ranks and modes: a rank, a product that is 0 and a property say the same when they are doubled or
 #: negated, and b >= 0 is as true as b > 0, so a larger share of the changes of their lines is true.
 OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabilizability"}
@@ -296,8 +298,12 @@ def _is_hidden(part: GainDesign, pair: Pair) -> bool:
 
 def try_lines(result: Result, count: Count) -> None:
     lines = lines_of(result.derivation)
-    for number, line in enumerate(lines):
-        for change in sample(list(changes(line.step)), -(-OF_LINES // len(lines))):
+    found = [list(changes(line.step)) for line in lines]
+    most = -(-OF_LINES // len(lines))
+    while sum(min(len(some), most) for some in found) < LEAST < sum(map(len, found)):
+        most += 1
+    for number, (line, some) in enumerate(zip(lines, found, strict=True)):
+        for change in sample(some, most):
             told, meant = line.told(change.value), line.told(line.step)
             where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
             count.attempt(where, told.check, partial(still_true, told, meant))

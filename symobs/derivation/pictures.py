@@ -156,6 +156,9 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
                 passes = any(_passes(value, test.axes, place, near) for value in drawn)
                 if not passes:
                     yield f"an edge at {_written(place)}"
+        for place in _sloping(area, near):
+            if not any(_passes(value, test.axes, place, between) for value in drawn):
+                yield f"an edge at {_written(place)}"
         samples = (place for place in _inside(area, near[0]) if place not in excluded)
         yield from (f"{_written(place)} is stable" for place in samples if not test.is_stable(*place))
     for mark in picture.marks:
@@ -207,6 +210,13 @@ def _middle(a: Place, b: Place) -> Place:
 def _within(place: Place, window: tuple[Interval, Interval], near: Place = _NOWHERE) -> bool:
     """Whether a place lies in the window, or as near to it as cannot be told apart."""
     return all(low - step <= part <= high + step for part, (low, high), step in zip(place, window, near, strict=True))
+
+
+def _sloping(area: Sequence[Place], near: Place) -> Iterator[Place]:
+    """Yield the middles of edges that can be seen to be parallel to no axis: they are parts of curves."""
+    for a, b in zip(area, (*area[1:], area[0]), strict=True):
+        if all(abs(p - q) > step for p, q, step in zip(a, b, near, strict=True)):
+            yield _middle(a, b)
 
 
 def _grid(window: tuple[Interval, Interval]) -> Iterator[Place]:
