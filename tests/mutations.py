@@ -31,7 +31,7 @@ from symobs.formula import (
 from symobs.phrases import slots_of
 from symobs.picture import Curve, Mark, PoleMap
 from symobs.region.inequalities import Bound
-from symobs.region.routh import ORIGINS, RouthRow
+from symobs.region.routh import ORIGINS, RouthRow, RouthTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -66,6 +66,13 @@ _OTHER_WORDS = [
     ("connected_bounded", "connected_unbounded"),
     ("box_bounded", "box_unbounded"),
 ]
+#: Words that count something: another of the same row says another number.
+_NUMBERS = (
+    ("none", "one", "two", "three", "four", "all"),
+    ("once", "twice"),
+    ("first", "second", "third", "only"),
+    ("nine", "twelve", "eleven"),
+)
 OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS}
 
 
@@ -112,12 +119,20 @@ def changes(item: Any) -> Iterator[Change]:
         yield from _of_relation(item)
     elif isinstance(item, Root):
         yield from _of_root(item)
-    elif isinstance(item, Sentence) and item.key in OTHER_WORDS:
-        yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+    elif isinstance(item, Sentence):
+        if item.key in OTHER_WORDS:
+            yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+        yield from _of_counts(item)
         yield from _of_parts(item)
     elif isinstance(item, RouthRow):
         yield from (Change(f".origin {o}", "structure", replace(item, origin=o)) for o in ORIGINS if o != item.origin)
         yield Change(".entries shortened", "structure", replace(item, entries=item.entries[:-1]))
+        yield Change(".entries lengthened", "structure", replace(item, entries=(*item.entries, Scalar.of(0))))
+        yield from _of_parts(item)
+    elif isinstance(item, RouthTable):
+        for index in range(len(item.rows)):
+            rows = (*item.rows[:index], *item.rows[index + 1 :])
+            yield Change(f".rows[{index}] left out", "structure", replace(item, rows=rows))
         yield from _of_parts(item)
     elif isinstance(item, (Curve, Mark, PoleMap)):
         yield from _of_drawn(item)
@@ -133,6 +148,18 @@ def _of_parts(item: Any) -> Iterator[Change]:
     for field in fields(item):
         for change in changes(getattr(item, field.name)):
             yield change.within(f".{field.name}", replace(item, **{field.name: change.value}))
+
+
+def _of_counts(sentence: Sentence) -> Iterator[Change]:
+    """Yield a sentence with another number in one of its words."""
+    for index, (name, slot) in enumerate(sentence.slots):
+        words = slot.split() if isinstance(slot, str) else []
+        for place, word in enumerate(words):
+            for numbers in _NUMBERS:
+                for other in [n for n in numbers if word in numbers and n != word][:2]:
+                    said = " ".join([*words[:place], other, *words[place + 1 :]])
+                    slots = (*sentence.slots[:index], (name, said), *sentence.slots[index + 1 :])
+                    yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
 
 
 def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:

@@ -55,6 +55,9 @@ LEAST = 110
 #: negated, and b >= 0 is as true as b > 0, so a larger share of the changes of their lines is true.
 OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabilizability"}
 
+#: h1² + h2² is positive but at one point: so is what is added to it or multiplied with it, and the picture is all shaded.
+OF_SIGNS = {"region_without_one_point"}
+
 
 @cache
 def results(path: Path) -> tuple[Result, ...]:
@@ -300,7 +303,7 @@ def try_lines(result: Result, count: Count) -> None:
     lines = lines_of(result.derivation)
     found = [list(changes(line.step)) for line in lines]
     most = -(-OF_LINES // len(lines))
-    while sum(min(len(some), most) for some in found) < LEAST < sum(map(len, found)):
+    while sum(min(len(some), most) for some in found) < min(LEAST, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
         for change in sample(some, most):
@@ -325,7 +328,8 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
         assert count.tried == count.rejected + count.true
         of_ranks = count is lines and {result.task for result in results(path)} <= OF_RANKS
         is_free = count is answers and path.stem in NOT_UNIQUE
-        assert count.rejected > (0.75 if of_ranks else 0.4 if is_free else 0.8) * count.tried
+        of_signs = count is lines and path.stem in OF_SIGNS
+        assert count.rejected > (0.75 if of_ranks or of_signs else 0.4 if is_free else 0.8) * count.tried
     assert lines.tried >= 100
 
 
