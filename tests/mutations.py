@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import Derivation, Section, Sentence
@@ -28,7 +29,9 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.phrases import slots_of
-from symobs.region.routh import ORIGINS, RouthRow
+from symobs.picture import Curve, Mark, PoleMap
+from symobs.region.inequalities import Bound
+from symobs.region.routh import ORIGINS, RouthRow, RouthTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,7 +63,16 @@ _OTHER_WORDS = [
     ("case_survives_state_feedback", "case_no_state_feedback"),
     ("routh_positive", "routh_negative"),
     ("routh_criterion_positive", "routh_criterion_negative"),
+    ("connected_bounded", "connected_unbounded"),
+    ("box_bounded", "box_unbounded"),
 ]
+#: Words that count something: another of the same row says another number.
+_NUMBERS = (
+    ("none", "one", "two", "three", "four", "all"),
+    ("once", "twice"),
+    ("first", "second", "third", "only"),
+    ("nine", "twelve", "eleven"),
+)
 OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS}
 
 
@@ -88,6 +100,13 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, int):
         yield Change("+1", "number", item + 1)
         yield Change("-1", "number", item - 1)
+    elif isinstance(item, Fraction):
+        yield Change("+1", "number", item + 1)
+        yield Change("*(-1)-1", "number", -item - 1)
+    elif isinstance(item, Bound):
+        yield Change(".operator", "structure", item._replace(operator="!=" if item.operator == ">" else ">"))
+        for change in changes(item.polynomial):
+            yield change.within(".polynomial", item._replace(polynomial=change.value))
     elif isinstance(item, tuple):
         for index, part in enumerate(item):
             for change in changes(part):
@@ -100,12 +119,23 @@ def changes(item: Any) -> Iterator[Change]:
         yield from _of_relation(item)
     elif isinstance(item, Root):
         yield from _of_root(item)
-    elif isinstance(item, Sentence) and item.key in OTHER_WORDS:
-        yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+    elif isinstance(item, Sentence):
+        if item.key in OTHER_WORDS:
+            yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+        yield from _of_counts(item)
         yield from _of_parts(item)
     elif isinstance(item, RouthRow):
         yield from (Change(f".origin {o}", "structure", replace(item, origin=o)) for o in ORIGINS if o != item.origin)
         yield Change(".entries shortened", "structure", replace(item, entries=item.entries[:-1]))
+        yield Change(".entries lengthened", "structure", replace(item, entries=(*item.entries, Scalar.of(0))))
+        yield from _of_parts(item)
+    elif isinstance(item, RouthTable):
+        for index in range(len(item.rows)):
+            rows = (*item.rows[:index], *item.rows[index + 1 :])
+            yield Change(f".rows[{index}] left out", "structure", replace(item, rows=rows))
+        yield from _of_parts(item)
+    elif isinstance(item, (Curve, Mark, PoleMap)):
+        yield from _of_drawn(item)
         yield from _of_parts(item)
     elif isinstance(item, NODES):
         yield from _of_formula(item)
@@ -118,6 +148,29 @@ def _of_parts(item: Any) -> Iterator[Change]:
     for field in fields(item):
         for change in changes(getattr(item, field.name)):
             yield change.within(f".{field.name}", replace(item, **{field.name: change.value}))
+
+
+def _of_counts(sentence: Sentence) -> Iterator[Change]:
+    """Yield a sentence with another number in one of its words."""
+    for index, (name, slot) in enumerate(sentence.slots):
+        words = slot.split() if isinstance(slot, str) else []
+        for place, word in enumerate(words):
+            for numbers in _NUMBERS:
+                for other in [n for n in numbers if word in numbers and n != word][:2]:
+                    said = " ".join([*words[:place], other, *words[place + 1 :]])
+                    slots = (*sentence.slots[:index], (name, said), *sentence.slots[index + 1 :])
+                    yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
+
+
+def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
+    """Yield what is drawn with another meaning: no boundary, another kind of point, the other kind of time."""
+    if isinstance(item, Curve):
+        yield Change(".boundary", "structure", replace(item, boundary=not item.boundary))
+    elif isinstance(item, Mark):
+        kinds = {"stable", "unstable", "excluded"} - {item.kind}
+        yield from (Change(f".kind {kind}", "structure", replace(item, kind=kind)) for kind in sorted(kinds))
+    else:
+        yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:

@@ -14,9 +14,23 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.functions import PI, known
+from symobs.exact.functions import PI, known, symbols_in
 from symobs.exact.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -28,6 +42,7 @@ from symobs.formula import (
     Integral,
     Letter,
     Literal,
+    Names,
     Negative,
     Power,
     Predicate,
@@ -40,14 +55,16 @@ from symobs.formula import (
     Together,
     Transpose,
 )
+from tests import regions_in_plain_fractions as regions
 from tests import series
-from tests.plain import multiply, transposed
+from tests.plain import coefficients_at, multiply, transposed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.derivation import Step
     from symobs.formula import Environment, Fact, Formula
+    from symobs.picture import Picture
     from tests.plain import Rows
 
 LARGEST = 2**30
@@ -209,6 +226,8 @@ class World:
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
         function = known(name)
+        if regions.is_number(name):
+            return regions.number_of(name)
         if isinstance(function, RootSum):
             q = [self.scalar(c) for c in function.polynomial.coefficients(EIGENVALUE)]
             return series.root_sum(q, function.power, self.scalar(function.argument))  # type: ignore[no-any-return]
@@ -378,6 +397,13 @@ class World:
                         yield f"label {name}", self.value(label)
                 case Tabulate():
                     yield from self.table(step)
+                case Where(fact):
+                    yield from self.facts((fact,))
+                case Survey():
+                    yield from self.survey(step)
+                case Plot(picture, subject):
+                    yield "property stable", single(self.value(subject))
+                    yield "=", Fraction(len(list(self.seen(picture, subject))))
                 case Case(when, substitution, inside):
                     stratum = self.copy()
                     if isinstance(when, Relation) and when.operators == ("=",) and not substitution:
@@ -419,6 +445,66 @@ class World:
                 yield "=", Fraction(any(crossed if origin == "auxiliary" else crossed[:1]))
         yield "shape", [(power, origin, len(entries)) for power, entries, origin in rows]
         yield "words", [(finding.key, repr(finding.slots)) for finding in step.findings]
+
+    def survey(self, step: Survey) -> Iterator[tuple[str, Any]]:
+        """Yield of which polynomial it is, whether the parts are where it is stable, and the findings."""
+        yield "property stable", single(self.value(step.polynomial))
+        signs = {name: self.signs.get(name, "real") for name in self.names_of(step.polynomial)}
+        samples = list(regions.points(tuple(signs), signs, self.seed))
+
+        def stable(point: Mapping[str, Fraction]) -> bool:
+            return self.is_stable(step.polynomial, point)
+
+        if step.parts:
+            wrong = sum(stable(p) != any(regions.all_hold(part, p) for part in step.parts) for p in samples)
+            yield "=", Fraction(wrong)
+        yield "=", Fraction(sum(not regions.is_so(finding, stable, samples, step.names) for finding in step.findings))
+        yield "words", (step.names, [repr(finding) for finding in step.findings])
+
+    def seen(self, picture: Picture, subject: Formula) -> Iterator[str]:
+        """Yield what a picture shows that is not so."""
+        value = self.polynomial_of(subject)
+        assert value is not None
+        yield from regions.faults(picture, value, self.variable, discrete=self.is_discrete)
+
+    @property
+    def is_discrete(self) -> bool:
+        return self.variable == "z"
+
+    def polynomial_of(self, subject: Formula) -> Scalar | None:
+        """Return the value of a letter that is a polynomial in the variable, up to a number, None where it is none."""
+        if isinstance(subject, Negative):
+            return self.polynomial_of(subject.operand)
+        if isinstance(subject, Sum) and len(set(subject.terms)) == 1:
+            return self.polynomial_of(subject.terms[0])
+        value = self.letters.get(subject.name) if isinstance(subject, Letter) else None
+        value = value.value if isinstance(value, Literal) else value
+        if not isinstance(value, Scalar) or self.variable in value.denominator.names:
+            return None
+        return None if value.names & set(self.meanings) else value
+
+    def names_of(self, subject: Formula) -> frozenset[str]:
+        value = self.polynomial_of(subject)
+        assert value is not None
+        return frozenset(value.names) - {self.variable}
+
+    def is_stable(self, subject: Formula, point: Mapping[str, Fraction]) -> bool:
+        value = self.polynomial_of(subject)
+        assert value is not None
+        return regions.is_stable(coefficients_at(value, self.variable, point), discrete=self.is_discrete)
+
+    def region(self, fact: Exactly) -> Iterator[tuple[str, Any]]:
+        """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
+        about = fact.property.subject
+        wrong = 0
+        said = {name for relation in fact.where for member in relation.members for name in _symbols(member)}
+        names = {*said, *self.names_of(about)}
+        for point in regions.points(tuple(names), self.signs, self.seed):
+            try:
+                wrong += self.is_stable(about, point) != regions.all_hold(fact.where, point)
+            except ZeroDivisionError:  # there is no polynomial there
+                continue
+        yield "=", Fraction(wrong)
 
     def eigenvalue(self, when: Relation) -> Fraction:
         """Return a root of the equation in λ."""
@@ -471,9 +557,14 @@ class World:
                     yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
                 case Exactly(about, where):
                     yield f"property {about.name}", single(self.value(about.subject))
+                    if about.name == "stable" and self.polynomial_of(about.subject) is not None:
+                        yield from self.region(fact)
+                        continue
                     yield "region", [(relation.operators, single(self.difference(relation))) for relation in where]
                 case str():
                     yield "word", fact
+                case Names(names):
+                    yield "word", names
                 case _:
                     yield "shown", self.value(fact)
 
@@ -482,6 +573,10 @@ class World:
             return ("of", tuple(self.coefficients(root.factor)), root.index)
         radicand = self.scalar(root.radicand)
         return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
+
+
+def _symbols(member: Formula) -> frozenset[str]:
+    return symbols_in(member.value) if isinstance(member, Literal) and isinstance(member.value, Scalar) else frozenset()
 
 
 def _at(row: Sequence[Fraction], place: int) -> Fraction:

@@ -19,6 +19,7 @@ from symobs.problem import read
 from tests.claims import Setting, conditions_hold
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.claims_of_advice import advice_holds
+from tests.claims_of_regions import region_holds
 from tests.mutations import parts_of
 from tests.plain import (
     at_number,
@@ -177,6 +178,9 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": fixed}
     if part.task in {"feedforward", "tracking"}:
         return errors_of(part, point, A, B, C, s)
+    if part.task == "stability_region":
+        region_holds(part, point)  # type: ignore[arg-type]
+        return {}
     if part.task == "pole_advice":
         advice_holds(part, Setting.of(part.plant, {}, point))
         return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)}

@@ -121,6 +121,8 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
         for name, entry in value.items():
             for change in spoiled(entry, name, names):
                 yield value | {name: change}
+    elif key in {"intervals", "intervals_decimal"}:
+        yield from spoiled_intervals(value)
     elif isinstance(value, list) and (not value or not isinstance(value[0], list)):
         yield from spoiled_list(value, key, names)
     elif value in ("yes", "no", "conditional"):
@@ -136,6 +138,17 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
                 yield [*rows[:i], [*row[:j], f"{entry} + 1", *row[j + 1 :]], *rows[i + 1 :]]
     else:
         yield f"{value} + 1"
+
+
+def spoiled_intervals(value: list[list[str]]) -> Iterator[list[list[str]]]:
+    """Yield a list of pairs with one end moved or at infinity, and with a pair left out or added."""
+    for i, pair in enumerate(value):
+        for j, end in enumerate(pair):
+            moved = "1234" if end in {"oo", "-oo"} else f"{end} + 1"
+            for other in {moved, "oo" if j else "-oo"} - {end}:
+                yield [*value[:i], [*pair[:j], other, *pair[j + 1 :]], *value[i + 1 :]]
+        yield [*value[:i], *value[i + 1 :]]
+    yield [*value, ["1234", "1235"]]
 
 
 def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:

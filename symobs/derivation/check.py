@@ -33,7 +33,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.tables import is_tabulated
+from symobs.derivation.tables import is_tabulated, last_determinant
 from symobs.errors import DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, product_of, roots_are
 from symobs.exact.functions import substitute
@@ -48,6 +48,7 @@ from symobs.formula import (
     Letter,
     Literal,
     Names,
+    Negative,
     Predicate,
     Relation,
     Roots,
@@ -65,7 +66,7 @@ from symobs.pointwise import never_together_zero
 from symobs.stability import monic
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from symobs.picture import Picture
 
@@ -96,6 +97,8 @@ class Derivation:
         return known
 
 
+#: Sentences that move a boundary, and those that say to which limit.
+MOVES = {"moved_right": "sought_margin", "enlarged": "sought_radius"}
 #: The letter that a label of a diagram must agree with, where the page has it.
 _LABELS = {"plant": "P", "compensator": "F"}
 
@@ -121,8 +124,9 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                     environment = _assume(relation, environment)
                 else:
                     environment = _introduce(relation, environment)
-        case Define(relation):
+        case Define(relation, sentence):
             environment = _introduce(relation, environment)
+            _told_of(relation, sentence, environment)
         case Equal(relations):
             for relation in relations:
                 _fact(relation, environment, discrete)
@@ -133,16 +137,14 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             for fact in facts:
                 _fact(fact, environment, discrete)
             _asserted(step.sentence, facts)
+            environment = _sought(step.sentence, environment)
         case Diagram(_, labels):
             for name, label in labels:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
-        case Tabulate(polynomial, variable=variable):
-            _about_letters(polynomial, environment)
-            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
-            if not is_tabulated(step, value, environment):
-                _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+        case Tabulate():
+            environment = _tabulated(step, environment, discrete)
         case Where(fact):
             _fact(fact, environment, discrete)
         case Survey(polynomial):
@@ -163,6 +165,54 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             assert_never(step)
     _sentence(getattr(step, "sentence", None), environment, discrete)
     return environment
+
+
+def _sought(sentence: Sentence | None, environment: Environment) -> Environment:
+    """Remember the limit that is asked for: where the boundary is moved from, it is this one."""
+    if sentence is None or sentence.key not in MOVES.values():
+        return environment
+    limit = evaluate(_slot(sentence, "limit"), environment, Exact(environment))
+    return environment.having(values={sentence.key: limit})
+
+
+def _told_of(relation: Relation, sentence: Sentence | None, environment: Environment) -> None:
+    """Reject a map that is not the one applied in the relation, or does not move to the limit asked for."""
+    if sentence is None or sentence.key not in {*MOVES, "mapped"}:
+        return
+    told = _slot(sentence, "image" if sentence.key == "mapped" else "by")
+    if not any(told in _within(member) for member in relation.members):
+        _reject(f"{sentence.key} by {plain(told, environment.variable)}")
+    if sentence.key in MOVES:
+        limit = told if sentence.key == "enlarged" else Negative(told)
+        wanted = environment.values.get(MOVES[sentence.key])
+        if wanted is None or as_scalar(wanted) != as_scalar(evaluate(limit, environment, Exact(environment))):
+            _reject(f"{sentence.key} by {plain(told, environment.variable)}")
+
+
+def _slot(sentence: Sentence, name: str) -> Formula:
+    found = dict(sentence.slots)[name]
+    if not isinstance(found, Formula):
+        _reject(f"{found} in a sentence, where a formula stands,")
+    return found
+
+
+def _within(formula: Formula) -> Iterator[Formula]:
+    yield formula
+    for part in children(formula):
+        yield from _within(part)
+
+
+def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    """Verify a table and whose it is said to be; let Δₙ₋₁ mean what it does beside this table."""
+    polynomial, variable = step.polynomial, step.variable
+    _about_letters(polynomial, environment)
+    value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+    if not is_tabulated(step, value, environment):
+        _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+    for name, slot in step.sentence.slots if step.sentence else ():
+        if name == "polynomial" and isinstance(slot, Formula):
+            _fact(Relation((slot, polynomial), ("=",)), environment, discrete)
+    return environment.having(values=last_determinant(value, variable))
 
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001

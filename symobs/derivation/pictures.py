@@ -27,13 +27,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symobs.formula import Environment, Formula, Relation
-    from symobs.picture import End, Interval, Picture, Place
+    from symobs.picture import Curve, End, Interval, Picture, Place
 
 #: Parts of a window: what is near a curve or an end, what the middle of a drawn segment may lie off its curve, and how
 #: far a pole may lie from its path.
 _NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200)
 #: A condition of stability is all but zero where it is so much smaller than at the points around.
 _SMALLER = 16
+#: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
+_PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
+_NOWHERE = (Fraction(0), Fraction(0))
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 _SIGNS: dict[str, Callable[[Fraction], bool]] = {
     "positive": lambda value: value > 0,
@@ -145,12 +148,20 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             _passes(value, test.axes, place, between) for place in inside
         ):
             yield plain_relation(curve.equation, test.variable)
+        elif curve.boundary not in _are_boundaries(curve, picture.window, test):
+            yield f"{plain_relation(curve.equation, test.variable)} is {'a' if curve.boundary else 'no'} boundary"
+    drawn = [value for value in equations.values() if value]
     excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
     for area in picture.areas:
-        edges = [place for place in area if not _on_border(place, picture.window, near)]
-        for place in edges:
-            passes = any(_passes(value, test.axes, place, near) for value in equations.values() if value)
-            if not passes and not test.is_stable(*place):
+        for place in area:
+            if not _within(place, picture.window, near):
+                yield f"an edge at {_written(place)}, outside of the window"
+            elif not _on_border(place, picture.window, near):
+                passes = any(_passes(value, test.axes, place, near) for value in drawn)
+                if not passes:
+                    yield f"an edge at {_written(place)}"
+        for place in _sloping(area, near):
+            if not any(_passes(value, test.axes, place, between) for value in drawn):
                 yield f"an edge at {_written(place)}"
         samples = (place for place in _inside(area, near[0]) if place not in excluded)
         yield from (f"{_written(place)} is stable" for place in samples if not test.is_stable(*place))
@@ -165,6 +176,10 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
         }
         if not agrees.get(mark.kind, False):
             yield f"{_written(mark.place)} is {mark.kind}"
+    for place in _grid(picture.window):
+        is_apart = not any(_passes(value, test.axes, place, near) for value in drawn)
+        if is_apart and test.is_stable(*place) != any(_contains(area, place) for area in picture.areas):
+            yield f"{_written(place)} is {'not ' if test.is_stable(*place) else ''}stable"
 
 
 def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
@@ -205,12 +220,50 @@ def _middle(a: Place, b: Place) -> Place:
     return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
 
 
-def _within(place: Place, window: tuple[Interval, Interval]) -> bool:
-    return all(low <= part <= high for part, (low, high) in zip(place, window, strict=True))
+def _within(place: Place, window: tuple[Interval, Interval], near: Place = _NOWHERE) -> bool:
+    """Whether a place lies in the window, or as near to it as cannot be told apart."""
+    return all(low - step <= part <= high + step for part, (low, high), step in zip(place, window, near, strict=True))
+
+
+def _sloping(area: Sequence[Place], near: Place) -> Iterator[Place]:
+    """Yield the middles of edges that can be seen to be parallel to no axis: they are parts of curves."""
+    for a, b in zip(area, (*area[1:], area[0]), strict=True):
+        if all(abs(p - q) > step for p, q, step in zip(a, b, near, strict=True)):
+            yield _middle(a, b)
+
+
+def _grid(window: tuple[Interval, Interval]) -> Iterator[Place]:
+    """Yield places all over the window."""
+    (left, right), (bottom, top) = window
+    for i in range(_PLACES):
+        for j in range(_PLACES):
+            x, y = Fraction(97 * i + 41, 97 * _PLACES), Fraction(97 * j + 43, 97 * _PLACES)
+            yield left + (right - left) * x, bottom + (top - bottom) * y
+
+
+def _are_boundaries(curve: Curve, window: tuple[Interval, Interval], test: _Test) -> set[bool]:
+    """Return whether a curve can be called a boundary, and whether it can be called none.
+
+    At some of its points a place on either side is asked for; a boundary is what something stable lies beside.
+    """
+    width, height = (high - low for low, high in window)
+    points = curve.points if len(curve.points) > 2 else (curve.points[0], _middle(*curve.points), curve.points[-1])
+    seen: set[bool] = set()
+    for k in range(1, len(points) - 1, max(1, len(points) // _ASKED)):
+        (x, y), (x0, y0), (x1, y1) = points[k], points[k - 1], points[k + 1]
+        across = (y0 - y1) / height, (x1 - x0) / width
+        if not any(across):
+            continue  # it turns back here
+        size = _BESIDE / max(map(abs, across))
+        aside = across[0] * size * width, across[1] * size * height
+        for place in ((x + aside[0], y + aside[1]), (x - aside[0], y - aside[1])):
+            if _within(place, window):
+                seen.add(test.is_stable(*place))
+    return {True in seen} if seen else {True, False}
 
 
 def _on_border(place: Place, window: tuple[Interval, Interval], near: Place) -> bool:
-    """Whether a place lies on the border of the window, or beyond it where nothing is drawn."""
+    """Whether a place lies on the border of the window."""
     return any(
         part <= low + step or part >= high - step for part, (low, high), step in zip(place, window, near, strict=True)
     )
@@ -315,6 +368,8 @@ def _of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, discrete: 
         yield f"there are {len(picture.paths)} poles"
         return
     begin, end = picture.values
+    if any(not _within(place, picture.window) for path in picture.paths for place in path):
+        yield "the poles do not leave the window"
     near = min(high - low for low, high in picture.window) * _NEAR_POLE
     for path, along in zip(picture.paths, picture.along, strict=True):
         falling = sorted(along, reverse=begin > end)

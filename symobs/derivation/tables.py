@@ -12,6 +12,7 @@ from symobs.formula import Literal, Relation
 from symobs.phrases.routh import changes_sign, roots_lie
 from symobs.region.root_count import imaginary_axis_roots, right_half_plane_roots
 from symobs.region.routh import is_routh_table, sign_changes
+from symobs.stability import hurwitz_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from symobs.derivation.steps import Tabulate
     from symobs.formula import Environment
     from symobs.region.routh import RouthTable
+
+#: Of polynomials with more parameters the determinant that decides with the last coefficient is not written.
+MOST_PARAMETERS = 2
 
 
 def is_tabulated(step: Tabulate, value: Scalar, environment: Environment) -> bool:
@@ -98,3 +102,12 @@ def _with_parameters(table: RouthTable, signs: Mapping[str, str]) -> Iterator[Se
     else:
         nonzero = Relation((Literal(leading), Literal(Scalar.of(0))), ("!=",))
         yield Sentence("routh_criterion_where", (("leading", nonzero),))
+
+
+def last_determinant(polynomial: Scalar, variable: str) -> dict[str, Scalar]:
+    """Return what the letter Δₙ₋₁ means beside the table of a polynomial with one or two parameters: Hurwitz' determinant."""
+    order, parameters = polynomial.degree(variable), polynomial.names - {variable}
+    if order < 2 or not 1 <= len(parameters) <= MOST_PARAMETERS:
+        return {}
+    rows = range(order - 1)
+    return {f"Delta_{order - 1}": hurwitz_matrix(polynomial.coefficients(variable)).select(rows, rows).determinant()}
