@@ -5,10 +5,8 @@ Standard output carries the result only; messages go to standard error.
 
 from __future__ import annotations
 
-import errno
 import gc
 import inspect
-import os
 import re
 import sys
 from contextlib import suppress
@@ -19,6 +17,7 @@ from typing import Any, NoReturn
 import click
 
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
+from symobs.output import binary, write
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 PLANT_OPTIONS = {
@@ -83,6 +82,7 @@ def cli() -> None:
 
 FORMAT_HELP = "latex (default), text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
+PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 
 
 @cli.command()
@@ -90,7 +90,8 @@ TARGET_HELP = "Write to PATH; its suffix names the format where --format does no
 @click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
 @click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
-def solve(file: str, task_name: str | None, format_name: str | None, target: str | None) -> None:
+@click.option("--plot", metavar="PATH", help=PLOT_HELP)
+def solve(file: str, task_name: str | None, format_name: str | None, target: str | None, plot: str | None) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs.method import tasks  # noqa: PLC0415
     from symobs.problem import parse, validate  # noqa: PLC0415
@@ -98,11 +99,22 @@ def solve(file: str, task_name: str | None, format_name: str | None, target: str
     chosen = _format_of(format_name, target)
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
-    _run(validate(parse(_read(file), file), task_name), chosen, target, some=task_name is not None)
+    _check_plot(plot, target)
+    _run(validate(parse(_read(file), file), task_name), chosen, target, plot, some=task_name is not None)
 
 
-def _run(found: Any, format_name: str, target: str | None, *, some: bool = False) -> None:
-    """Solve a problem, write the document, and leave with the contract's exit code.
+def _check_plot(path: str | None, target: str | None) -> None:
+    """Say at once that no picture can be written to a file."""
+    if path is not None:
+        from symobs.render.plot_files import check_target  # noqa: PLC0415 - only with --plot
+
+        check_target(path)
+        if target is not None and Path(path).resolve() == Path(target).resolve():
+            raise UsageError("the result is written to that file", where="--plot", repair="name another file")
+
+
+def _run(found: Any, format_name: str, target: str | None, plot: str | None, *, some: bool = False) -> None:
+    """Solve a problem, write the document and the picture, and leave with the contract's exit code.
 
     With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.
     """
@@ -112,7 +124,11 @@ def _run(found: Any, format_name: str, target: str | None, *, some: bool = False
     results = found.solve(_progress(found))
     expect = applicable(results, found.expect) if some else found.expect
     unmet = mismatches(results, expect)
-    _write(render(found.document(results), format_name), target)
+    write(render(found.document(results), format_name), target)
+    if plot is not None:
+        from symobs.render.plot_files import picture_file  # noqa: PLC0415
+
+        write(picture_file(results, plot), plot)
     for line in unmet:
         _say(line)
     if expect:
@@ -165,7 +181,7 @@ def _read(file: str) -> str:
     where = shown(file, 200)
     try:
         if file == "-":
-            raw: bytes = _binary(sys.stdin).read(MAX_BYTES + 1)
+            raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)
         else:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
@@ -181,62 +197,6 @@ def _read(file: str) -> str:
     except UnicodeDecodeError as error:
         message = f"byte {error.start} is not UTF-8"
         raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
-
-
-# -- what is written ------------------------------------------------------------------------------------------------
-
-
-def _write(content: str | bytes, target: str | None = None) -> None:
-    """Write the whole result or nothing."""
-    data = content.encode() if isinstance(content, str) else content
-    try:
-        if target is not None and target != "-":
-            _write_file(data, Path(os.path.realpath(target)))
-            return
-        stream = _binary(sys.stdout)
-        if isinstance(content, bytes) and stream.isatty():
-            raise UsageError("this format is not text", repair="name a file with -o")
-        stream.write(data)
-        stream.flush()
-    except BrokenPipeError:  # whoever read this has read enough; what is left in the buffer goes nowhere
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        where = "standard output" if target is None else target[:200]
-        raise InputError(reason, where=where, repair="name a file in a folder that can be written") from None
-
-
-def _write_file(data: bytes, target: Path) -> None:
-    """Put a file in its place when it is complete; what is no regular file (/dev/stdout) is written to directly."""
-    import tempfile  # noqa: PLC0415 - only with -o
-
-    if target.exists() and not target.is_file():
-        target.write_bytes(data)
-        return
-    mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
-    with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".symobs-", delete=False) as stream:
-        temporary = Path(stream.name)
-        try:
-            stream.write(data)
-            stream.close()
-            temporary.chmod(mode)
-            temporary.replace(target)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
-
-
-def _binary(stream: Any) -> Any:
-    """Return the bytes below a standard stream; it is None where it was closed before we began."""
-    if stream is None:
-        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
-    return stream.buffer
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 # -- one command a task ---------------------------------------------------------------------------------------------
@@ -258,6 +218,7 @@ def _task_command(task: Any) -> click.Command:
         click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
         click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
         click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
+        click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
     ]
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
     return click.Command(
@@ -278,13 +239,14 @@ def _run_task(task: Any, options: dict[str, Any]) -> None:
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
     chosen = _format_of(options["format_name"], options["target"])
+    _check_plot(options["plot"], options["target"])
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     try:
-        _run(validate(data), chosen, options["target"])
+        _run(validate(data), chosen, options["target"], options["plot"])
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
@@ -311,7 +273,7 @@ def methods() -> None:
         lines.append(f"{name}: {task.summary}")
         for found in known(name).values():
             lines += [f"    {found.name}: {found.summary}", f"        {found.source}"]
-    _write("\n".join(lines) + "\n")
+    write("\n".join(lines) + "\n")
 
 
 @cli.command()
@@ -321,13 +283,13 @@ def schema() -> None:
 
     from symobs.problem import schema as whole  # noqa: PLC0415
 
-    _write(json.dumps(whole(), indent=2, ensure_ascii=False) + "\n")
+    write(json.dumps(whole(), indent=2, ensure_ascii=False) + "\n")
 
 
 @cli.command()
 def conventions() -> None:
     """List the conventions a page can be written in."""
-    _write("standard: u = −K x̂, observer matrix A − L C, error e = x − x̂, compensator F in negative feedback\n")
+    write("standard: u = −K x̂, observer matrix A − L C, error e = x − x̂, compensator F in negative feedback\n")
 
 
 @cli.group(invoke_without_command=True)
@@ -335,7 +297,7 @@ def conventions() -> None:
 def templates(ctx: click.Context) -> None:
     """List the built-in LaTeX templates, or copy them."""
     if ctx.invoked_subcommand is None:
-        _write("".join(f"{path.name}\n" for path in _templates()))
+        write("".join(f"{path.name}\n" for path in _templates()))
 
 
 @templates.command()
@@ -353,7 +315,7 @@ def copy(folder: str) -> None:
         reason = error.strerror or str(error)
         raise InputError(reason, where=folder[:200], repair="name a folder that can be written") from None
     for path in _templates():
-        _write(path.read_bytes(), str(target / path.name))
+        write(path.read_bytes(), str(target / path.name))
 
 
 def _templates() -> list[Path]:

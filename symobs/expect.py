@@ -218,9 +218,32 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: s
         return alike and all(
             _is_matrix(entry, value, names, where) for entry, value in zip(expected, found, strict=True)
         )
+    if all(isinstance(entry, list) and all(isinstance(end, str) for end in entry) for entry in found):
+        return _intervals_agree(found, expected, names, where)
     if all(isinstance(entry, list) for entry in found):
         return _same_span(found, expected, names, where)
     return bool(found == expected)
+
+
+def _intervals_agree(found: list[list[str]], expected: list[Any], names: Any, where: str) -> bool:
+    """Tell whether the ends of intervals are those expected: -oo, oo, CRootOf(polynomial, index), or a closed form."""
+    if len(found) != len(expected) or not all(isinstance(pair, list) and len(pair) == 2 for pair in expected):
+        return False
+    pairs = zip((end for pair in found for end in pair), (end for pair in expected for end in pair), strict=True)
+    return all(_is_end(end, str(wanted), names, where) for end, wanted in pairs)
+
+
+def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
+    if {found, expected} & {"oo", "-oo"}:
+        return found == expected
+    counted = _COUNTED.fullmatch(found), _COUNTED.fullmatch(expected)
+    if counted[0] and counted[1]:
+        polynomials = [parse_scalar(match[1], names, where=where).numerator.factors()[1] for match in counted if match]
+        return polynomials[0] == polynomials[1] and int(counted[0][2]) == int(counted[1][2])
+    if counted[0] or counted[1]:
+        return False
+    left, right = (parse_scalar(text, names, where=where, functions=True) for text in (found, expected))
+    return functions_agree(left, right)
 
 
 def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
@@ -240,7 +263,8 @@ def _relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
         message = f'"{shown(str(text))}" is not a relation'
         raise InputError(message, where=where, repair='write for example "2*c - 1 != 0"')
     left, operator, right = match.groups()
-    difference = parse_scalar(left, names, where=where) - parse_scalar(right, names, where=where)
+    difference = parse_scalar(left, names, where=where, functions=True)
+    difference = difference - parse_scalar(right, names, where=where, functions=True)
     if operator in {"<", "<="}:
         difference, operator = -difference, operator.replace("<", ">")
     if difference.is_zero:

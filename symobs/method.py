@@ -1,8 +1,7 @@
 """Results, and the registries of tasks, methods and formats (trusted).
 
-A `Result` cannot exist unless its claims hold: the constructor checks them, and the claims belong to the result's type,
-not to the method that found the answer.  Tasks, methods and output formats register themselves by decorators; their
-modules are discovered in the packages named by `symobs.PACKAGES`, so adding one is adding a file.
+A `Result` cannot exist unless its claims hold: the constructor checks them, and they belong to the result's type, not to
+the method.  Tasks, methods and formats register themselves by decorators in modules that are discovered.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar, get_args
 
 import symobs
-from symobs.certificate import SENSELESS, Certificate, Claim, check_all
+from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, UsageError
 from symobs.page import Page
@@ -26,6 +25,7 @@ from symobs.page import Page
 if TYPE_CHECKING:
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
+    from symobs.picture import Picture
     from symobs.system import StateSpace
 
 Kind = TypeVar("Kind", bound=type)
@@ -78,7 +78,7 @@ class Result:
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
-    def claims(self) -> Iterator[Claim]:
+    def claims(self) -> Iterator[Claim | Statement]:
         """Yield what must hold."""
         raise NotImplementedError
 
@@ -110,6 +110,11 @@ class Result:
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of this result and of those it is made of."""
         return self.certificates
+
+    @property
+    def picture(self) -> Picture | None:
+        """The picture of the answer that the page shows, where there is one."""
+        return None
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -229,12 +234,13 @@ class Method:
 
 @dataclass(frozen=True)
 class Task:
-    """A question one can ask: its function, and its keywords with the kinds they are of."""
+    """A question one can ask: its function, its keywords with their kinds; `alone` where it needs no plant."""
 
     name: str
     function: Callable[..., Result]
     keywords: Mapping[str, str]
     summary: str
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -255,6 +261,7 @@ _TASKS: dict[str, Task] = {}
 _IN_TIME: list[str] = []
 _METHODS: dict[str, Method] = {}
 _FORMATS: dict[str, Any] = {}
+_DISCOVERED: set[str] = set()
 
 
 def task(function: Callback) -> Callback:
@@ -273,7 +280,7 @@ def _of_constant_plants(function: Callback) -> Callback:
 
     @wraps(function)
     def refusing(plant: StateSpace, *arguments: Any, **keywords: Any) -> Result:
-        if plant.is_time_varying:
+        if getattr(plant, "is_time_varying", False):  # a text is no plant
             message = f"{function.__name__} is for plants with constant matrices, and this plant depends on the time t"
             tasks()
             repair = f"use {' or '.join(_IN_TIME)}, or give a constant that is called t another name"
@@ -286,12 +293,10 @@ def _of_constant_plants(function: Callback) -> Callback:
 
 def _registered(function: Callback) -> Callback:
     """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
-    keywords = {
-        name: _kind(parameter.annotation)
-        for name, parameter in inspect.signature(function).parameters.items()
-        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
-    }
-    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function))
+    signature = inspect.signature(function).parameters
+    keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
+    alone = signature["plant"].default is None
+    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), alone)
     return function
 
 
@@ -326,19 +331,15 @@ def _summary(function: Callable[..., Any]) -> str:
 
 def _discover(package: str) -> None:
     """Import every module of a package, once."""
-    if package in _DISCOVERED:
-        return
-    _DISCOVERED.add(package)
-    for found in _modules(package):
-        importlib.import_module(f"{package}.{found.name}")
+    if package not in _DISCOVERED:
+        _DISCOVERED.add(package)
+        for found in _modules(package):
+            importlib.import_module(f"{package}.{found.name}")
 
 
 def _modules(package: str) -> Iterator[pkgutil.ModuleInfo]:
     """Yield the modules of a package, without importing them."""
     yield from pkgutil.iter_modules(importlib.import_module(package).__path__)
-
-
-_DISCOVERED: set[str] = set()
 
 
 def tasks() -> Mapping[str, Task]:

@@ -14,9 +14,12 @@ from symobs.derivation import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Step,
+    Tabulate,
+    findings_of,
 )
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import identities, known, roots_in
@@ -29,6 +32,7 @@ from symobs.formula import (
     Identity,
     Letter,
     Literal,
+    Names,
     Predicate,
     Relation,
     Roots,
@@ -37,11 +41,17 @@ from symobs.formula import (
 )
 from symobs.formula.term import Term
 from symobs.notation import sans_serif
+from symobs.region.routh import routh_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.picture import Picture
+    from symobs.region.routh import RouthTable
     from symobs.system import StateSpace
+
+#: What a slot of a sentence may hold besides formulas and words.
+FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
@@ -78,7 +88,7 @@ def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
     filled = tuple(
         (
             name,
-            slot if isinstance(slot, (str, Relation, Predicate, Roots, Exactly, Together, Shown)) else formula_of(slot),
+            slot if isinstance(slot, (str, *FACTS)) else formula_of(slot),
         )
         for name, slot in slots.items()
     )
@@ -274,6 +284,25 @@ class Page:
     def diagram(self, name: str, **labels: Member) -> None:
         """Draw."""
         self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
+
+    def tabulate(
+        self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot
+    ) -> RouthTable:
+        """Show Routh's table of a polynomial, in another variable than the page's where one is named.
+
+        What the table says is told below it, unless `tell` is False.
+        """
+        variable = variable or self.environment.variable
+        coefficients = polynomial.value.coefficients(variable)
+        table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
+        findings = findings_of(table, coefficients, variable, self.environment.signs) if tell else ()
+        because = sentence(say, slots) if say else None
+        self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
+        return table
+
+    def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
+        """Show where a polynomial is stable, or how its roots move: the picture is held against it."""
+        self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager
     def section(self, key: str, **slots: Slot) -> Iterator[None]:

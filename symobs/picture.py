@@ -72,6 +72,7 @@ class PoleMap:
     """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
 
     The stability boundary is the imaginary axis moved left by `margin`, or in discrete time the circle of radius `radius`.
+    `along` are the values of the parameter at the points of each path.
     """
 
     variable: str
@@ -82,6 +83,8 @@ class PoleMap:
     discrete: bool = False
     margin: Fraction | None = None
     radius: Fraction | None = None
+    along: tuple[tuple[Fraction, ...], ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap

@@ -32,6 +32,7 @@ Intensity: TypeAlias = Annotated[Any, "Intensity"]
 Sign: TypeAlias = Annotated[Any, "Sign"]
 Entries: TypeAlias = Annotated[Any, "Entries"]
 Quantity: TypeAlias = Annotated[Any, "Quantity"]
+Names: TypeAlias = Annotated[Any, "Names"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -60,6 +61,10 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "array"}],
     },
     "Quantity": {"description": 'a positive quantity: "omega_0", 10, "1/2"', "type": ["string", "number"]},
+    "Names": {
+        "description": 'names of parameters: a list or a comma-separated text, "h1, h2"',
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+    },
     "Sign": {"description": "1 or -1", "enum": [1, -1]},
     "Name": {"description": "a name", "type": "string"},
     "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
@@ -237,6 +242,25 @@ def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
         message = f"{name} is {quantity}, which is not positive"
         raise InputError(message, where=where, repair=f"give a positive {name}")
     return quantity
+
+
+def read_names(value: object, known: Sequence[str], name: str) -> tuple[str, ...]:
+    """Return names that stand in the problem; raises `InputError` for others, and for one that is named twice."""
+    where = f"specification.{name}"
+    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+    listed = re.split(r"[,;\s]+", value.strip(" []")) if isinstance(value, str) else value
+    listed = [str(entry) for entry in (listed if isinstance(listed, (list, tuple)) else [listed])]
+    for entry in listed:
+        if entry not in known:
+            near = get_close_matches(entry[:64], known, 1)
+            existing = f"the names there are {', '.join(known)}" if known else "no name stands there"
+            repair = f"did you mean {near[0]}?" if near else existing
+            raise InputError(f"{entry[:40]!r} does not stand in the polynomial", where=where, repair=repair)
+    if len(set(listed)) < len(listed) or not listed:
+        message = "a parameter is named twice" if listed else "no parameter is named"
+        raise InputError(message, where=where, repair=f'write for example {name} = "{", ".join(known[:2])}"')
+    return tuple(listed)
 
 
 def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:

@@ -53,13 +53,14 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
 
 def bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:
     """Return the coefficients of Σ aₖ (w + 1)ⁿ⁻ᵏ (w − 1)ᵏ."""
-    w = Scalar.symbol("s")
     order = len(coefficients) - 1
-    total = Scalar.of(0)
+    found = [Scalar.of(0)] * (order + 1)
     for k, coefficient in enumerate(coefficients):
-        total = total + coefficient * (w + 1) ** (order - k) * (w - 1) ** k
-    found = list(total.coefficients("s"))
-    return [Scalar.of(0)] * (order + 1 - len(found)) + found
+        powers = [1]
+        for factor in [1] * (order - k) + [-1] * k:
+            powers = [a + factor * b for a, b in zip([*powers, 0], [0, *powers], strict=True)]
+        found = [total + coefficient * power for total, power in zip(found, powers, strict=True)]
+    return found
 
 
 def hurwitz_matrix(coefficients: Sequence[Scalar]) -> Matrix:

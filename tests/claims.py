@@ -35,6 +35,7 @@ from tests.plain import (
     value_at,
 )
 from tests.plain_fractions import determinant, identity, inverse, plus, times
+from tests.region_answers import holds as relations_hold
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -401,6 +402,13 @@ def applicable(result: Result, point: Point) -> Iterator[Result]:
         yield result
 
 
+def region_holds(result: Any, at: Setting) -> None:
+    """The inequalities hold at the point exactly if all roots are stable there."""
+    names = sorted(at.point)
+    inside = relations_hold(result.stable_if, names)([at.point[name] for name in names])
+    assert inside == at.is_stable(faddeev_leverrier(at.A)[0])
+
+
 HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "observer": design_holds,
     "state_feedback": design_holds,
@@ -413,6 +421,7 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "transfer_function": transfer_holds,
     "reduced_order_observer": reduced_order_holds,
     "pole_advice": advice_holds,
+    "stability_region": region_holds,
     **FUNCTIONS_OF_TIME,
     **MODES,
 }

@@ -28,6 +28,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.phrases import slots_of
+from symobs.region.routh import ORIGINS, RouthRow
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,6 +58,8 @@ _OTHER_WORDS = [
     ("compensator_stable", "compensator_unstable"),
     ("case_survives_observer", "case_no_observer"),
     ("case_survives_state_feedback", "case_no_state_feedback"),
+    ("routh_positive", "routh_negative"),
+    ("routh_criterion_positive", "routh_criterion_negative"),
 ]
 OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS}
 
@@ -99,6 +102,10 @@ def changes(item: Any) -> Iterator[Change]:
         yield from _of_root(item)
     elif isinstance(item, Sentence) and item.key in OTHER_WORDS:
         yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+        yield from _of_parts(item)
+    elif isinstance(item, RouthRow):
+        yield from (Change(f".origin {o}", "structure", replace(item, origin=o)) for o in ORIGINS if o != item.origin)
+        yield Change(".entries shortened", "structure", replace(item, entries=item.entries[:-1]))
         yield from _of_parts(item)
     elif isinstance(item, NODES):
         yield from _of_formula(item)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.functions import PI, known
 from symobs.exact.root_sum import RootSum
@@ -376,6 +376,8 @@ class World:
                 case Diagram(_, labels):
                     for name, label in labels:
                         yield f"label {name}", self.value(label)
+                case Tabulate():
+                    yield from self.table(step)
                 case Case(when, substitution, inside):
                     stratum = self.copy()
                     if isinstance(when, Relation) and when.operators == ("=",) and not substitution:
@@ -393,6 +395,30 @@ class World:
                 yield "words", sentence.key
                 for _, slot in sentence.slots:
                     yield from self.facts((slot,))
+
+    def table(self, step: Tabulate) -> Iterator[tuple[str, Any]]:
+        """Yield what a table says: the polynomial of its two upper rows, the rule of each row, its shape, its findings."""
+        rows = [(row.power, [self.scalar(entry) for entry in row.entries], row.origin) for row in step.table.rows]
+        at, left = self.number(step.variable), single(self.value(step.polynomial))
+        yield "means", left
+        for power, entries, origin in rows[:2]:
+            held = {"auxiliary": [], "epsilon": [Fraction(0), *entries[1:]]}.get(origin, entries)
+            left -= sum((entry * at ** (power - 2 * k) for k, entry in enumerate(held)), Fraction(0))
+        yield "=", left
+        for i, (_, entries, origin) in enumerate(rows[1:], 1):
+            (above, q, _), p = rows[i - 1], rows[i - 2][1]
+            crossed = [q[0] * _at(p, k + 1) - p[0] * _at(q, k + 1) for k in range(len(entries))]
+            for k, (entry, product) in enumerate(zip(entries, crossed, strict=True)):
+                if origin == "auxiliary":
+                    yield "=", entry - (above - 2 * k) * q[k]
+                elif origin == "epsilon" and k == 0:
+                    yield "=", entry - self.number(step.table.epsilon)
+                elif i > 1:
+                    yield "=", entry * q[0] - product
+            if i > 1 and origin in {"auxiliary", "epsilon"}:
+                yield "=", Fraction(any(crossed if origin == "auxiliary" else crossed[:1]))
+        yield "shape", [(power, origin, len(entries)) for power, entries, origin in rows]
+        yield "words", [(finding.key, repr(finding.slots)) for finding in step.findings]
 
     def eigenvalue(self, when: Relation) -> Fraction:
         """Return a root of the equation in λ."""
@@ -456,6 +482,10 @@ class World:
             return ("of", tuple(self.coefficients(root.factor)), root.index)
         radicand = self.scalar(root.radicand)
         return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
+
+
+def _at(row: Sequence[Fraction], place: int) -> Fraction:
+    return row[place] if place < len(row) else Fraction(0)
 
 
 def same_rows(left: Rows, right: Rows) -> bool:

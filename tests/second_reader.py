@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import mpmath
 import sympy
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.exact import Matrix
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import known as function_named
 from symobs.formula import (
     Apply,
@@ -31,6 +31,7 @@ from symobs.formula import (
     Integral,
     Letter,
     Literal,
+    Names,
     Negative,
     Power,
     Predicate,
@@ -44,12 +45,13 @@ from symobs.formula import (
     Transpose,
 )
 from tests.problems_by_hand import compare, inverse, is_stable, is_zero, polynomial_at
+from tests.routh_by_hand import is_so, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.derivation import Derivation, Sentence, Step
-    from symobs.exact import Root, Scalar
+    from symobs.exact import Root
     from symobs.formula import Fact, Formula
 
 Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free signal -> its coefficient matrix
@@ -58,9 +60,12 @@ Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free 
 # -- reading what symobs wrote -----------------------------------------------------------------------------------------
 
 
-def facts_in(item: object) -> Iterator[Fact]:
-    """Yield every fact anywhere in a derivation, by the fields of its dataclasses alone."""
-    if isinstance(item, (Relation, Predicate, Roots, Exactly, Shown)):
+def facts_in(item: object) -> Iterator[Fact | Tabulate]:
+    """Yield every fact anywhere in a derivation, and every table, by the fields of its dataclasses alone."""
+    if isinstance(item, Tabulate):
+        yield item
+        yield from facts_in(item.sentence)
+    elif isinstance(item, (Relation, Predicate, Roots, Exactly, Shown)):
         yield item
     elif isinstance(item, (tuple, list)):
         for part in item:
@@ -70,9 +75,17 @@ def facts_in(item: object) -> Iterator[Fact]:
             yield from facts_in(getattr(item, part.name))
 
 
-def values_of(facts: Iterable[Fact]) -> int:
-    """Count what must agree: all members of a relation but its first; one for any other fact."""
-    return sum(len(fact.members) - 1 if isinstance(fact, Relation) else 1 for fact in facts)
+def values_of(facts: Iterable[Fact | Tabulate]) -> int:
+    """Count what must agree: all members of a relation but its first; entries and findings of a table; else one."""
+    counted = 0
+    for fact in facts:
+        if isinstance(fact, Relation):
+            counted += len(fact.members) - 1
+        elif isinstance(fact, Tabulate):
+            counted += sum(len(row.entries) for row in fact.table.rows) + len(fact.findings)
+        else:
+            counted += 1
+    return counted
 
 
 def sympy_scalar(value: Scalar, names: Mapping[str, Any]) -> Any:
@@ -184,6 +197,8 @@ class Reader:
                 for name, label in labels:
                     letter = {"plant": "P", "compensator": "F"}[name]
                     assert self.agree(self.value(label), self.letters[letter]), label
+            case Tabulate():
+                self.table(step)
             case Case(when, substitution, steps):
                 self.case(when, {name: sympy_scalar(value, self.names) for name, value in substitution}, steps)
             case Section(title, steps):
@@ -191,6 +206,33 @@ class Reader:
                 for inside in steps:
                     self.step(inside)
         self.sentence(getattr(step, "sentence", None))
+
+    def table(self, step: Tabulate) -> None:
+        """Compare every row with one made anew, and every finding with what the table and the roots say."""
+        symbol = sympy.Symbol(step.variable)
+        coefficients = sympy.Poly(sympy.cancel(scalar(self.value(step.polynomial))), symbol).all_coeffs()
+        small = sympy.Symbol("epsilon")
+        names = {**self.names, **({step.table.epsilon: small} if step.table.epsilon else {})}
+        expected = rows_of(coefficients, small)
+        assert len(step.table.rows) == len(expected)
+        for row, (power, entries, origin) in zip(step.table.rows, expected, strict=True):
+            assert (row.power, row.origin, len(row.entries)) == (power, origin, len(entries)), row
+            assert all(is_zero(sympy_scalar(a, names) - b) for a, b in zip(row.entries, entries, strict=True)), row
+            self.tally.compared += len(entries)
+        for finding in step.findings:
+            slots = {name: self.said(slot, {**names, step.variable: sympy.Symbol("s")}) for name, slot in finding.slots}
+            assert is_so(finding.key, slots, expected, coefficients, self.samples()), finding
+            self.tally.compared += 1
+
+    @staticmethod
+    def said(slot: Any, names: Mapping[str, Any]) -> Any:
+        """Return what a slot of a finding says: words, a value, or a comparison."""
+        match slot:
+            case Relation((left, right), (operator,)):
+                return Reader.said(left, names), operator, Reader.said(right, names)
+            case Literal(Scalar() as value):
+                return sympy_scalar(value, names)
+        return slot
 
     def sentence(self, sentence: Sentence | None) -> None:
         if sentence is None:
@@ -200,7 +242,7 @@ class Reader:
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
-            elif not isinstance(slot, str):
+            elif not isinstance(slot, (str, Names)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
     def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symobs.certificate import Bound, Bounds
+from symobs.error_bounds import Bound, Bounds
 from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import Point, VanishingDenominator
 from symobs.formula import (

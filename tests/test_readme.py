@@ -51,6 +51,11 @@ def test_python_gives_the_values_in_its_comments() -> None:
     assert sympy.simplify(minimal.F - (31 * s + 40) / ((1 - 31 * d) * s + 13 - 40 * d)) == 0
     assert sympy.simplify(minimal.direct_term[0] - 31 / (1 - 31 * d)) == 0
     assert [str(condition) for condition in minimal.conditions] == ["Ne(31*d - 1, 0)"]
+    for name in ("region", "pendulum"):
+        (comment,) = re.findall(rf"^{name}\.stable_if  # (.*)$", README, re.MULTILINE)
+        assert list(names[name].stable_if) == eval(comment)  # noqa: S307
+    (component,) = names["region"].components
+    assert (component["bounded"], component["parts"][0]["h1"]) == (True, ("3", "8"))
 
 
 def test_every_promised_value_is_on_a_line_of_its_own() -> None:
@@ -63,9 +68,10 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     (problem,) = blocks("toml")
     (tmp_path / "problem.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 5
+    assert len(lines) == 6
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
         assert run.out or "-o" in line
+    assert (tmp_path / "region.svg").read_bytes().startswith(b"<")
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
+from symobs.region import external
 from symobs.region.conditions import stable_where
 from symobs.region.decide import decide_empty, equivalence_of, implies, same_region
 from symobs.region.external import none_by_cells, none_by_z3
@@ -46,6 +47,13 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither z3 nor qepcad."""
     monkeypatch.setitem(sys.modules, "z3", None)
     monkeypatch.setenv("PATH", "")
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine may be busy; what programs answer is tested, not how soon."""
+    monkeypatch.setattr(external, "CELLS", 60.0)
+    monkeypatch.setattr(external, "QUESTION", 60_000)
 
 
 # -- the prover ----------------------------------------------------------------------------------------------------------
@@ -345,6 +353,7 @@ def test_the_same_region_told_in_two_ways() -> None:
         assert equivalence_of(first, second, {}) is None
 
 
+@pytest.mark.usefixtures("patient")
 def test_qepcad_is_a_second_opinion() -> None:
     assert none_by_cells([], {}) == "maybe"
     answers = [none_by_cells(v, {}) for v in ([x, -x], [x, y], [x**2 + y**2 - 1, 1 - x**2 - y**2])]
@@ -360,6 +369,7 @@ def test_qepcad_is_a_second_opinion() -> None:
     [("positive", x), ("negative", -x), ("nonnegative", x + 1), ("nonpositive", 1 - x), ("nonzero", x**2)],
 )
 @pytest.mark.parametrize("program", ["z3", "qepcad"])
+@pytest.mark.usefixtures("patient")
 def test_other_deciders_know_the_signs(program: str, sign: str, impossible: Scalar) -> None:
     if program == "z3":
         pytest.importorskip("z3")

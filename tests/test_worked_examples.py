@@ -150,7 +150,9 @@ def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterat
         changes: list[Any] = [-1234]
         if isinstance(entry, dict):
             changes += spoiled(entry, key, names)
-        if relations:
+        if entry == "False":
+            changes = [f"{next(iter(names), 1)} > 0"]
+        elif relations:
             left, operator, right = re.split(r"\s(!=|<|>|==)\s", entry)
             changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]
         for change in changes:

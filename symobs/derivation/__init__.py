@@ -1,6 +1,7 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
+from symobs.derivation.regions import findings_of_conditions, findings_of_region
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -9,11 +10,16 @@ from symobs.derivation.steps import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Solve,
     Step,
+    Survey,
+    Tabulate,
+    Where,
 )
+from symobs.derivation.tables import findings_of
 
 __all__ = [
     "Case",
@@ -24,8 +30,15 @@ __all__ = [
     "Equal",
     "Given",
     "Note",
+    "Plot",
     "Section",
     "Sentence",
     "Solve",
     "Step",
+    "Survey",
+    "Tabulate",
+    "Where",
+    "findings_of",
+    "findings_of_conditions",
+    "findings_of_region",
 ]

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import never_zero
-from symobs.derivation.properties import PREDICATES, holds_exactly_where, polynomial_of, subjects
+from symobs.derivation.pictures import faults, relations_of
+from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
+from symobs.derivation.regions import is_exactly, is_survey
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -22,15 +24,21 @@ from symobs.derivation.steps import (
     Equal,
     Given,
     Note,
+    Plot,
     Section,
     Sentence,
     Solve,
     Step,
+    Survey,
+    Tabulate,
+    Where,
 )
+from symobs.derivation.tables import is_tabulated
 from symobs.errors import DerivationRejected
-from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, roots_are
+from symobs.exact import Ideal, Matrix, Scalar, apart_from_zero, product_of, roots_are
 from symobs.exact.functions import substitute
 from symobs.formula import (
+    Apply,
     Derivative,
     Environment,
     Exact,
@@ -39,6 +47,7 @@ from symobs.formula import (
     Formula,
     Letter,
     Literal,
+    Names,
     Predicate,
     Relation,
     Roots,
@@ -57,6 +66,8 @@ from symobs.stability import monic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from symobs.picture import Picture
 
 Value: TypeAlias = Scalar | Matrix | Signal
 _BUG = "please report this: it is a bug of symobs"
@@ -127,6 +138,20 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _established(label, environment)
                 if environment.knows(_LABELS.get(name, "")):
                     _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
+        case Tabulate(polynomial, variable=variable):
+            _about_letters(polynomial, environment)
+            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            if not is_tabulated(step, value, environment):
+                _reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+        case Where(fact):
+            _fact(fact, environment, discrete)
+        case Survey(polynomial):
+            _about_letters(polynomial, environment)
+            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            if not is_survey(step, value, environment, discrete=discrete):
+                _reject(f"that this is the region of {plain(polynomial, environment.variable)}")
+        case Plot(picture, subject):
+            _drawn(picture, subject, environment, discrete)
         case Case(when, substitution, inside, anew=anew):
             stratum = _on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}
@@ -140,11 +165,21 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
     return environment
 
 
+def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
+    """Reject a picture that shows what is not true of the polynomial."""
+    for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
+        _established(formula, environment)
+    if not letters(subject) - {"s"} and not isinstance(subject, Apply):
+        _reject(f"a picture of {plain(subject, environment.variable)}, which is no letter's,")
+    for fault in faults(picture, subject, environment, discrete=discrete):
+        _reject(f"{fault}, in a picture,")
+
+
 def _sentence(sentence: Sentence | None, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown)):
+        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -178,6 +213,9 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if verify(fact, environment)[0] == "":
             _reject(plain_relation(fact, environment.variable))
         return
+    if isinstance(fact, Names):
+        _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
+        return
     if isinstance(fact, Together):
         for part in fact.relations:
             _fact(part, environment, discrete)
@@ -200,26 +238,15 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         found = evaluate(fact.property.subject, environment, Exact(environment))
         (value,) = subjects(fact.property.name, found, environment.variable)
         polynomial = polynomial_of(value, environment)
-        said = tuple(_positive_part(relation, environment) for relation in fact.where)
-        strict = {operator in {"<", ">", "!="} for relation in fact.where for operator in relation.operators}
-        exactly = holds_exactly_where(fact.property.name, polynomial, said, environment, discrete)
-        if not exactly or strict != {fact.property.name == "stable"}:
-            _reject(f"{polynomial} is {fact.property.name} exactly where {', '.join(f'{value} > 0' for value in said)}")
+        if not is_exactly(fact, polynomial, environment, discrete=discrete):
+            where = ", ".join(plain_relation(relation, environment.variable) for relation in fact.where)
+            _reject(f"{polynomial} is {fact.property.name} exactly where {where}")
         return
     _about_letters(fact.subject, environment)
     found = evaluate(fact.subject, environment, Exact(environment))
     parts = subjects(fact.name, found, environment.variable)
     if fact.name not in PREDICATES or not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
         _reject(f"{fact.name}({found})")
-
-
-def _positive_part(relation: Relation, environment: Environment) -> Scalar:
-    """Return what an inequality says is positive, or not negative; the square of what it says is not 0."""
-    if relation.operators not in {(">",), ("<",), (">=",), ("<=",), ("!=",)}:
-        _reject(plain_relation(relation, environment.variable))
-    left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
-    difference: Scalar = left - right if relation.operators[0][0] == ">" else right - left
-    return difference**2 if relation.operators == ("!=",) else difference
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:

@@ -12,7 +12,9 @@ from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.formula import Fact, Formula, Relation, Together
+    from symobs.formula import Exactly, Fact, Formula, Relation, Together
+    from symobs.picture import Picture
+    from symobs.region.routh import RouthTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +99,50 @@ class Diagram:
 
 
 @dataclass(frozen=True, slots=True)
+class Tabulate:
+    """Routh's table of a polynomial in `variable`; the findings, told below it, are among those of `findings_of`."""
+
+    polynomial: Formula
+    table: RouthTable
+    variable: str
+    sentence: Sentence | None = None
+    findings: tuple[Sentence, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A property holds exactly where some inequalities do: shown on a display of their own."""
+
+    fact: Exactly
+    sentence: Sentence | None = None
+    answer: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
+
+    The findings are among those of `findings_of_region`; the parts are all of its intervals, or bounds of the second
+    parameter over intervals of the first, or are left out.
+    """
+
+    polynomial: Formula
+    names: tuple[str, ...]
+    findings: tuple[Sentence, ...] = ()
+    parts: tuple[tuple[Relation, ...], ...] = ()
+    sentence: Sentence | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """A picture of where `subject`, a polynomial, is stable, or of its roots as a parameter moves."""
+
+    picture: Picture
+    subject: Formula
+    sentence: Sentence | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -119,4 +165,6 @@ class Section:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Given | Define | Equal | Solve | Conclude | Note | Diagram | Case | Section
+Step: TypeAlias = (
+    Given | Define | Equal | Solve | Conclude | Note | Diagram | Plot | Tabulate | Where | Survey | Case | Section
+)

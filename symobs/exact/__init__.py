@@ -12,6 +12,7 @@ from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of, remainder
+from symobs.exact.real import RealNumber
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
 from symobs.exact.sides import stable_roots
@@ -28,6 +29,7 @@ __all__ = [
     "Field",
     "Ideal",
     "Matrix",
+    "RealNumber",
     "Root",
     "Scalar",
     "Shifted",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symobs.exact.functions import PI, known, symbols_in
+from symobs.exact.real import RealRoot
 
 if TYPE_CHECKING:
     from symobs.exact.scalar import Scalar
@@ -18,7 +19,7 @@ _BITS = (64, 256, 1024)
 def is_number(value: Scalar) -> bool:
     """Whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
     kinds = {f.kind for name in value.names if (f := known(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp"}
+    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -71,5 +72,7 @@ def _generator(name: str) -> arb:
     found = known(name)
     if found is None:
         return arb.pi()
+    if isinstance(found, RealRoot):
+        return found.number.ball(ctx.prec)
     inner = _ball(found.argument)
     return inner.sqrt() if found.kind == "sqrt" else inner.exp()

@@ -133,7 +133,8 @@ def square_root(radicand: Scalar) -> Scalar:
     return front * generator("sqrt", odd * number)
 
 
-def _square_part(number: int) -> int:
+def square_part(number: int) -> int:
+    """Return the largest number whose square divides a positive integer, 1 where that is too long to find."""
     root = isqrt(number)
     if root * root == number:
         return root
@@ -148,7 +149,7 @@ def _square_part(number: int) -> int:
 def _root_of_number(number: Fraction) -> Scalar:
     """Return √number for a positive fraction."""
     whole = number.numerator * number.denominator
-    outside = _square_part(whole)
+    outside = square_part(whole)
     inside = whole // outside**2
     value = Scalar.of(Fraction(outside, number.denominator))
     if inside == 1:

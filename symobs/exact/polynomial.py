@@ -110,3 +110,9 @@ def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scala
         lead = rest.coefficients(variable)[0] / top * s ** (rest.degree(variable) - degree)
         quotient, rest = quotient + lead, rest - lead * divisor
     return quotient, rest
+
+
+def discriminant(polynomial: Scalar, variable: str) -> Scalar:
+    """Return the discriminant of the numerator in a variable: 0 where two roots are equal."""
+    found = polynomial.numerator_part.discriminant(variable)
+    return Scalar(polynomial.field, found, polynomial.field.one)

@@ -12,6 +12,7 @@ from symobs.exact import functions
 from symobs.exact.algebraic import EIGENVALUE
 from symobs.exact.complex import Complex
 from symobs.exact.matrix import Matrix
+from symobs.exact.real import RealRoot
 from symobs.exact.root_sum import RootSum
 from symobs.exact.scalar import Scalar
 
@@ -65,6 +66,8 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
             scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
         )
         return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
+    if isinstance(found, RealRoot):
+        return sympy.CRootOf(scalar_to_sympy(found.argument), found.number.index)
     return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
 
 

@@ -192,7 +192,14 @@ class Shown:
     value: Formula
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Some parameters, which a sentence speaks of; it claims nothing of them."""
+
+    names: tuple[str, ...]
+
+
+Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown | Names
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

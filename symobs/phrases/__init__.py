@@ -20,10 +20,13 @@ from symobs.phrases import (
     gains,
     minimal_order,
     modes,
+    pictures,
     pole_advice,
     polynomials,
     rank,
     reduced_order,
+    regions,
+    routh,
     time,
     time_varying,
     titles,
@@ -47,6 +50,9 @@ _MODULES = (
     tracking,
     reduced_order,
     time_varying,
+    routh,
+    regions,
+    pictures,
 )
 
 

@@ -48,7 +48,6 @@ def schema() -> dict[str, Any]:
             "type": "object",
             "properties": plant,
             "additionalProperties": False,
-            "oneOf": [{"required": ["A"]}, {"required": ["transfer_function"]}],
         },
         "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
     }
@@ -58,6 +57,11 @@ def schema() -> dict[str, Any]:
         "type": "object",
         "properties": {name: {**TOP[name], **found} for name, found in properties.items()},
         "additionalProperties": False,
-        "required": ["plant"],
         "oneOf": [{"required": ["task"]}, {"required": ["tasks"]}],
+        "anyOf": [_has("plant", "A"), _has("plant", "transfer_function"), _has("specification", "polynomial")],
     }
+
+
+def _has(table: str, key: str) -> dict[str, Any]:
+    """Return that a key stands in a table."""
+    return {"required": [table], "properties": {table: {"type": "object", "required": [key]}}}

@@ -106,7 +106,7 @@ def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
     dt = _period(data, symbols, errors)
-    plant = _plant(data, symbols, dt, errors)
+    plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
     specification = _specification(data, (*asked, *wanted), errors)
     expect = _table(data, "expect", errors)
     if not errors.found and plant is not None:
@@ -228,8 +228,8 @@ def _period(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> objec
     return 0
 
 
-def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors) -> StateSpace | None:
-    """Return the plant, None where it cannot be had."""
+def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors, *, alone: bool) -> StateSpace | None:
+    """Return the plant, None where it cannot be had; with `alone` a polynomial does instead."""
     table = _table(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
@@ -240,6 +240,10 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
     elif "transfer_function" in table:
         with errors:
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
+    elif alone and not given and "polynomial" in (specification := _table(data, "specification", errors)):
+        with errors:
+            known = symbols.naming(specification.get("parameters"), "specification.parameters")
+            return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
     elif "A" not in table:
         errors.note("the state matrix is missing", "plant.A", 'give it, for example A = "[0 1; 0 -1]"')
     else:

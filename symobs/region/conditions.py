@@ -76,9 +76,11 @@ def is_stable_where(
     A proof that comes along is checked against the lists computed here; else one is looked for.  Saying something that
     is seen to follow from the rest is refused.
     """
+    lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
+    if any({value for value in found if sign_of(value, signs) != "positive"} == set(said) for found in lists):
+        return proof is None or proof.holds(signs)
     if any(prove(value, [other for other in said if other != value], signs) is not None for value in said):
         return False
-    lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
     if proof is not None:
         return set(proof.kept) == set(said) and _is_checked(proof, lists, signs)
     found = stable_where(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)

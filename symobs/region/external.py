@@ -5,7 +5,9 @@ Both are asked one question: is there a real point where polynomials are all pos
 
 from __future__ import annotations
 
+import os
 import shutil
+import signal
 import subprocess
 import threading
 from fractions import Fraction
@@ -104,14 +106,25 @@ def none_by_cells(positive: Sequence[Scalar], signs: Mapping[str, str], *, not_a
     formula = quantifiers + "[" + " /\\ ".join(parts) + "]."
     script = f"[region]\n({','.join(letters.values())})\n0\n{formula}\nfinish\n"
     try:
-        # A program found on PATH reads polynomials with integer coefficients in its own letters; there is no shell.
-        run = subprocess.run(  # noqa: S603
-            [program], input=script, capture_output=True, text=True, timeout=CELLS, check=False
-        )
+        output = _output_of(program, script)
     except (subprocess.TimeoutExpired, OSError):
         return "maybe"
-    answer = run.stdout.partition("An equivalent quantifier-free formula:")[2].split()
+    answer = output.partition("An equivalent quantifier-free formula:")[2].split()
     return {"TRUE": "no", "FALSE": "yes"}.get(answer[0] if answer else "", "maybe")
+
+
+def _output_of(program: str, script: str) -> str:
+    """Return what a program writes; after `CELLS` seconds it ends, and with it what it has started itself."""
+    # A program found on PATH reads polynomials with integer coefficients in its own letters; there is no shell.
+    pipe = subprocess.PIPE
+    with subprocess.Popen(  # noqa: S603
+        [program], stdin=pipe, stdout=pipe, stderr=pipe, text=True, start_new_session=True
+    ) as run:
+        try:
+            return run.communicate(script, timeout=CELLS)[0]
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, signal.SIGKILL)
+            raise
 
 
 def _is_small(values: Sequence[Scalar], terms: int, degree: int) -> bool:

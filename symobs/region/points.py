@@ -42,10 +42,9 @@ _ALLOWED = {
 
 def value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> Fraction:
     """Return the value of a polynomial at a rational point, in integers over one denominator."""
-    names = tuple(sorted(polynomial.names))
-    degree, terms = polynomial.degrees()[0], _terms(polynomial, names)
+    names, degree, terms, below = _prepared(polynomial)
     common = lcm(*(point[name].denominator for name in names))
-    powers = [_powers(int(point[name] * common), degree) for name in names]
+    powers = [_powers(point[name].numerator * (common // point[name].denominator), degree) for name in names]
     filling = _powers(common, degree)
     total = 0
     for coefficient, places in terms:
@@ -54,7 +53,14 @@ def value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> Fraction:
             product *= powers[place][exponent]
             left -= exponent
         total += product * filling[left]
-    return Fraction(total, filling[degree] * int(polynomial.denominator.fraction()))
+    return Fraction(total, filling[degree] * below)
+
+
+@lru_cache(maxsize=4096)
+def _prepared(polynomial: Scalar) -> tuple[tuple[str, ...], int, tuple[Term, ...], int]:
+    """Return the names of a polynomial, a bound of its degree, its terms and its denominator."""
+    names = tuple(sorted(polynomial.names))
+    return names, polynomial.degrees()[0], _terms(polynomial, names), int(polynomial.denominator.fraction())
 
 
 def _powers(base: int, degree: int) -> list[int]:

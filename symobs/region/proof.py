@@ -118,6 +118,16 @@ def _sum(products: Sequence[Product]) -> Scalar:
     return total
 
 
+def asks_z3(proof: Equivalence | None) -> bool:
+    """Tell whether a proof rests on what z3 says."""
+    steps = (*proof.forward, *proof.backward) if proof is not None else ()
+    return any(_asks(step) for step in steps)
+
+
+def _asks(step: Step) -> bool:
+    return isinstance(step, Asked) or (isinstance(step, Opposite) and any(map(_asks, step.steps)))
+
+
 def by_signs(value: Scalar) -> Combined:
     """Return the step for a value that the declared signs make positive."""
     return Combined(value, UNIT, ((value, ()),))

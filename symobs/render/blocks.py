@@ -13,6 +13,9 @@ from symobs.formula import Formula, Relation, Roots
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from symobs.picture import Picture
+    from symobs.region.routh import RouthTable
+
 Inline: TypeAlias = str | Formula | Relation | Roots
 Inlines: TypeAlias = tuple[Inline, ...]
 
@@ -78,6 +81,27 @@ class Drawing:
 
 
 @dataclass(frozen=True, slots=True)
+class TableBlock:
+    """Routh's table; each row with the remarks that may stand beside it, of which one is chosen, the first if it fits.
+
+    `where` goes before what the entries stand for that are too wide for the table.
+    """
+
+    table: RouthTable
+    variable: str
+    remarks: tuple[tuple[Inlines, ...], ...]
+    where: Inlines
+
+
+@dataclass(frozen=True, slots=True)
+class PictureBlock:
+    """A picture and what stands below it."""
+
+    picture: Picture
+    caption: Inlines
+
+
+@dataclass(frozen=True, slots=True)
 class CaseBlock:
     """What holds in a special case: the label says which, the blocks are set in from the margin."""
 
@@ -85,7 +109,9 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
-Block: TypeAlias = Title | Heading | Paragraph | Display | Verified | Caution | Drawing | CaseBlock
+Block: TypeAlias = (
+    Title | Heading | Paragraph | Display | Verified | Caution | Drawing | PictureBlock | TableBlock | CaseBlock
+)
 
 
 def every(blocks: Iterable[Block]) -> Iterator[Block]:

@@ -4,8 +4,35 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Roots, Shown, Sum, Together, letters
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
+from symobs.formula import (
+    Exactly,
+    Letter,
+    Names,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    Shown,
+    Sum,
+    Together,
+    letters,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -56,8 +83,17 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from (*relation.members, *_in_sentence(sentence))
         case Solve(equation=equation, solution=solution, sentence=sentence):
             yield from (*equation.members, *solution.members, *_in_sentence(sentence))
-        case Conclude(sentence=sentence) | Note(sentence=sentence):
+        case (
+            Conclude(sentence=sentence)
+            | Note(sentence=sentence)
+            | Tabulate(sentence=sentence)
+            | Plot(sentence=sentence)
+        ):
             yield from _in_sentence(sentence)
+        case Where(fact=fact, sentence=sentence):
+            yield from (*_in_facts((fact,)), *_in_sentence(sentence))
+        case Survey(polynomial=polynomial):
+            yield polynomial
         case Diagram(labels=labels):
             yield from (formula for _, formula in labels)
 
@@ -81,5 +117,5 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value
-        elif not isinstance(value, str):
+        elif not isinstance(value, str | Names):
             yield value

@@ -15,6 +15,8 @@ from symobs.render.blocks import (
     Drawing,
     Heading,
     Paragraph,
+    PictureBlock,
+    TableBlock,
     Title,
     Verified,
     every,
@@ -24,7 +26,10 @@ from symobs.render.diagrams import tikz
 from symobs.render.escape import escape
 from symobs.render.latex_printer import LatexPrinter
 from symobs.render.narrator import narrate, printer_for
+from symobs.render.plots_caption import below
+from symobs.render.plots_tikz import figure, latex_scene
 from symobs.render.roots import LATEX, listed
+from symobs.render.table_formats import latex_table
 from symobs.render.templates import fill
 
 if TYPE_CHECKING:
@@ -70,7 +75,7 @@ def typeset(document: Document, template: str, *, folder: Path | None = None) ->
         "source": escape(title.source).strip(),
         "conventions": writer.sentence(title.conventions),
         "body": writer.body(blocks),
-        "drawings": any(isinstance(block, Drawing) for block in every(blocks)),
+        "drawings": any(isinstance(block, Drawing | PictureBlock) for block in every(blocks)),
     }
     return fill(template, values, folder=folder)
 
@@ -104,6 +109,11 @@ class LatexWriter:
                 return rf"\caution{{{escape(label)}}}{{{self.sentence(inlines)}}}"
             case Drawing():
                 return tikz(block, self.printer)
+            case TableBlock():
+                return latex_table(block, self.printer, self.sentence)
+            case PictureBlock(picture, caption):
+                scene = latex_scene(picture, self.printer)
+                return figure(scene, self.sentence(below(caption, scene)), self.printer)
             case CaseBlock(label, blocks):
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
                 body = LatexWriter(self.printer, inset=_INSET).body(blocks)

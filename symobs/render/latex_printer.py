@@ -64,9 +64,13 @@ class LatexPrinter(Printer[LatexBox]):
 
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
+        return self.running_box(item).source
+
+    def running_box(self, item: Formula | Relation) -> LatexBox:
+        """Return mathematics for a line of text with its width and height."""
         running = copy(self)
         running.running, running.known = True, {}
-        return running.unbroken(item)
+        return running.relation(item) if isinstance(item, Relation) else running.typeset(item)
 
     def unbroken(self, item: Formula | Relation) -> str:
         """Return display mathematics without delimiters or line breaks, such as a label in a drawing."""
@@ -190,14 +194,14 @@ class LatexPrinter(Printer[LatexBox]):
     def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
         """A table in brackets; in running text small, or a list where it is wide."""
         if not self.running:
-            rows = [[_opened(entry) for entry in row] for row in rows]
+            rows = [[opened(entry) for entry in row] for row in rows]
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
         if self.running and width > _WIDE:
             source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
             return LatexBox(width, Level.ATOM, f"[{source}]")
-        body = _under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows))
+        body = under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows))
         if self.running and len(rows) > 1:
             source = rf"\left[\begin{{smallmatrix}}{body}\end{{smallmatrix}}\right]"
         elif columns <= _MATRIX_COLUMNS:
@@ -303,7 +307,7 @@ class LatexPrinter(Printer[LatexBox]):
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         sources = [rf"\displaystyle {line.source}" for line in indented]
-        body = _under_one_another(sources, [2 * line.height for line in lines])
+        body = under_one_another(sources, [2 * line.height for line in lines])
         width = max(line.width for line in indented) + widths.COLUMN_GAP
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{l}}{body}\end{{array}}", 2)
 
@@ -326,7 +330,7 @@ def _heights(rows: Sequence[Sequence[LatexBox]]) -> list[int]:
     return [max(entry.height for entry in row) for row in rows]
 
 
-def _under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
+def under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
     r"""Rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
     body = rows[0]
     for row, above, below in zip(rows[1:], heights, heights[1:], strict=False):
@@ -334,7 +338,7 @@ def _under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
     return body
 
 
-def _opened(entry: LatexBox) -> LatexBox:
+def opened(entry: LatexBox) -> LatexBox:
     """An entry of a matrix; a fraction with more than numbers in it is set large."""
     if not _FRACTION_OF_LETTERS.match(entry.source):
         return entry

@@ -47,6 +47,8 @@ class Layout(Generic[B]):
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[Row[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
+        if self.boxed and not any("=" in relation.operators for relation in relations):
+            return self._inequalities(relations)
         last = len(relations) - 1
         whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
         packed = self._packed(whole, self.width)
@@ -58,6 +60,17 @@ class Layout(Generic[B]):
         for index, relation in enumerate(relations):
             rows += self._aligned(relation, margin, is_last=index == last)
         return rows, True
+
+    def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[Row[B]], bool]:
+        """The rows of an answer that is inequalities: one frame around all of them where they fit."""
+        plain = Layout(self.printer, self.width - self._frame(), boxed=False, end="")
+        last = len(relations) - 1
+        whole = [plain._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
+        lines = self._packed(whole, plain.width)
+        if all(line.width <= plain.width for line in lines):
+            box = lines[0] if len(lines) == 1 else self.printer.stacked(lines)
+            return [Row(None, self.printer.framed(box))], False
+        return plain.rows(relations)
 
     # -- one line -------------------------------------------------------------------------------------------------
 

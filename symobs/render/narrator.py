@@ -9,8 +9,23 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Sentence, Solve
-from symobs.formula import Together
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Sentence,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
+from symobs.formula import Literal, Together
 from symobs.notation import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
@@ -23,10 +38,13 @@ from symobs.render.blocks import (
     Inline,
     Inlines,
     Paragraph,
+    PictureBlock,
+    TableBlock,
     Title,
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.plots_caption import caption
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -35,6 +53,7 @@ if TYPE_CHECKING:
     from symobs.derivation import Step
     from symobs.formula import Formula, Relation
     from symobs.method import Document
+    from symobs.region.routh import RouthTable
     from symobs.render.printer import Printer
 
 P = TypeVar("P", bound="Printer[Any]")
@@ -119,6 +138,7 @@ def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
         found = getattr(step, "sentence", None)
         if found is not None:
             yield found
+        yield from getattr(step, "findings", ())
         yield from _sentences(getattr(step, "steps", ()))
 
 
@@ -199,6 +219,21 @@ class _Page:
                 self.say(sentence)
             case Diagram(name=name, labels=labels):
                 self.blocks.append(Drawing(name, labels))
+            case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
+                self.say(sentence)
+                self.blocks.append(
+                    TableBlock(table, variable, _remarks(table, variable), filled(Sentence("routh_where")))
+                )
+                for finding in findings:
+                    self.say(finding)
+            case Where(fact=fact, sentence=sentence, answer=answer):
+                self.say(sentence)
+                self.show(fact.where, boxed=answer)
+            case Survey():
+                self.tell_survey(step)
+            case Plot(picture=picture, sentence=sentence):
+                self.say(sentence)
+                self.blocks.append(PictureBlock(picture, caption(picture)))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
             case Section() if _is_statement(step):
@@ -215,6 +250,14 @@ class _Page:
             if isinstance(step, Section) or step not in self.told:
                 self.tell_step(step)
         self.numbers.pop()
+
+    def tell_survey(self, step: Survey) -> None:
+        """Tell what is found, and the parts of a region one below the other."""
+        for finding in step.findings:
+            self.say(finding)
+        self.say(step.sentence)
+        for part in step.parts:
+            self.blocks.append(Display(part))
 
     def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
@@ -245,6 +288,22 @@ class _Page:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
+
+
+def _remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
+    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
+    remarks: list[tuple[Inlines, ...]] = []
+    for row in table.rows:
+        if row.origin == "epsilon":
+            small = Literal(row.entries[0])
+            remarks.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
+        elif row.origin == "auxiliary":
+            polynomial = Literal(table.auxiliary(row, variable))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
+            remarks.append((full, filled(Sentence("routh_row_derivative"))))
+        else:
+            remarks.append(())
+    return tuple(remarks)
 
 
 def _is_statement(step: Step) -> bool:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar
 from symobs.exact.functions import known
+from symobs.exact.real import RealRoot
 from symobs.exact.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -130,6 +131,8 @@ class Printer(Glyphs[B]):
             return self.named(self.symbols[function.name])
         if function.kind == "exp":
             return self.exponential(function.argument)
+        if isinstance(function, RealRoot):
+            return self.named(rf"{function.number.truncated()}\ldots")
         if isinstance(function, RootSum):
             q, below = (self.typeset(spelled(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)

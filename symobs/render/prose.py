@@ -10,7 +10,21 @@ import re
 import string
 from typing import TYPE_CHECKING
 
-from symobs.formula import Exactly, Letter, Negative, Predicate, Product, Relation, Shown, Sum, Together, Transpose
+from symobs.exact import Scalar
+from symobs.formula import (
+    Exactly,
+    Letter,
+    Literal,
+    Names,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Shown,
+    Sum,
+    Together,
+    Transpose,
+)
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
@@ -50,6 +64,10 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             yield subject
         case Shown(value=value):
             yield value
+        case Names(names):
+            for place, name in enumerate(names):
+                between = "" if not place else " and " if place + 1 == len(names) else ", "
+                yield from (between, Literal(Scalar.symbol(name)))
         case Exactly(where=where) | Together(relations=where):
             for place, relation in enumerate(where):
                 yield from (", ", relation) if place else (relation,)

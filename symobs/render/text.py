@@ -9,10 +9,23 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
-from symobs.render.blocks import CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified
+from symobs.render.blocks import (
+    CaseBlock,
+    Caution,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+)
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
+from symobs.render.plots_text import character_plot
 from symobs.render.roots import TEXT, listed
+from symobs.render.table_formats import text_table
 from symobs.render.text_printer import TextPrinter, text_width
 
 if TYPE_CHECKING:
@@ -76,6 +89,13 @@ class TextWriter:
                 return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
+            case TableBlock():
+                table, told = text_table(block, self.printer, self.remark)
+                below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
+                return f"{indented(table)}{below}"
+            case PictureBlock(picture, caption):
+                plot = character_plot(picture, self.printer, width - len(INDENT))
+                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(caption), width - len(INDENT)))}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
@@ -83,6 +103,10 @@ class TextWriter:
     def sentence(self, inlines: Inlines) -> str:
         """Return running text with its mathematics."""
         return "".join(self._inline(part) for part in inlines)
+
+    def remark(self, inlines: Inlines) -> str:
+        """Return words that are not wrapped."""
+        return self.sentence(inlines).replace(_NO_BREAK, " ")
 
     def _inline(self, part: Inline) -> str:
         if isinstance(part, str):

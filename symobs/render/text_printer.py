@@ -201,6 +201,8 @@ class TextPrinter(Printer[TextBox]):
 
     def named(self, form: str) -> TextBox:
         """The letter: a Greek one by its glyph."""
+        if form.endswith(r"\ldots"):
+            return text_box(form.replace(r"\ldots", "…"))
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
 
     def evaluated(self, box: TextBox, equations: Sequence[TextBox]) -> TextBox:

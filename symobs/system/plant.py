@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
-from symobs.expression import parse_scalar
+from symobs.expression import parse_polynomial, parse_scalar
 from symobs.system.reading import read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
@@ -60,6 +60,7 @@ class StateSpace:
         self.symbols = known
         self.time = read_time(dt, known)
         self.origin = transfer_function
+        self.polynomial: Scalar | None = None
         self.is_from_floats = False
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
@@ -90,6 +91,30 @@ class StateSpace:
             value = read_scalar(transfer_function, known, where)
         A, B, C, D = realise(value, variable, where)
         return cls(A, B, C, D, dt, symbols=known, transfer_function=value)
+
+    @classmethod
+    def from_polynomial(
+        cls, polynomial: object, dt: object = 0, *, symbols: Mapping[str, Any] | Symbols | None = None
+    ) -> StateSpace:
+        """Return ẋ = A x with A the companion matrix of a polynomial of s (z in discrete time), divided by its lead.
+
+        Raises `InputError` where it is no polynomial of degree 1 or more.
+        """
+        known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
+        time = read_time(dt, known)
+        known = known.seen(polynomial, time.variable)
+        where, variable = "specification.polynomial", time.variable
+        if isinstance(polynomial, str):
+            value = parse_polynomial(polynomial, variable, known.names, where=where)
+        else:
+            value = read_scalar(polynomial, known, where)
+        lead, *rest = value.coefficients(variable)
+        if not rest or not value.is_polynomial_in(variable):
+            message = f"{value} is not a polynomial in {variable} of degree 1 or more"
+            raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
+        plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
+        plant.polynomial = value
+        return plant
 
     @classmethod
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
@@ -220,6 +245,14 @@ class StateSpace:
         told.matrices, told.time, told.origin = m, self.time, self.origin
         told.is_from_floats = self.is_from_floats
         return told
+
+    def with_symbols(self, symbols: Symbols) -> StateSpace:
+        """Return the same plant where these symbols are known."""
+        if symbols is self.symbols:
+            return self
+        plant = copy(self)
+        plant.symbols = symbols
+        return plant
 
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices a task uses are given."""

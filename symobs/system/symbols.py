@@ -63,6 +63,14 @@ class Symbols:
         """Return these symbols with the time t among them, which a plant need not declare."""
         return replace(self, signs={**self.signs, "t": self.sign("t")}) if self.closed else self
 
+    def naming(self, names: object, where: str) -> Symbols:
+        """Return these symbols with the names of a list or a text among them, real unless they are declared."""
+        listed = re.split(r"[,;\s]+", names.strip(" []")) if isinstance(names, str) else names
+        if not self.closed or not isinstance(listed, (list, tuple)):
+            return self
+        fresh = {str(name): "real" for name in listed if str(name) and str(name) not in self.signs}
+        return replace(self, signs={**self.signs, **{declared_name(name, where): sign for name, sign in fresh.items()}})
+
     def seen(self, values: object, variable: str = "") -> Symbols:
         """Return these symbols with those of SymPy objects in `values` added, the variable of polynomials left out.
 

@@ -1,7 +1,7 @@
-"""How fast symobs is beside giac, PARI, SymPy and FLINT itself: `python -m tests.benchmarks` prints one table of ratios.
+"""How fast symobs is beside giac, PARI, SymPy, QEPCAD and FLINT itself: `python -m tests.benchmarks` prints a table.
 
-Run it in the top folder of the checkout, on a quiet machine, with giac (Debian package `xcas`) and gp (`pari-gp`)
-installed; what is missing is left out.  `--only cart-pole` runs one group, `--repetitions 15` repeats more often.
+Run it in the top folder of the checkout, on a quiet machine, with giac (Debian package `xcas`), gp (`pari-gp`) and
+`qepcad` installed; what is missing is left out.  `--only cart-pole` runs one group, `--repetitions 15` repeats more often.
 
 Every figure is a median over repetitions in which all subjects take turns, so a ratio compares runs under one load.
 symobs is timed in process from the text of the plant to the checked result, with symbol names no earlier repetition
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import symobs
-from tests.benchmarks import models, other_systems, raw_flint
+from tests.benchmarks import models, other_systems, raw_flint, regions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -42,12 +42,15 @@ class Row:
     theirs: float | None = None
     asked: str = ""
     inverted: bool = False
+    ratio: float | None = None  # where it is not that of the two times
 
     def cells(self) -> tuple[str, ...]:
         """Return the line as texts."""
         if self.theirs is None:
             return self.work, _milliseconds(self.ours), self.other, "", "", self.asked
-        ratio = self.ours / self.theirs if self.inverted else self.theirs / self.ours
+        ratio = self.ratio
+        if ratio is None:
+            ratio = self.ours / self.theirs if self.inverted else self.theirs / self.ours
         return self.work, _milliseconds(self.ours), self.other, _milliseconds(self.theirs), f"{ratio:.3g}", self.asked
 
 
@@ -262,12 +265,25 @@ def start_up(settings: Settings) -> Iterator[Row]:
     yield Row(name, found[name], against, found["sympy"], "<= 0.8", inverted=True)
 
 
+def stability_regions(settings: Settings) -> Iterator[Row]:
+    """Regions of stability beside QEPCAD without its start-up; `tests.benchmarks.regions` prints more of them."""
+    rows = list(regions.measure_all((), min(settings.repetitions, 5), settings.limit))
+    for row in rows:
+        if row.ours is not None:
+            yield Row(f"region {row.problem.name}", row.ours, f"QEPCAD alone; {row.verdict}", row.alone)
+    times = [(row.ours, row.alone) for row in rows if row.ours is not None and row.alone is not None]
+    if times:
+        own, alone = (statistics.median(column) for column in zip(*times, strict=True))
+        yield Row("regions: medians", own, "QEPCAD alone", alone, ratio=regions.median(row.ratio for row in rows))
+
+
 GROUPS: dict[str, Callable[[Settings], Iterator[Row]]] = {
     "cart-pole": cart_pole,
     "generic-3": generic_3,
     "generic-4": generic_4,
     "numeric": numeric,
     "start-up": start_up,
+    "regions": stability_regions,
 }
 
 

@@ -5,9 +5,11 @@ What giac and gp are given stands in `giac/*.giac` and `pari/*.gp`, one file for
 
 from __future__ import annotations
 
+import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -41,15 +43,19 @@ class Run:
 def run(command: Sequence[str], limit: float, text: str = "", folder: Path | None = None) -> Run | None:
     """Run a command on an input text; None where it did not end within `limit` seconds."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    try:
-        done = subprocess.run(
-            command, input=text, capture_output=True, text=True, timeout=limit, check=False, cwd=folder
-        )
-    except subprocess.TimeoutExpired:
-        return None
+    pipe = subprocess.PIPE
+    # In a session of its own: what the program has started itself ends with it.
+    with subprocess.Popen(
+        command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, cwd=folder, start_new_session=True
+    ) as program:
+        try:
+            output, errors = program.communicate(text, timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(program.pid, signal.SIGKILL)
+            return None
     wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Run(wall, processor, done.stdout + done.stderr)
+    return Run(wall, processor, output + errors)
 
 
 def available(system: str) -> bool:

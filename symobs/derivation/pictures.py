@@ -1,0 +1,385 @@
+"""Whether a picture shows what is true, as far as an eye can tell (trusted).
+
+The points of a picture are rational and lie near what they stand for; how near is a fixed part of the window.  That a
+curve passes by is seen from a change of sign.  That a root z₀ lies near z follows from p(z + w) = Σ cₖ wᵏ, of degree n:
+±cₖ/c₀ is a sum of C(n, k) products of k reciprocals of z₀ − z, so one root has |z₀ − z|ᵏ ≤ C(n, k) |c₀/cₖ|.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from itertools import pairwise
+from math import comb
+from typing import TYPE_CHECKING
+
+from symobs.certificate import as_scalar
+from symobs.derivation.properties import polynomial_of
+from symobs.exact import Complex, RealNumber, Scalar, product_of
+from symobs.exact.enclosure import sign_of_number
+from symobs.exact.real import roots_of_scalar
+from symobs.formula import Exact, evaluate
+from symobs.formula.plain import plain_relation
+from symobs.picture import LinePicture, PoleMap, RegionPicture
+from symobs.stability import stability
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from symobs.formula import Environment, Formula, Relation
+    from symobs.picture import End, Interval, Picture, Place
+
+#: Parts of a window: what is near a curve or an end, what the middle of a drawn segment may lie off its curve, and how
+#: far a pole may lie from its path.
+_NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200)
+#: A condition of stability is all but zero where it is so much smaller than at the points around.
+_SMALLER = 16
+_ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
+_SIGNS: dict[str, Callable[[Fraction], bool]] = {
+    "positive": lambda value: value > 0,
+    "negative": lambda value: value < 0,
+    "nonnegative": lambda value: value >= 0,
+    "nonpositive": lambda value: value <= 0,
+    "nonzero": lambda value: value != 0,
+    "real": lambda _: True,
+}
+
+
+def relations_of(picture: Picture) -> tuple[Relation, ...]:
+    """Return the equations that are written into a picture."""
+    return tuple(curve.equation for curve in picture.curves) if isinstance(picture, RegionPicture) else ()
+
+
+def faults(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> Iterator[str]:
+    """Yield what a picture shows that is not so."""
+    numbers = dict(picture.drawn_for)
+    for name, value in numbers.items():
+        if not value.is_constant or not _SIGNS[environment.signs.get(name, "real")](value.fraction()):
+            yield f"{name} = {value}"
+    variable = environment.variable
+    value = as_scalar(evaluate(subject, environment, Exact(environment)))
+    polynomial = polynomial_of(value, environment).substitute(numbers)
+    axes = (picture.moved,) if isinstance(picture, PoleMap) else _axes(picture)
+    if not polynomial.names <= {variable, *axes}:
+        yield f"the polynomial {polynomial} depends on {', '.join(axes)} alone"
+        return
+    match picture:
+        case RegionPicture():
+            equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
+            yield from _of_region(picture, equations, _Test(polynomial, variable, axes, discrete))
+        case LinePicture():
+            yield from _of_line(picture, _Test(polynomial, variable, axes, discrete))
+        case PoleMap():
+            yield from _of_poles(picture, polynomial, variable, discrete=discrete)
+
+
+def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
+    return picture.axes if isinstance(picture, RegionPicture) else (picture.axis,)
+
+
+def _difference(relation: Relation, environment: Environment, numbers: dict[str, Scalar]) -> Scalar:
+    """Return a polynomial that vanishes where the equation holds, each factor once; 0 where there is no equation."""
+    if relation.operators != ("=",):
+        return Scalar.of(0)
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+    factors = (left - right).substitute(numbers).numerator.factors()[1]
+    return product_of(factor for factor, _ in factors) if factors else Scalar.of(0)
+
+
+class _Test:
+    """Stability of one polynomial at points of the picture: the same question is asked again and again."""
+
+    def __init__(self, polynomial: Scalar, variable: str, axes: tuple[str, ...], discrete: bool) -> None:  # noqa: FBT001
+        self.polynomial, self.variable, self.axes, self.discrete = polynomial, variable, axes, discrete
+        self.degree = polynomial.degree(variable)
+
+    def is_stable(self, *place: Fraction) -> bool:
+        """Whether all roots are stable; where the degree drops a root has gone to infinity, or there is no polynomial."""
+        try:
+            there = self.polynomial.substitute(_at(self.axes, place))
+        except ZeroDivisionError:
+            return False
+        if there.degree(self.variable) < self.degree:
+            return False
+        return stability(there, self.variable, {}, discrete=self.discrete).verdict == "yes"
+
+    def is_excluded(self, place: tuple[Fraction, ...], around: Sequence[tuple[Fraction, ...]]) -> bool:
+        """Whether a point is not stable, or one that is not lies near: there a condition all but vanishes."""
+        if not self.is_stable(*place):
+            return True
+        conditions = stability(self.polynomial, self.variable, {}, discrete=self.discrete).positive
+        leading = self.polynomial.coefficients(self.variable)[0]
+        return any(
+            _SMALLER * abs(_number(value, self.axes, place)) <= min(abs(_number(value, self.axes, p)) for p in around)
+            for value in (leading, *conditions)
+        )
+
+
+def _at(axes: Sequence[str], place: Sequence[Fraction]) -> dict[str, Scalar]:
+    return {name: Scalar.of(part) for name, part in zip(axes, place, strict=True)}
+
+
+def _number(value: Scalar, axes: Sequence[str], place: Sequence[Fraction]) -> Fraction:
+    return value.substitute(_at(axes, place)).fraction()
+
+
+# -- regions ----------------------------------------------------------------------------------------------------------
+
+
+def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: _Test) -> Iterator[str]:
+    (left, right), (bottom, top) = picture.window
+    width, height = right - left, top - bottom
+    if width <= 0 or height <= 0:
+        yield "the window is empty"
+        return
+    near = width * _NEAR, height * _NEAR
+    between = width * _BETWEEN, height * _BETWEEN
+    for curve in picture.curves:
+        value = equations[curve.equation]
+        if value.is_constant or not value.names <= set(picture.axes):
+            yield f"{plain_relation(curve.equation, test.variable)} is the equation of a curve"
+            continue
+        middles = [_middle(a, b) for a, b in pairwise(curve.points)]
+        inside = [place for place in middles if _within(place, picture.window)]
+        if not all(_passes(value, test.axes, place, near) for place in curve.points) or not all(
+            _passes(value, test.axes, place, between) for place in inside
+        ):
+            yield plain_relation(curve.equation, test.variable)
+    excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
+    for area in picture.areas:
+        edges = [place for place in area if not _on_border(place, picture.window, near)]
+        for place in edges:
+            passes = any(_passes(value, test.axes, place, near) for value in equations.values() if value)
+            if not passes and not test.is_stable(*place):
+                yield f"an edge at {_written(place)}"
+        samples = (place for place in _inside(area, near[0]) if place not in excluded)
+        yield from (f"{_written(place)} is stable" for place in samples if not test.is_stable(*place))
+    for mark in picture.marks:
+        x, y = mark.place
+        around = [(x - near[0], y), (x + near[0], y), (x, y - near[1]), (x, y + near[1])]
+        is_stable, is_filled = test.is_stable(x, y), any(_contains(area, mark.place) for area in picture.areas)
+        agrees = {
+            "stable": is_stable and is_filled,
+            "unstable": not is_stable and not is_filled,
+            "excluded": test.is_excluded((x, y), around),
+        }
+        if not agrees.get(mark.kind, False):
+            yield f"{_written(mark.place)} is {mark.kind}"
+
+
+def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
+    """Whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
+    signs: set[bool] = set()
+    for x, y in ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)):
+        found = _sign(value, axes, (place[0] + x * step[0], place[1] + y * step[1]))
+        signs.add(found > 0)
+        if found == 0 or len(signs) == 2:
+            return True
+    return any(_has_root(value, axes, place, step, along) for along in (0, 1))
+
+
+def _has_root(value: Scalar, axes: Sequence[str], place: Place, step: Place, along: int) -> bool:
+    """Whether the curve meets one arm of the cross: where two branches are that close no sign changes."""
+    on_line = value.substitute({axes[1 - along]: Scalar.of(place[1 - along])})
+    if axes[along] not in on_line.names:
+        return on_line.is_zero
+    low, high = (RealNumber.of(place[along] + side * step[along]) for side in (-1, 1))
+    return any(low <= root <= high for root in roots_of_scalar(on_line, axes[along]))
+
+
+def _sign(value: Scalar, axes: Sequence[str], place: Place) -> int:
+    """Return a number with the sign of a polynomial at a place: its value times a power of the denominators."""
+    (a, c), (b, d) = ((part.numerator, part.denominator) for part in place)
+    terms, i, j = _table(value, *axes)
+    return sum(k * a**m * c ** (i - m) * b**n * d ** (j - n) for k, m, n in terms)
+
+
+@lru_cache(maxsize=64)
+def _table(value: Scalar, first: str, second: str) -> tuple[list[tuple[int, int, int]], int, int]:
+    """Return the terms of a polynomial in two names as (coefficient, power, power), and both degrees."""
+    terms = [(k, dict(powers).get(first, 0), dict(powers).get(second, 0)) for k, powers in value.terms()]
+    return terms, value.degree(first), value.degree(second)
+
+
+def _middle(a: Place, b: Place) -> Place:
+    return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
+
+
+def _within(place: Place, window: tuple[Interval, Interval]) -> bool:
+    return all(low <= part <= high for part, (low, high) in zip(place, window, strict=True))
+
+
+def _on_border(place: Place, window: tuple[Interval, Interval], near: Place) -> bool:
+    """Whether a place lies on the border of the window, or beyond it where nothing is drawn."""
+    return any(
+        part <= low + step or part >= high - step for part, (low, high), step in zip(place, window, near, strict=True)
+    )
+
+
+def _inside(area: Sequence[Place], near: Fraction) -> Iterator[Place]:
+    """Yield places inside a polygon, at three heights three on every stretch; none on what is too short to be seen."""
+    heights = [y for _, y in area]
+    bottom, top = min(heights), max(heights)
+    for k in (1, 2, 3):
+        y = bottom + (top - bottom) * (Fraction(k, 4) + Fraction(1, 97))
+        crossings = sorted(_crossings(area, y))
+        for a, b in zip(crossings[::2], crossings[1::2], strict=True):
+            if b - a > 2 * near:
+                yield from ((a + (b - a) * part, y) for part in _ALONG)
+
+
+def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:
+    """Yield where the edges of a polygon cross a horizontal line."""
+    for (x0, y0), (x1, y1) in zip(area, (*area[1:], area[0]), strict=True):
+        if (y0 <= y) != (y1 <= y):
+            yield x0 + (x1 - x0) * (y - y0) / (y1 - y0)
+
+
+def _contains(area: Sequence[Place], place: Place) -> bool:
+    return sum(x < place[0] for x in _crossings(area, place[1])) % 2 == 1
+
+
+def _written(place: Place) -> str:
+    return f"({', '.join(map(str, place))})"
+
+
+# -- intervals --------------------------------------------------------------------------------------------------------
+
+
+def _of_line(picture: LinePicture, test: _Test) -> Iterator[str]:
+    low, high = picture.window
+    near = (high - low) * _NEAR
+    if near <= 0:
+        yield "the window is empty"
+        return
+    drawn = [(a.place if a else low, b.place if b else high) for a, b in picture.pieces]
+    borders = [low, *(part for piece in drawn for part in piece), high]
+    if borders != sorted(borders):
+        yield "the pieces follow one another"
+    for a, b in drawn:
+        yield from (f"{x} is stable" for x in _between(a, b) if not test.is_stable(x))
+    for a, b in zip(borders[::2], borders[1::2], strict=True):
+        if b - a > 2 * near:
+            yield from (f"{x} is not stable" for x in _between(a, b) if test.is_stable(x))
+    for (begin, end), (a, b) in zip(picture.pieces, drawn, strict=True):
+        inward = min(near, (b - a) / 3)
+        for found, step in ((begin, inward), (end, -inward)):
+            if found is not None:
+                yield from _of_end(found, step, near, dict(picture.drawn_for), test)
+    for place, kind in picture.marks:
+        around = [(place - near,), (place + near,)]
+        is_stable = test.is_stable(place)
+        agrees = {"stable": is_stable, "unstable": not is_stable, "excluded": test.is_excluded((place,), around)}
+        if not agrees.get(kind, False):
+            yield f"{place} is {kind}"
+
+
+def _of_end(end: End, inward: Fraction, near: Fraction, numbers: dict[str, Scalar], test: _Test) -> Iterator[str]:
+    """Stable on the inner side; on the outer not, unless the end alone is taken out."""
+    outward = end.place - near if inward > 0 else end.place + near
+    is_taken_out = test.is_excluded((end.place,), [(end.place - near,), (end.place + near,)])
+    if not test.is_stable(end.place + inward) or (test.is_stable(outward) and not is_taken_out):
+        yield f"{end.place} is an end"
+    if not _is_labelled(end, near, numbers):
+        yield f"{end.label} = {end.place}"
+
+
+def _between(a: Fraction, b: Fraction) -> Iterator[Fraction]:
+    return (a + (b - a) * Fraction(k, 8) for k in range(1, 8))
+
+
+def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
+    """Whether what is written at an end is its place, as near as can be seen."""
+    if isinstance(end.label, str):
+        try:
+            value = Scalar.of(Fraction(end.label.strip("≈… ").replace("−", "-")))
+        except ValueError:
+            return False
+    else:
+        value = end.label.substitute(numbers)
+    above, below = value - (end.place - near), (end.place + near) - value
+    return all(
+        difference.fraction() >= 0 if difference.is_constant else sign_of_number(difference) == "positive"
+        for difference in (above, below)
+    )
+
+
+# -- poles ------------------------------------------------------------------------------------------------------------
+
+
+def _of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
+    if (picture.variable, picture.discrete) != (variable, discrete):
+        yield f"the poles are those in {picture.variable}"
+    degree = polynomial.degree(variable)
+    if len(picture.paths) != degree or len(picture.along) != degree:
+        yield f"there are {len(picture.paths)} poles"
+        return
+    begin, end = picture.values
+    near = min(high - low for low, high in picture.window) * _NEAR_POLE
+    for path, along in zip(picture.paths, picture.along, strict=True):
+        falling = sorted(along, reverse=begin > end)
+        if len(path) != len(along) or (along[0], along[-1]) != (begin, end) or list(along) != falling:
+            yield f"{picture.moved} goes from {begin} to {end}"
+            return
+        for place, value in zip(path, along, strict=True):
+            if not _root_within(_shifted(polynomial, picture.moved, value, place, variable), near):
+                yield f"{_written(place)} is a pole at {picture.moved} = {value}"
+    if not any(_are_all(picture, polynomial, variable, at) for at in _common(picture)):
+        yield "these are all poles"
+
+
+def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Complex]:
+    """Return c₀, …, cₙ of p(z + w) = Σ cₖ wᵏ."""
+    there = polynomial.substitute({moved: Scalar.of(value)})
+    z = Complex(Scalar.of(place[0]), Scalar.of(place[1]))
+    coefficients = [Complex.of(c) for c in there.coefficients(variable)]
+    found: list[Complex] = []
+    while coefficients:  # divide by w = s − z again and again; what remains are the coefficients
+        for k in range(1, len(coefficients)):
+            coefficients[k] = coefficients[k] + coefficients[k - 1] * z
+        found.append(coefficients.pop())
+    return found
+
+
+def _root_within(shifted: Sequence[Complex], distance: Fraction) -> bool:
+    """Whether some root surely has |w| ≤ distance."""
+    degree = len(shifted) - 1
+    constant = _square(shifted[0])
+    return any(
+        comb(degree, k) ** 2 * constant <= distance ** (2 * k) * _square(c) and _square(c) != 0
+        for k, c in enumerate(shifted)
+        if k
+    )
+
+
+def _square(value: Complex) -> Fraction:
+    """Return the square of the modulus."""
+    return (value.real * value.real + value.imaginary * value.imaginary).fraction()
+
+
+def _common(picture: PoleMap) -> Iterator[int]:
+    """Yield the indices at which all paths stand at the same value of the parameter, from the middle on."""
+    shortest = min(map(len, picture.along))
+    for index in sorted(range(shortest), key=lambda index: abs(2 * index - shortest)):
+        if len({along[index] for along in picture.along}) == 1:
+            yield index
+
+
+def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) -> bool:
+    """Whether discs that hold a root each lie apart from one another, as many as there are different roots."""
+    different = sum(factor.degree(variable) for factor, power in polynomial.numerator.factors()[1] if power > 0)
+    apart: list[tuple[Place, Fraction]] = []
+    for path, along in zip(picture.paths, picture.along, strict=True):
+        shifted = _shifted(polynomial, picture.moved, along[index], path[index], variable)
+        constant, slope = _square(shifted[0]), _square(shifted[1])
+        if constant and not slope:
+            continue
+        radius = (len(shifted) - 1) ** 2 * constant / slope if constant else Fraction(0)
+        if all(_distance(path[index], place) > 2 * (radius + other) for place, other in apart):
+            apart.append((path[index], radius))
+    return len(apart) >= different
+
+
+def _distance(a: Place, b: Place) -> Fraction:
+    """Return the square of the distance."""
+    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2

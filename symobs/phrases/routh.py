@@ -1,0 +1,56 @@
+"""Routh's table: what stands beside its rows, and what it says."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "routh_table": "Routh's table of {polynomial} is",
+    "routh_row_epsilon": "{epsilon} in place of 0",
+    "routh_row_auxiliary": "derivative of {auxiliary}",
+    "routh_row_derivative": "derivative of the row above",
+    "routh_where": "where",
+    "routh_positive": "All entries of the first column are positive, so all roots lie in the open left half plane.",
+    "routh_negative": "All entries of the first column are negative, so all roots lie in the open left half plane.",
+    "routh_criterion_positive": "All roots lie in the open left half plane exactly where all entries of the first column are positive.",
+    "routh_criterion_negative": "All roots lie in the open left half plane exactly where all entries of the first column are negative.",
+    "routh_criterion_where": "Where {leading}, all roots lie in the open left half plane exactly if all entries of the first column have the same sign.",
+    "routh_epsilon": "The first entry of a row is zero, but not the whole row: a small {epsilon} stands in its place.",
+    "routh_zero_row": "A whole row is zero: the derivative of the auxiliary polynomial, read off from the row above, stands in its place.",
+    "routh_divides": "The auxiliary polynomial {auxiliary} divides the polynomial; its roots lie symmetric to the origin.",
+    "routh_not_stable": "A zero in the first column means that not all roots lie in the open left half plane.",
+    "routh_changes": "The first column {changes}, so {right} in the open right half plane.",
+    "routh_changes_axis": "The first column {changes}, so {right} in the open right half plane; {axis} on the imaginary axis.",
+    "routh_misleads": "The signs of the first column for small {epsilon} do not tell the number of roots here: counted exactly, {right} in the "
+    "open right half plane, and {axis} on the imaginary axis.",
+}
+
+RESTS_ON: dict[str, str] = dict.fromkeys(
+    (
+        "routh_positive",
+        "routh_negative",
+        "routh_criterion_positive",
+        "routh_criterion_negative",
+        "routh_criterion_where",
+        "routh_not_stable",
+        "routh_changes",
+        "routh_changes_axis",
+    ),
+    "routh",
+)
+
+_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+
+
+def _number(count: int) -> str:
+    return _NUMBERS[count] if count < len(_NUMBERS) else str(count)
+
+
+def roots_lie(count: int) -> str:
+    """Return `no root lies`, `one root lies`, `two roots lie`, …."""
+    return f"{_number(count)} root lies" if count < 2 else f"{_number(count)} roots lie"
+
+
+def changes_sign(count: int) -> str:
+    """Return `does not change sign`, `changes sign once`, `changes sign twice`, `changes sign three times`, …."""
+    if count == 0:
+        return "does not change sign"
+    return f"changes sign {('once', 'twice')[count - 1] if count < 3 else f'{_number(count)} times'}"

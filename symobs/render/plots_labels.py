@@ -1,0 +1,139 @@
+"""Where the equations of curves are written: beside the curve, inside the frame, over nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import hypot
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.render.scene import Box, Text, segment_in
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.formula import Relation
+    from symobs.render.scene import Content, Measure, Point
+
+#: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
+_GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
+#: What it is worth, in points of distance, to stand outside the shaded areas, on no pale line, near a curve's middle.
+_UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
+
+
+Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
+
+    frame: Box
+    lines: Lines
+    taken: tuple[Box, ...]
+    pale: Lines
+    shades: Lines
+
+
+def labelled(
+    curves: Mapping[Relation, Lines], around: Surroundings, measure: Measure
+) -> tuple[list[Text], list[Relation]]:
+    """Return the equations beside their curves, and those that found no place: these stand there as numbers.
+
+    The longest is placed first, and numbers last.  A number may stand over a sample if need be, or over anything.
+    """
+    written: list[Text] = []
+    left: list[Relation] = []
+    for equation in sorted(curves, key=lambda equation: -measure(equation)[0]):
+        text = _best(equation, curves[equation], _beside(around, written, measure), measure)
+        if text is None:
+            left.append(equation)
+        else:
+            written.append(text)
+    numbered = [equation for equation in curves if equation in left]
+    for place, equation in enumerate(numbered, 1):
+        strict = _beside(around, written, measure)
+        rooms = (strict, replace(strict, taken=()), replace(strict, taken=(), lines=()))
+        found = (_best(f"({place})", curves[equation], room, measure) for room in rooms)
+        written += [text for text in (next((text for text in found if text is not None), None),) if text is not None]
+    return written, numbered
+
+
+def _beside(around: Surroundings, written: Sequence[Text], measure: Measure) -> Surroundings:
+    """Return surroundings in which some texts have their places."""
+    boxes = (text.box(measure(text.content)).grown(_CLEAR) for text in written)
+    return replace(around, taken=(*around.taken, *boxes))
+
+
+def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> Text | None:
+    """Return a label where it is farthest from everything that is not its own."""
+    size, taken = measure(content), around.taken
+    own = set(lines)
+    others = [line for line in around.lines if line not in own]
+    room = around.frame.grown(-_CLEAR)
+    best, worth = None, float("-inf")
+    for text, from_middle in _trials(content, lines, size):
+        box = text.box(size)
+        if not room.holds(box) or any(box.meets(other) for other in taken):
+            continue
+        if any(_crosses(line, box.grown(_CLEAR)) for line in around.lines):
+            continue
+        value = min([_FAR, *(_distance(box, line) for line in others)])
+        value += min([_FAR, *(_apart(box, other) for other in taken)]) / 3
+        value -= _MIDDLE * from_middle
+        value += _FREE * (not any(_crosses(line, box) for line in around.pale))
+        value += _UNSHADED * (not any(contains(area, box.centre) for area in around.shades))
+        if value > worth:
+            best, worth = text, value
+    return best
+
+
+def _trials(content: Content, lines: Lines, size: tuple[float, float]) -> Iterator[tuple[Text, float]]:
+    """Yield the label on both sides of every place along its curves, with how far that is from the middle (0 to 1)."""
+    width, height = size
+    for line in lines:
+        length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(line))
+        for (x, y), (dx, dy), along in walk(line, _STEP):
+            for nx, ny in ((-dy, dx), (dy, -dx)):
+                away = _GAP + abs(nx) * width / 2 + abs(ny) * height / 2
+                yield Text(content, (x + nx * away, y + ny * away)), abs(2 * along / length - 1)
+
+
+def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, float]]:
+    """Yield places along a line at equal distances, with the direction there and the way that was gone."""
+    gone, due = 0.0, step / 2
+    for a, b in pairwise(line):
+        length = hypot(b[0] - a[0], b[1] - a[1])
+        while length and due <= gone + length:
+            part = (due - gone) / length
+            direction = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+            yield (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])), direction, due
+            due += step
+        gone += length
+
+
+def _crosses(line: Sequence[Point], box: Box) -> bool:
+    return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
+
+
+def _distance(box: Box, line: Sequence[Point]) -> float:
+    """Return how far a line keeps from a box, seen at places along it."""
+    places = [point for point, _, _ in walk(line, _STEP)] or list(line)
+    return min(hypot(max(box.left - x, 0.0, x - box.right), max(box.bottom - y, 0.0, y - box.top)) for x, y in places)
+
+
+def _apart(box: Box, other: Box) -> float:
+    return hypot(
+        max(box.left - other.right, 0.0, other.left - box.right),
+        max(box.bottom - other.top, 0.0, other.bottom - box.top),
+    )
+
+
+def contains(area: Sequence[Point], place: Point) -> bool:
+    """Whether a place lies in a polygon."""
+    x, y = place
+    crossings = 0
+    for (x0, y0), (x1, y1) in zip(area, [*area[1:], *area[:1]], strict=True):
+        if (y0 <= y) != (y1 <= y) and x0 + (x1 - x0) * (y - y0) / (y1 - y0) < x:
+            crossings += 1
+    return crossings % 2 == 1
