@@ -51,9 +51,8 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A machine may be busy; what programs answer is tested, not how soon."""
+    """A machine may be busy; what qepcad answers is tested, not how soon."""
     monkeypatch.setattr(external, "CELLS", 60.0)
-    monkeypatch.setattr(external, "QUESTION", 60_000)
 
 
 # -- the prover ----------------------------------------------------------------------------------------------------------
