@@ -11,17 +11,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
+from flint import acb_poly, arb, arb_mat, ctx, fmpq, fmpq_poly
 
-from symobs.exact.real import FIRST_BITS, RealNumber, rational_between, real_roots, simplest_between
+from symobs.exact.ideal import TooLarge
+from symobs.exact.real import FIRST_BITS, RealNumber, at_ball, rational_between, real_roots, simplest_between
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exact.plane import Plane, PlaneCurve, Wall
+    from symobs.exact.plane import Event, Plane, PlaneCurve, Wall
 
 #: A polynomial in y with coefficients in Q(α), lowest first, each reduced modulo the minimal polynomial.
 Upright: TypeAlias = "list[fmpq_poly]"
+#: Up to this degree of α Euclid's algorithm over Q(α) ends in reasonable time.
+LARGEST_DEGREE = 16
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,7 @@ class Fibre:
 
 def fibre(plane: Plane, wall: Wall) -> Fibre:
     """Return what lies on a wall."""
-    separators = _separators(plane.curves, wall.x)
+    separators = _separators(plane, wall.x)
     before, after = plane.slabs[wall.index], plane.slabs[wall.index + 1]
     left_end, right_end = before.left, after.right
     for height in separators:
@@ -111,24 +114,101 @@ def _places(plane: Plane, x: Fraction, separators: Sequence[Fraction]) -> tuple[
     return tuple(sum(root < RealNumber.of(height) for root in roots) for height in separators)
 
 
-def _separators(curves: Sequence[PlaneCurve], x: RealNumber) -> tuple[Fraction, ...]:
+def _separators(plane: Plane, x: RealNumber) -> tuple[Fraction, ...]:
     """Return simple rational heights below, between and above the points of the curves on the line over x."""
-    risen = [curve for curve in curves if curve.degree]
+    risen = [curve for curve in plane.curves if curve.degree]
     if x.is_rational:
         points = sorted({root for curve in risen for root in real_roots(curve.on_vertical(x.fraction))})
         ends: list[RealNumber | None] = [None, *points, None]
         return tuple(rational_between(low, high) for low, high in itertools.pairwise(ends))
+    here = [(event, times) for event in plane.events if (times := event.times_at(x))]
+    if len(here) == 1 and here[0][1] == 1 and here[0][0].kind != "lead":
+        balls = _around_one_event(plane, x, here[0][0])
+    else:
+        balls = _by_euclid(risen, x)
+    lows = [None, *(ball[1] for ball in balls)]
+    highs = [*(ball[0] for ball in balls), None]
+    return tuple(simplest_between(low, high) for low, high in zip(lows, highs, strict=True))
+
+
+def _by_euclid(curves: Sequence[PlaneCurve], x: RealNumber) -> list[tuple[Fraction, Fraction]]:
+    """Return intervals around the points on a line: the square-free part of the product is found over Q(α)."""
+    if x.degree > LARGEST_DEGREE:
+        message = f"a wall of degree {x.degree} on which several things happen"
+        raise TooLarge(message)
     together: Upright = [fmpq_poly([1])]
     tower = _Tower(x)
-    for curve in risen:
+    for curve in curves:
         upright = tower.reduced([fmpq_poly(c) for c in curve.by_second])
         upright = tower.quotient(upright, tower.gcd(upright, tower.derivative(upright)))
         new = tower.quotient(upright, tower.gcd(upright, together))
         together = tower.product(together, new)
-    balls = tower.real_roots(together)
-    lows = [None, *(ball[1] for ball in balls)]
-    highs = [*(ball[0] for ball in balls), None]
-    return tuple(simplest_between(low, high) for low, high in zip(lows, highs, strict=True))
+    return tower.real_roots(together)
+
+
+def _around_one_event(plane: Plane, x: RealNumber, event: Event) -> list[tuple[Fraction, Fraction]]:
+    """Return intervals around the points on a line where exactly two roots fall together, by balls alone.
+
+    A simple root of the discriminant leaves one double root, a simple root of the resultant one common root: both are
+    −s₀/s₁ for the subresultant s₁ y + s₀, and one of the two is divided out.
+    """
+    bits = 2 * FIRST_BITS
+    while True:
+        found = _divided_out(plane, x, event, bits)
+        if found is not None:
+            return found
+        bits *= 2
+
+
+def _divided_out(plane: Plane, x: RealNumber, event: Event, bits: int) -> list[tuple[Fraction, Fraction]] | None:
+    before, ctx.prec = ctx.prec, 4 * bits
+    try:
+        rows = {
+            index: [at_ball(c, x.ball(2 * bits), 2 * bits) for c in curve.by_second]
+            for index, curve in enumerate(plane.curves)
+            if curve.degree
+        }
+        first = rows[event.curves[0]]
+        second = rows[event.curves[1]] if len(event.curves) == 2 else [c * k for k, c in enumerate(first)][1:]
+        below, above = _subresultant(first, second)
+        if below.contains(0):
+            return None
+        rows[event.curves[0]] = _deflated(first, -above / below)
+        product = [arb(1)]
+        for row in rows.values():
+            product = [
+                sum((product[i] * row[k - i] for i in range(len(product)) if 0 <= k - i < len(row)), arb(0))
+                for k in range(len(product) + len(row) - 1)
+            ]
+    finally:
+        ctx.prec = before
+    return _isolated(product, 2 * bits) if len(product) > 1 else []
+
+
+def _subresultant(one: Sequence[arb], other: Sequence[arb]) -> tuple[arb, arb]:
+    """Return (s₁, s₀) of the first subresultant s₁ y + s₀ of two polynomials, lowest coefficient first."""
+    m, n = len(one) - 1, len(other) - 1
+    rows = [_shifted(one, k, m + n - 1) for k in range(n - 2, -1, -1)]
+    rows += [_shifted(other, k, m + n - 1) for k in range(m - 2, -1, -1)]
+    size = m + n - 2
+    if not size:
+        return one[1], one[0]
+    # the columns are those of y^(m+n−2) … y², and then that of y or of 1
+    tables = [[[*reversed(row[2:]), row[last]] for row in rows] for last in (1, 0)]
+    s1, s0 = (arb_mat(size, size, [entry for row in table for entry in row]).det() for table in tables)
+    return s1, s0
+
+
+def _shifted(polynomial: Sequence[arb], power: int, width: int) -> list[arb]:
+    return [arb(0)] * power + list(polynomial) + [arb(0)] * (width - power - len(polynomial))
+
+
+def _deflated(polynomial: Sequence[arb], root: arb) -> list[arb]:
+    """Return the polynomial divided by y − root, lowest coefficient first."""
+    quotient = [polynomial[-1]]
+    for coefficient in reversed(polynomial[1:-1]):
+        quotient.append(quotient[-1] * root + coefficient)
+    return list(reversed(quotient))
 
 
 class _Tower:

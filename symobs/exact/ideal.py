@@ -31,7 +31,7 @@ _UNIT = "_e"
 
 
 class TooLarge(ArithmeticError):
-    """A Gröbner basis went beyond the limits: nothing is known about the ideal."""
+    """A computation with polynomials went beyond the limits: nothing is known."""
 
 
 class Ideal:

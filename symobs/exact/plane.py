@@ -76,6 +76,22 @@ def _cut(coefficients: Sequence[fmpz_poly], at: Fraction) -> fmpz_poly:
 
 
 @dataclass(frozen=True)
+class Event:
+    """A polynomial in x that vanishes where one curve runs off or meets itself, or where two curves meet."""
+
+    polynomial: fmpz_poly
+    curves: tuple[int, ...]
+    kind: str
+
+    def times_at(self, x: RealNumber) -> int:
+        """Return the multiplicity of a number as a root: 0, 1, or 2 for more."""
+        once, rest = divmod(self.polynomial, x.polynomial)
+        if rest:
+            return 0
+        return 1 if once % x.polynomial else 2
+
+
+@dataclass(frozen=True)
 class Branch:
     """The root number `number` (from 0, ascending) of one curve over a slab."""
 
@@ -111,17 +127,25 @@ class Plane:
         self.curves = tuple(PlaneCurve(polynomial, names) for polynomial in polynomials)
 
     @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """Where a leading coefficient, a discriminant or a resultant may vanish."""
+        found: list[Event] = []
+        for index, curve in enumerate(self.curves):
+            found.append(Event(curve.by_second[-1], (index,), "lead"))
+            if curve.degree > 1:
+                found.append(
+                    Event(in_first(curve.inside.discriminant(self.names[1]), self.names), (index,), "meets itself")
+                )
+        risen = [(index, curve) for index, curve in enumerate(self.curves) if curve.degree]
+        for (i, one), (j, other) in combinations(risen, 2):
+            found.append(Event(in_first(one.inside.resultant(other.inside, self.names[1]), self.names), (i, j), "meet"))
+        return tuple(found)
+
+    @cached_property
     def projection(self) -> tuple[fmpz_poly, ...]:
         """The irreducible polynomials in x at whose real roots something may change."""
-        found: list[fmpz_poly] = []
-        for curve in self.curves:
-            found.append(curve.by_second[-1])
-            if curve.degree > 1:
-                found.append(in_first(curve.inside.discriminant(self.names[1]), self.names))
-        risen = [curve for curve in self.curves if curve.degree]
-        for one, other in combinations(risen, 2):
-            found.append(in_first(one.inside.resultant(other.inside, self.names[1]), self.names))
-        return tuple({_key(f): f for polynomial in found for f in irreducible_factors(polynomial)}.values())
+        factors = [f for event in self.events for f in irreducible_factors(event.polynomial)]
+        return tuple({_key(f): f for f in factors}.values())
 
     @cached_property
     def walls(self) -> tuple[Wall, ...]:

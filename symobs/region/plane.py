@@ -7,6 +7,7 @@ from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
+from symobs.exact import TooLarge
 from symobs.exact.fibre import Fibre, curves_between, fibre, point_between
 from symobs.exact.plane import Branch, Plane, Slab, Wall
 from symobs.region.inequalities import Sample
@@ -294,4 +295,9 @@ def can_be_divided(region: PlaneRegion) -> bool:
     degrees = [(factor.degree(x), factor.degree(y)) for factor in region.critical.factors]
     total = sum(max(0, 2 * high - 1) * wide for wide, high in degrees)
     total += sum(one[0] * other[1] + one[1] * other[0] for one, other in combinations(degrees, 2))
-    return total <= LARGEST_PROJECTION
+    if total > LARGEST_PROJECTION:
+        return False
+    try:
+        return region.components is not None
+    except TooLarge:
+        return False
