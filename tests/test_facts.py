@@ -49,6 +49,7 @@ from tests.steps import (
     P,
     S,
     a,
+    b,
     c,
     checked,
     literal,
@@ -139,10 +140,23 @@ def test_a_region_is_the_whole_region() -> None:
     checked(phi, where(said(1, "<", c)))
     for lie in (said(c, ">=", 1), said(1, "<=", c), said(c, ">", 0), said(c, "<", 1), said(c, "!=", 1)):
         refused(phi, where(lie))
+    checked(phi, where(said(a * c, ">", a)))  # up to a factor that is positive
+    refused(phi, where(said(b * c, ">", b)))
     checked(phi, where(said(c, ">", 1), said(c, ">", 0)))  # says more than it must, and is true
     refused(phi, where())
     refused(phi, Conclude(slot(Exactly(replace(stable, name="unstable"), (said(c, ">", 1),)))))
     refused(Define(said(Letter("phi"), literal(s + 1))), where())
+
+
+def test_a_region_may_be_said_in_another_form() -> None:
+    phi = Define(said(Letter("phi"), literal(s**4 + 3 * s**3 + b * s**2 + c * s + 1)))
+    stable = Predicate("stable", Letter("phi"))
+    bound = (c**2 + 9) / (3 * c)
+    checked(phi, Conclude(slot(Exactly(stable, (said(c, ">", 0), said(b, ">", bound))))))
+    refused(phi, Conclude(slot(Exactly(stable, (said(b, ">", 0), said(b, ">", bound))))))
+    square = Define(said(Letter("phi"), literal(s + c**2)))
+    checked(square, Conclude(slot(Exactly(stable, (said(c, "!=", 0),)))))
+    refused(square, Conclude(slot(Exactly(stable, (said(c, ">", 0),)))))
 
 
 def test_a_fraction_has_the_region_and_the_roots_of_its_denominator() -> None:

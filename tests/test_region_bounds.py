@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -53,18 +54,13 @@ def test_conditions_solved_for_a_parameter(
 
 
 def test_two_conditions_do_not_vouch_for_each_other() -> None:
-    # x > 1/(y) needs y > 0, which x y z > … would grant only if x z > 0
-    conditions = [x * y - 1, x * y * z - x**2 - 1]
-    found = solved(conditions, {}, ["x", "y", "z"])
-    for point in points({}, 400):
-        try:
-            told = all(
-                value_at(l - r, point) > 0 if operator == ">" else value_at(l - r, point) < 0
-                for l, operator, r in found
-            )
-        except ZeroDivisionError:
-            continue
-        assert told == positive_at(conditions, point)
+    # each of a x > 1 and b x > 1 makes x positive, but a > 1/x and b > 1/x hold for x < 0 too
+    conditions = [a * x - 1, b * x - 1]
+    found = solved(conditions, AB, ["a", "b"])
+    assert [f"{left} {operator} {right}" for left, operator, right in found] == ["a > 1/x", "x > 1/b"]
+    for point in points(AB, 400):
+        if point["x"]:
+            assert all(value_at(l - r, point) > 0 for l, _, r in found) == positive_at(conditions, point)
 
 
 def test_a_box() -> None:
@@ -86,6 +82,14 @@ def test_a_box() -> None:
     assert several is not None
     assert several.lower == {"h1": (a, b)}
     assert several.sample is None
+    for bound, expected in ((h1 - c, c + 1), (c - h1, c - 1)):
+        half = box([bound], ["h1"], {})
+        assert half is not None
+        assert half.sample == {"h1": expected}
+    left = box([1 + h1], ["h1"], {"h1": "negative"})
+    assert left is not None
+    assert left.sample == {"h1": Scalar.rational(-1, 2)}
+    assert box([h1 * h2**2 + h1 - 1], ["h1", "h2"], {}) is None
     assert box([1 - h1 * h2], ["h1", "h2"], {}) is None
     assert box([c * h1 - 1], ["h1"], {}) is None
     assert box([1 - h1**2], ["h1"], {}) is None
@@ -102,6 +106,7 @@ def test_a_box() -> None:
         ([(a - b) * h1 + h2, c * h2 + 1], AB, 9),
         ([x * h1 - 1], {"x": "nonnegative"}, 2),
         ([h1 - c, c * h1 + h2], {}, 3),
+        ([(a - b) * h1 - 1, (a - b + 1) * h2 - 1], AB, 5),
         ([h1 - c], {}, 1),
     ],
     ids=str,
@@ -115,7 +120,8 @@ def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[Scalar], sig
         "==": lambda v: v == 0,
     }
     for point in points(signs, 300):
-        for here in (point, {**point, "c": point["b"]}, {**point, "a": point["b"]}, {**point, "x": Fraction(0)}):
+        less = {**point, "a": point["b"] - 1}
+        for here in (point, {**point, "c": point["b"]}, {**point, "a": point["b"]}, {**point, "x": Fraction(0)}, less):
             if not all(has_sign(value, signs.get(name, "real")) for name, value in here.items()):
                 continue
             met = [c for c in cases if all(relations[o](value_at(v, here)) for v, o in c.when)]
@@ -129,6 +135,13 @@ def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[Scalar], sig
                 assert told or not positive_at(conditions, here)
 
 
+def test_what_was_declared_of_a_symbol_is_kept_where_it_is_replaced() -> None:
+    above, below, equal = sign_cases([(a - b + 1) * h1 - h2], ["h1"], AB)
+    assert (above.assumed, below.assumed) == ((a - b + 1,), (b - a - 1,))
+    assert equal.substitution == {"a": b - 1}
+    assert equal.assumed == (b - 1,)
+
+
 def test_a_region_said_otherwise_is_proved_or_refused() -> None:
     quartic = s**4 + 3 * s**3 + h1 * s**2 + h2 * s + 1
     bound = h1 - (h2**2 + 9) / (3 * h2)
@@ -140,3 +153,4 @@ def test_a_region_said_otherwise_is_proved_or_refused() -> None:
     assert is_stable_where(quartic, "s", found.positive, {}, proof=found.equivalence)
     assert not is_stable_where(quartic + s, "s", found.positive, {}, proof=found.equivalence)
     assert not is_stable_where(quartic, "s", [h2], {}, proof=found.equivalence)
+    assert not is_stable_where(quartic, "s", found.positive, {}, proof=replace(found.equivalence, forward=()))

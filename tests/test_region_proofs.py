@@ -12,11 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
+from symobs.region import external
 from symobs.region.conditions import stable_where
 from symobs.region.decide import decide_empty, equivalence_of, implies, same_region
 from symobs.region.external import none_by_cells, none_by_z3
 from symobs.region.points import find_point, point_where_zero
-from symobs.region.proof import UNIT, Asked, Combined, Equivalence, Opposite, Step, proves, refutes
+from symobs.region.proof import UNIT, Asked, Combined, Equivalence, Opposite, Step, contradiction, proves, refutes
 from symobs.region.prover import prove, prove_by_opposite, refute
 from symobs.region.simplify import is_needed, simplify
 from tests.plain import has_sign, random_fraction, seeded, value_at
@@ -48,6 +49,12 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
 
 
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine may be busy; what qepcad answers is tested, not how soon."""
+    monkeypatch.setattr(external, "CELLS", 60.0)
+
+
 # -- the prover ----------------------------------------------------------------------------------------------------------
 
 #: Goal, what is known, signs.  Each is easily seen by hand.
@@ -69,6 +76,7 @@ PROVED: list[tuple[Scalar, list[Scalar], dict[str, str]]] = [
     (x, [x * y - 1, y], {}),
     (y, [x * y - 1, x], {}),
     (2 - x, [1 - x**2], {}),
+    (x**2, [x**2 - a], AB),
 ]
 NOT_PROVED: list[tuple[Scalar, list[Scalar], dict[str, str]]] = [
     (x - y, [x, y], {}),
@@ -140,6 +148,9 @@ def test_a_factor_of_which_only_one_sign_is_possible() -> None:
     assert proves(steps, [x + y - 1, known[1]], [y], {})
     assert not proves(steps, [x + y, known[1]], [y], {})
     assert not proves([replace(steps[0], multiple=x + y - 1)], [x + y - 1, known[1]], [y], {})
+    weak = [Opposite(x, x * y, (contradiction(-x),))]
+    assert proves(weak, [x * y], [x], {"x": "nonnegative"})
+    assert not proves(weak, [y], [x], {"x": "nonnegative"})  # x = 0 is open
     assert not proves([replace(steps[0], value=x - 1)], [x + y - 1, known[1]], [x - 1], {})
 
 
@@ -245,9 +256,46 @@ def test_without_z3_nothing_is_believed() -> None:
     assert not proves([Asked(x + 2, tuple(known))], known, [x + 2], {})
     found = simplify([*known, x + 2], {})
     assert set(found.positive) == {*known, x + 2}
+    assert found.dropped == ()
     assert not found.irredundant
     assert implies(known, x + 2, {}).verdict == "undecided"
+    assert simplify([(x - y) ** 2, x], {}).irredundant
     assert stable_where(s**2 + (b + h2) * s + 1 - h1, "s", AB).irredundant
+
+
+@pytest.mark.parametrize(
+    ("raw", "signs", "expected"),
+    [
+        ([c * (1 - x)], {"c": "negative"}, [x - 1]),
+        ([c * (1 - x)], {"c": "nonpositive"}, [x - 1, -c]),
+        ([c**2 * (1 - x) ** 3], {}, [1 - x, c**2]),
+        ([c**3 * (1 - x) ** 2 / y], {"c": "positive"}, [y, (x - 1) ** 2]),
+        ([x * (y + b), x], AB, [x, y + b]),
+        ([x * y * z, x - 1, y + b * x], AB, [x - 1, y * z, b * x + y]),
+        ([(x - y) ** 2, x], {}, [x, (x - y) ** 2]),
+        ([(x - y) ** 2, x - y - 1], {}, [x - y - 1]),
+        ([(x - 1) * (x + 1), x + 3 * a], AB, [x**2 - 1, x + 3 * a]),
+        ([1 - x**2], {}, [1 - x, 1 + x]),
+        ([(x**2 + 1) * (x + a), x**2 - 2 * x + 3], {}, [x + a]),
+    ],
+    ids=str,
+)
+def test_lists_made_short(raw: list[Scalar], signs: dict[str, str], expected: list[Scalar]) -> None:
+    found = simplify(raw, signs)
+    assert set(found.positive) == set(expected)
+    assert found.equivalence.holds(signs)
+    assert found.irredundant
+
+
+def test_what_is_dropped_is_told() -> None:
+    found = simplify([x - 1, y - 1, x * y - 1, x + y], {})
+    assert set(found.positive) == {x - 1, y - 1}
+    assert set(found.dropped) == {(x * y - 1, "products"), (x + y, "products")}
+    assert found.verdict == "conditional"
+    assert simplify([a, a + b], AB).verdict == "yes"
+    beside = simplify([x * y, y - 1], {}, beside=[x - 1])
+    assert set(beside.positive) == {y - 1}
+    assert beside.equivalence.holds({})
 
 
 # -- decisions -----------------------------------------------------------------------------------------------------------
@@ -304,6 +352,7 @@ def test_the_same_region_told_in_two_ways() -> None:
         assert equivalence_of(first, second, {}) is None
 
 
+@pytest.mark.usefixtures("patient")
 def test_qepcad_is_a_second_opinion() -> None:
     assert none_by_cells([], {}) == "maybe"
     answers = [none_by_cells(v, {}) for v in ([x, -x], [x, y], [x**2 + y**2 - 1, 1 - x**2 - y**2])]
@@ -312,6 +361,23 @@ def test_qepcad_is_a_second_opinion() -> None:
     assert answers == ["yes", "no", "yes"]
     assert none_by_cells([x + a], {"a": "positive", "x": "positive"}, not_above=a) == "yes"
     assert none_by_cells([x**30 - y], {}) == "maybe"
+
+
+@pytest.mark.parametrize(
+    ("sign", "impossible"),
+    [("positive", x), ("negative", -x), ("nonnegative", x + 1), ("nonpositive", 1 - x), ("nonzero", x**2)],
+)
+@pytest.mark.parametrize("program", ["z3", "qepcad"])
+@pytest.mark.usefixtures("patient")
+def test_other_deciders_know_the_signs(program: str, sign: str, impossible: Scalar) -> None:
+    if program == "z3":
+        pytest.importorskip("z3")
+        answers = [none_by_z3([], signs, not_above=impossible) for signs in ({"x": sign}, {})]
+    else:
+        answers = [none_by_cells([], signs, not_above=impossible) == "yes" for signs in ({"x": sign}, {})]
+        if none_by_cells([x, -x], {}) == "maybe":
+            pytest.skip("qepcad is not on PATH")
+    assert answers == [True, False]
 
 
 def test_z3_is_not_asked_what_it_cannot_know() -> None:

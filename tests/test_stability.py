@@ -16,6 +16,7 @@ from symobs.stability import (
     Stability,
     as_inequality,
     hurwitz_matrix,
+    lienard_chipart,
     monic,
     no_stable_compensator,
     stability,
@@ -241,6 +242,37 @@ def test_a_solved_inequality_says_the_same(positive: Scalar, signs: dict[str, st
         l, r = value_at(left, point), value_at(right, point)
         assert operator in {"<", ">"}
         assert (l < r if operator == "<" else l > r) == (value_at(positive, point) > 0)
+
+
+@pytest.mark.parametrize(
+    ("positive", "signs", "parameters", "beside", "expected"),
+    [
+        (b * k - c, {"b": "positive"}, (), (), "c < b*k"),  # a coefficient ±1 before any other
+        (b * k - c, {"b": "positive"}, ("k",), (), "k > c/b"),
+        (b * k - c, {"b": "negative", "c": "positive"}, (), (), "k < c/b"),
+        (2 * a - 1, {}, (), (), "a > 1/2"),
+        (3 * a * c - c**2 - 9, {}, ("a",), (), "3*a*c - c**2 - 9 > 0"),
+        (3 * a * c - c**2 - 9, {}, ("a",), (c,), "a > (c**2 + 9)/(3*c)"),
+        ((a + b) ** 2, {"b": "positive"}, (), (), "a != -b"),
+        (a**2 * b**2, {}, (), (), "a*b != 0"),
+        (a**2 + b**2, {}, (), (), "a**2 + b**2 > 0"),
+    ],
+    ids=str,
+)
+def test_what_an_inequality_is_solved_for(
+    positive: Scalar, signs: dict[str, str], parameters: tuple[str, ...], beside: tuple[Scalar, ...], expected: str
+) -> None:
+    left, operator, right = as_inequality(positive, signs, parameters, beside)
+    assert f"{left} {operator} {right}" == expected
+
+
+def test_the_other_list_of_lienard_and_chipart() -> None:
+    for about, _ in PARAMETRIC:
+        coefficients = monic(about, "s").coefficients("s")
+        for point in ({name: random_fraction(seeded((about, n))) for name in "abck"} for n in range(40)):
+            lists = [lienard_chipart(coefficients, others=others) for others in (False, True)]
+            stable = is_hurwitz(coefficients_at(about, "s", point))
+            assert [all(value_at(v, point) > 0 for v in found) for found in lists] == [stable, stable]
 
 
 def test_the_hurwitz_matrix_is_the_one_of_the_books() -> None:

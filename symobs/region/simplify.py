@@ -12,6 +12,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.conditions import sign_of
+from symobs.exact import Scalar
 from symobs.region.external import QUESTION, point_by_z3
 from symobs.region.parts import State, cleared, in_parts, split_products
 from symobs.region.points import Point, find_point, holds_at, point_where_zero, respects, value_at
@@ -30,12 +31,12 @@ from symobs.stability import root_of_square
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.exact import Scalar
-
 Signs: TypeAlias = "Mapping[str, str]"
 
 #: Seconds that all questions to z3 about one list may take together.
 TOGETHER = 6.0
+#: Values of more terms keep their order; to write them out would take longer than it is worth.
+_TOLD_APART = 100
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
@@ -44,14 +45,15 @@ class Simplified:
     """An equivalent list.
 
     `positive` must be > 0, where f² stands for f ≠ 0; (0,) means nowhere.  `point` is one where all are positive, and
-    `witnesses` are points at which one of them fails and the others hold.  What was given beside is in both lists of
-    the equivalence.
+    `witnesses` are points at which one of them fails and the others hold.  `dropped` follow from the rest, by
+    `products` or by `z3`.  What was given beside is in both lists of the equivalence.
     """
 
     positive: tuple[Scalar, ...]
     equivalence: Equivalence
     point: Point | None = None
     witnesses: tuple[tuple[Scalar, Point], ...] = ()
+    dropped: tuple[tuple[Scalar, str], ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -89,9 +91,9 @@ def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = 
     if impossible is not None:
         return _nowhere(polynomials, (*state.backward, *impossible))
     state = split_products(state, signs, given)
-    state, witnesses = _without_implied(state, signs, given, until)
+    state, witnesses, dropped = _without_implied(state, signs, given, until)
     equivalence = Equivalence(polynomials, state.current, state.forward, state.backward)
-    return Simplified(tuple(v for v in state.current if v not in given), equivalence, point, witnesses)
+    return Simplified(tuple(v for v in state.current if v not in given), equivalence, point, witnesses, dropped)
 
 
 def _nowhere(raw: tuple[Scalar, ...], steps: Sequence[Step]) -> Simplified:
@@ -125,11 +127,11 @@ def _left(until: float) -> int:
 
 def _without_implied(
     state: State, signs: Signs, given: Sequence[Scalar], until: float
-) -> tuple[State, tuple[tuple[Scalar, Point], ...]]:
-    """Drop what the others imply, the longest first; return the points which show that the rest is needed."""
-    witnesses = []
+) -> tuple[State, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
+    """Drop what the others imply, the longest first; return the points which show that the rest is needed too."""
+    witnesses, dropped = list[tuple[Scalar, Point]](), list[tuple[Scalar, str]]()
     open_ = (value for value in state.current if value not in given)
-    for value in sorted(open_, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < 100 else "")):
+    for value in sorted(open_, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < _TOLD_APART else "")):
         others = state.without(value)
         point = failing_alone(value, others, signs)
         steps = prove_value(value, others, signs) if point is None else None
@@ -137,9 +139,10 @@ def _without_implied(
             point, steps = asked(value, others, signs, until)
         if steps is not None:
             state = state.replaced(value, (), steps)
+            dropped.append((value, "z3" if any(isinstance(step, Asked) for step in steps) else "products"))
         elif point is not None:
             witnesses.append((value, point))
-    return state, tuple(witnesses)
+    return state, tuple(witnesses), tuple(dropped)
 
 
 def prove_value(value: Scalar, known: Sequence[Scalar], signs: Signs) -> tuple[Step, ...] | None:
