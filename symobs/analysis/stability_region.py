@@ -24,13 +24,14 @@ from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.region.cases import SignCase, sign_cases
 from symobs.region.cells_proof import are_parts, is_region
+from symobs.region.choice import region_in
 from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.description import parts
 from symobs.region.drawing import oriented, picture_of_line, picture_of_plane
 from symobs.region.drawing_symbols import picture_with_symbols
 from symobs.region.inequalities import Bound, short_list
 from symobs.region.line import LineRegion
-from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
+from symobs.region.plane import PlaneRegion
 from symobs.region.pole_paths import pole_map
 from symobs.region.proof import asks_z3
 from symobs.region.routh import RouthTable, is_routh_table, routh_table
@@ -267,13 +268,7 @@ def positive_of(bound: Bound) -> Scalar:
 
 def region_of(question: Question) -> LineRegion | PlaneRegion | None:
     """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
-    names, critical = question.parameters, question.critical
-    if question.symbols or not 1 <= len(names) <= 2:
-        return None
-    if len(names) == 1:
-        return LineRegion(critical, names[0])
-    found = plane_region(critical, (names[0], names[1]))
-    return found if can_be_divided(found) else None
+    return None if question.symbols else region_in(question.critical, question.parameters)
 
 
 @method("stability_region/routh", source="E. J. Routh, 1877; the plane divided after G. E. Collins, 1975")

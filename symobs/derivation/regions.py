@@ -16,12 +16,12 @@ from symobs.formula import Exact, Literal, Relation, evaluate
 from symobs.phrases.regions import counted, in_words, root_in_words
 from symobs.region.bounds import box
 from symobs.region.cells_proof import are_parts, is_region
+from symobs.region.choice import region_in
 from symobs.region.conditions import is_stable_where, stable_where
 from symobs.region.critical import Boundary, Critical
 from symobs.region.description import are_whole, between, parts, relations_of
 from symobs.region.inequalities import Bound, short_list
 from symobs.region.line import LineRegion
-from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from symobs.derivation.steps import Survey
     from symobs.exact import RealNumber
     from symobs.formula import Environment, Exactly
+    from symobs.region.plane import PlaneRegion
 
 
 def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
@@ -169,14 +170,7 @@ def _region_of(
     own = tuple(sorted(polynomial.names - {variable}))
     if names and tuple(sorted(names)) != own:
         return None
-    critical = Critical(polynomial, Boundary(variable, discrete), dict(signs))
-    if len(own) == 1:
-        return LineRegion(critical, own[0])
-    if len(own) != 2:
-        return None
-    first, second = names or own
-    found = plane_region(critical, (first, second))
-    return found if can_be_divided(found) else None
+    return region_in(Critical(polynomial, Boundary(variable, discrete), dict(signs)), names or own)
 
 
 def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, str], ...]) -> bool:

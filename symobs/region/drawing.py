@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 NODES = 48
 #: Beyond this many samples only the stable ones are marked.
 MOST_MARKS = 16
+#: Nodes lie on this grid of the window: numbers of many digits cost time over every one of them.
+_NODE_GRID = 1 << 14
 #: How often nodes are added where a branch is farther off a straight line than this part of the window.
 _PASSES, _STRAIGHT = 2, Fraction(1, 100)
 #: Coordinates are rounded to this fraction of the window.
@@ -151,7 +153,9 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
         if curve.degree:
             for height in (bottom, top):
                 found |= {x for root in real_roots(curve.on_horizontal(height)) if low < (x := _middle(root)) < high}
-    inside = [x for x in found if (slab.left is None or slab.left < RealNumber.of(x))]
+    grid = (right - left) / _NODE_GRID
+    rounded = {round(x / grid) * grid for x in found}
+    inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
     nodes = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
     for _ in range(_PASSES):
         nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
+from symobs.region.choice import region_in
 from symobs.region.critical import Critical
 from symobs.region.drawing import equation_of, oriented, picture_of_line, picture_of_plane
 from symobs.region.line import LineRegion
-from symobs.region.plane import can_be_divided, plane_region
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -49,12 +49,11 @@ def _drawn(critical: Critical, parameters: Sequence[str], values: dict[str, Scal
     if there.never or there.parameters != tuple(sorted(parameters)):
         return None
     drawn_for = tuple(values.items())
-    if len(parameters) == 1:
-        line = LineRegion(there, parameters[0])
-        return None if line.empty else replace(picture_of_line(line), drawn_for=drawn_for)
-    region = plane_region(there, (parameters[0], parameters[1]))
-    if not can_be_divided(region) or region.empty:
+    region = region_in(there, tuple(parameters))
+    if region is None or region.empty:
         return None
+    if isinstance(region, LineRegion):
+        return replace(picture_of_line(region), drawn_for=drawn_for)
     picture = oriented(picture_of_plane(region), parameters)
     labels = {equation_of(factor): _general(factor, values, critical, parameters) for factor in there.factors}
     curves = tuple(replace(curve, equation=labels[curve.equation]) for curve in picture.curves)

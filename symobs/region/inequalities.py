@@ -9,6 +9,7 @@ surrounds without containing them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from symobs.exact import Scalar
@@ -59,6 +60,7 @@ class Region(Protocol):
         """Return for every isolated point that is missing the critical factors that vanish there."""
 
 
+@lru_cache(maxsize=256)
 def short_list(region: Region) -> tuple[Bound, ...]:
     """Return the inequalities; none where everything is stable.  The region must not be empty."""
     samples = region.samples(())

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from symobs.region.critical import Critical
 
 #: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
-LARGEST_PROJECTION = 300
+LARGEST_PROJECTION = 170
+#: With the conditions of a short list besides, it may be this much larger.
+_LARGER = 3
 
 
 @dataclass(frozen=True)
@@ -227,7 +229,10 @@ class PlaneRegion:
             return self.plane
         key = frozenset(others)
         if key not in self._finer:
-            self._finer[key] = Plane((*self.critical.factors, *others), self.names)
+            polynomials = (*self.critical.factors, *others)
+            if projection_size(polynomials, self.names) > _LARGER * LARGEST_PROJECTION:
+                raise TooLarge("the conditions of stability are of too high a degree")
+            self._finer[key] = Plane(polynomials, self.names)
         return self._finer[key]
 
     @cached_property
@@ -291,13 +296,16 @@ def can_be_divided(region: PlaneRegion) -> bool:
     """Tell whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
     if region.critical.never:
         return True
-    x, y = region.names
-    degrees = [(factor.degree(x), factor.degree(y)) for factor in region.critical.factors]
-    total = sum(max(0, 2 * high - 1) * wide for wide, high in degrees)
-    total += sum(one[0] * other[1] + one[1] * other[0] for one, other in combinations(degrees, 2))
-    if total > LARGEST_PROJECTION:
+    if projection_size(region.critical.factors, region.names) > LARGEST_PROJECTION:
         return False
     try:
         return region.components is not None
     except TooLarge:
         return False
+
+
+def projection_size(polynomials: Sequence[Scalar], names: tuple[str, str]) -> int:
+    """Return a bound of the degrees of all discriminants and resultants together."""
+    degrees = [(polynomial.degree(names[0]), polynomial.degree(names[1])) for polynomial in polynomials]
+    total = sum(max(0, 2 * high - 1) * wide for wide, high in degrees)
+    return total + sum(one[0] * other[1] + one[1] * other[0] for one, other in combinations(degrees, 2))

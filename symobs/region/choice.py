@@ -1,0 +1,32 @@
+"""Which kind of region a polynomial has, and whether it can be had in reasonable time."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from symobs.exact import TooLarge
+from symobs.region.inequalities import short_list
+from symobs.region.line import LineRegion
+from symobs.region.plane import PlaneRegion, can_be_divided, plane_region
+
+if TYPE_CHECKING:
+    from symobs.region.critical import Critical
+
+
+@lru_cache(maxsize=64)
+def region_in(critical: Critical, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
+    """Return the exact region in one or two parameters, None in more or where the plane is too much to divide."""
+    if len(names) == 1:
+        return LineRegion(critical, names[0])
+    if len(names) != 2:
+        return None
+    found = plane_region(critical, (names[0], names[1]))
+    if not can_be_divided(found):
+        return None
+    try:
+        if not critical.never and not found.empty:
+            short_list(found)
+    except TooLarge:
+        return None
+    return found
