@@ -94,11 +94,6 @@ def curves_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> t
     )
 
 
-def heights_on(plane: Plane, wall: Wall) -> list[tuple[Fraction, Fraction]]:
-    """Return intervals around the points of each curve on a wall."""
-    return [found for curve in plane.curves if curve.degree for found in _points_of(curve, wall.x)]
-
-
 def _points_of(curve: PlaneCurve, x: RealNumber) -> list[tuple[Fraction, Fraction]]:
     """Return disjoint intervals around the points of one curve on the line over x."""
     if x.is_rational:

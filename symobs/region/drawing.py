@@ -9,7 +9,6 @@ from math import cos, pi
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.fibre import heights_on
 from symobs.exact.real import FIRST_BITS, RealNumber, real_roots
 from symobs.formula import Literal, Relation
 from symobs.picture import Curve, End, LinePicture, Mark, RegionPicture
@@ -24,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Nodes in every slab; they crowd towards the walls, where branches turn.
 NODES = 48
+#: This part of the way from a wall to the middle of a slab is close to the wall.
+_CLOSE = 64
 #: Beyond this many samples only the stable ones are marked.
 MOST_MARKS = 16
 #: Nodes lie on this grid of the window: numbers of many digits cost time over every one of them.
@@ -86,15 +87,22 @@ def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
         slab = region.plane.slabs[cell.slab]
         xs += [cell.sample[0], *(_middle(end) for end in (slab.left, slab.right) if end is not None)]
         ys.append(cell.sample[1])
-        heights = _heights(region, slab.x)
-        ys += [heights[k] for k in (cell.height - 1, cell.height) if 0 <= k < len(heights)]
-        for index in (cell.slab - 1, cell.slab):
-            if 0 <= index < len(region.plane.walls):
-                ys += [low for low, _ in heights_on(region.plane, region.plane.walls[index])]
+        for x in (slab.x, *_near_ends(slab)):
+            heights = _heights(region, x)
+            ys += [heights[k] for k in (cell.height - 1, cell.height) if 0 <= k < len(heights)]
     if not xs:
         xs = [_middle(wall.x) for wall in region.plane.walls]
         ys = [cell.sample[1] for cell in region.cells]
     return range_around(xs), range_around(ys)
+
+
+def _near_ends(slab: Slab) -> list[Fraction]:
+    """Return points of a slab close to its walls."""
+    ends = [slab.left.interval()[1]] if slab.left is not None else []
+    ends += [slab.right.interval()[0]] if slab.right is not None else []
+    near = [(end + (slab.x - end) / _CLOSE).limit_denominator(1 << 20) for end in ends]
+    inside = [x for x in near if slab.left is None or slab.left < RealNumber.of(x)]
+    return [x for x in inside if slab.right is None or RealNumber.of(x) < slab.right]
 
 
 def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interval:
