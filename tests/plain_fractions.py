@@ -465,7 +465,7 @@ class World:
         """Yield what a picture shows that is not so."""
         value = self.polynomial_of(subject)
         assert value is not None
-        yield from regions.faults(picture, value, self.variable, discrete=self.is_discrete)
+        yield from regions.all_faults(picture, value, self.variable, self.is_discrete)
 
     @property
     def is_discrete(self) -> bool:

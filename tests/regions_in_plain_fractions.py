@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from math import comb
 from typing import TYPE_CHECKING, Any
@@ -207,6 +208,12 @@ class Seen:
         for index, by in enumerate(step):
             moved += [(*place[:index], place[index] + d, *place[index + 1 :]) for d in (-by, by)]
         return {self.stable(*other) for other in moved}
+
+
+@lru_cache(maxsize=32)
+def all_faults(picture: Picture, polynomial: Scalar, variable: str, discrete: bool) -> tuple[str, ...]:  # noqa: FBT001
+    """Return what a picture shows that is not so: the same at every random point."""
+    return tuple(faults(picture, polynomial, variable, discrete=discrete))
 
 
 def faults(picture: Picture, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
