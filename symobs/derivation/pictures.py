@@ -1,8 +1,7 @@
 """Whether a picture shows what is true, as far as an eye can tell (trusted).
 
 The points of a picture are rational and lie near what they stand for; how near is a fixed part of the window.  That a
-curve passes by is seen from a change of sign.  That a root z₀ lies near z follows from p(z + w) = Σ cₖ wᵏ, of degree n:
-±cₖ/c₀ is a sum of C(n, k) products of k reciprocals of z₀ − z, so one root has |z₀ − z|ᵏ ≤ C(n, k) |c₀/cₖ|.
+curve passes by is seen from a change of sign.
 """
 
 from __future__ import annotations
@@ -10,12 +9,13 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from math import comb
 from typing import TYPE_CHECKING
 
 from symobs.certificate import as_scalar
+from symobs.derivation.places import within, written
+from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.properties import polynomial_of
-from symobs.exact import Complex, RealNumber, Scalar, product_of
+from symobs.exact import RealNumber, Scalar, product_of
 from symobs.exact.enclosure import sign_of_number
 from symobs.exact.real import roots_of_scalar
 from symobs.formula import Exact, evaluate
@@ -73,7 +73,7 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         case LinePicture():
             yield from _of_line(picture, _Test(polynomial, variable, axes, discrete))
         case PoleMap():
-            yield from _of_poles(picture, polynomial, variable, discrete=discrete)
+            yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
 
 
 def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
@@ -143,7 +143,7 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             yield f"{plain_relation(curve.equation, test.variable)} is the equation of a curve"
             continue
         middles = [_middle(a, b) for a, b in pairwise(curve.points)]
-        inside = [place for place in middles if _within(place, picture.window)]
+        inside = [place for place in middles if within(place, picture.window)]
         if not all(_passes(value, test.axes, place, near) for place in curve.points) or not all(
             _passes(value, test.axes, place, between) for place in inside
         ):
@@ -154,17 +154,17 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
     excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
     for area in picture.areas:
         for place in area:
-            if not _within(place, picture.window, near):
-                yield f"an edge at {_written(place)}, outside of the window"
+            if not within(place, picture.window, near):
+                yield f"an edge at {written(place)}, outside of the window"
             elif not _on_border(place, picture.window, near):
                 passes = any(_passes(value, test.axes, place, near) for value in drawn)
                 if not passes:
-                    yield f"an edge at {_written(place)}"
+                    yield f"an edge at {written(place)}"
         for place in _sloping(area, near):
             if not any(_passes(value, test.axes, place, between) for value in drawn):
-                yield f"an edge at {_written(place)}"
+                yield f"an edge at {written(place)}"
         samples = (place for place in _inside(area, near[0]) if place not in excluded)
-        yield from (f"{_written(place)} is stable" for place in samples if not test.is_stable(*place))
+        yield from (f"{written(place)} is stable" for place in samples if not test.is_stable(*place))
     for mark in picture.marks:
         x, y = mark.place
         around = [(x - near[0], y), (x + near[0], y), (x, y - near[1]), (x, y + near[1])]
@@ -175,11 +175,11 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             "excluded": test.is_excluded((x, y), around),
         }
         if not agrees.get(mark.kind, False):
-            yield f"{_written(mark.place)} is {mark.kind}"
+            yield f"{written(mark.place)} is {mark.kind}"
     for place in _grid(picture.window):
         is_apart = not any(_passes(value, test.axes, place, near) for value in drawn)
         if is_apart and test.is_stable(*place) != any(_contains(area, place) for area in picture.areas):
-            yield f"{_written(place)} is {'not ' if test.is_stable(*place) else ''}stable"
+            yield f"{written(place)} is {'not ' if test.is_stable(*place) else ''}stable"
 
 
 def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
@@ -220,11 +220,6 @@ def _middle(a: Place, b: Place) -> Place:
     return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
 
 
-def _within(place: Place, window: tuple[Interval, Interval], near: Place = _NOWHERE) -> bool:
-    """Whether a place lies in the window, or as near to it as cannot be told apart."""
-    return all(low - step <= part <= high + step for part, (low, high), step in zip(place, window, near, strict=True))
-
-
 def _sloping(area: Sequence[Place], near: Place) -> Iterator[Place]:
     """Yield the middles of edges that can be seen to be parallel to no axis: they are parts of curves."""
     for a, b in zip(area, (*area[1:], area[0]), strict=True):
@@ -257,7 +252,7 @@ def _are_boundaries(curve: Curve, window: tuple[Interval, Interval], test: _Test
         size = _BESIDE / max(map(abs, across))
         aside = across[0] * size * width, across[1] * size * height
         for place in ((x + aside[0], y + aside[1]), (x - aside[0], y - aside[1])):
-            if _within(place, window):
+            if within(place, window):
                 seen.add(test.is_stable(*place))
     return {True in seen} if seen else {True, False}
 
@@ -290,10 +285,6 @@ def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:
 
 def _contains(area: Sequence[Place], place: Place) -> bool:
     return sum(x < place[0] for x in _crossings(area, place[1])) % 2 == 1
-
-
-def _written(place: Place) -> str:
-    return f"({', '.join(map(str, place))})"
 
 
 # -- intervals --------------------------------------------------------------------------------------------------------
@@ -355,86 +346,3 @@ def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
         difference.fraction() >= 0 if difference.is_constant else sign_of_number(difference) == "positive"
         for difference in (above, below)
     )
-
-
-# -- poles ------------------------------------------------------------------------------------------------------------
-
-
-def _of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
-    if (picture.variable, picture.discrete) != (variable, discrete):
-        yield f"the poles are those in {picture.variable}"
-    degree = polynomial.degree(variable)
-    if len(picture.paths) != degree or len(picture.along) != degree:
-        yield f"there are {len(picture.paths)} poles"
-        return
-    begin, end = picture.values
-    if any(not _within(place, picture.window) for path in picture.paths for place in path):
-        yield "the poles do not leave the window"
-    near = min(high - low for low, high in picture.window) * _NEAR_POLE
-    for path, along in zip(picture.paths, picture.along, strict=True):
-        falling = sorted(along, reverse=begin > end)
-        if len(path) != len(along) or (along[0], along[-1]) != (begin, end) or list(along) != falling:
-            yield f"{picture.moved} goes from {begin} to {end}"
-            return
-        for place, value in zip(path, along, strict=True):
-            if not _root_within(_shifted(polynomial, picture.moved, value, place, variable), near):
-                yield f"{_written(place)} is a pole at {picture.moved} = {value}"
-    if not any(_are_all(picture, polynomial, variable, at) for at in _common(picture)):
-        yield "these are all poles"
-
-
-def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Complex]:
-    """Return c₀, …, cₙ of p(z + w) = Σ cₖ wᵏ."""
-    there = polynomial.substitute({moved: Scalar.of(value)})
-    z = Complex(Scalar.of(place[0]), Scalar.of(place[1]))
-    coefficients = [Complex.of(c) for c in there.coefficients(variable)]
-    found: list[Complex] = []
-    while coefficients:  # divide by w = s − z again and again; what remains are the coefficients
-        for k in range(1, len(coefficients)):
-            coefficients[k] = coefficients[k] + coefficients[k - 1] * z
-        found.append(coefficients.pop())
-    return found
-
-
-def _root_within(shifted: Sequence[Complex], distance: Fraction) -> bool:
-    """Whether some root surely has |w| ≤ distance."""
-    degree = len(shifted) - 1
-    constant = _square(shifted[0])
-    return any(
-        comb(degree, k) ** 2 * constant <= distance ** (2 * k) * _square(c) and _square(c) != 0
-        for k, c in enumerate(shifted)
-        if k
-    )
-
-
-def _square(value: Complex) -> Fraction:
-    """Return the square of the modulus."""
-    return (value.real * value.real + value.imaginary * value.imaginary).fraction()
-
-
-def _common(picture: PoleMap) -> Iterator[int]:
-    """Yield the indices at which all paths stand at the same value of the parameter, from the middle on."""
-    shortest = min(map(len, picture.along))
-    for index in sorted(range(shortest), key=lambda index: abs(2 * index - shortest)):
-        if len({along[index] for along in picture.along}) == 1:
-            yield index
-
-
-def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) -> bool:
-    """Whether discs that hold a root each lie apart from one another, as many as there are different roots."""
-    different = sum(factor.degree(variable) for factor, power in polynomial.numerator.factors()[1] if power > 0)
-    apart: list[tuple[Place, Fraction]] = []
-    for path, along in zip(picture.paths, picture.along, strict=True):
-        shifted = _shifted(polynomial, picture.moved, along[index], path[index], variable)
-        constant, slope = _square(shifted[0]), _square(shifted[1])
-        if constant and not slope:
-            continue
-        radius = (len(shifted) - 1) ** 2 * constant / slope if constant else Fraction(0)
-        if all(_distance(path[index], place) > 2 * (radius + other) for place, other in apart):
-            apart.append((path[index], radius))
-    return len(apart) >= different
-
-
-def _distance(a: Place, b: Place) -> Fraction:
-    """Return the square of the distance."""
-    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2

@@ -1,0 +1,15 @@
+"""How a line of a derivation is refused."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from symobs.errors import DerivationRejected
+
+BUG = "please report this: it is a bug of symobs"
+
+
+def reject(line: str) -> NoReturn:
+    """Raise `DerivationRejected`."""
+    message = f"the line {line} is not true"
+    raise DerivationRejected(message, repair=BUG, line=line)
