@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.enclosure import decimal
-from symobs.exact.functions import square_part, square_root
+from symobs.exact.enclosure import sign_of_number
+from symobs.exact.functions import square_part, square_root, substitute
 from symobs.exact.real import integer_factor
 from symobs.formula import Literal, Relation
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from fractions import Fraction
 
     from symobs.exact import RealNumber
@@ -166,9 +166,10 @@ def _closed(polynomial: Scalar, names: tuple[str, str], number: int, x: Fraction
         return None
     a, b, c = coefficients
     radical = _root_of_polynomial(b * b - 4 * a * c)
-    roots = [(radical - b) / (2 * a), (-radical - b) / (2 * a)]
-    roots.sort(key=lambda root: _near(root, {names[0]: Scalar.of(x)}))
-    return roots[number]
+    lower, upper = (-radical - b) / (2 * a), (radical - b) / (2 * a)
+    if sign_of_number(substitute(radical / a, {names[0]: Scalar.of(x)})) == "negative":
+        lower, upper = upper, lower
+    return upper if number else lower
 
 
 def _root_of_polynomial(radicand: Scalar) -> Scalar:
@@ -176,9 +177,3 @@ def _root_of_polynomial(radicand: Scalar) -> Scalar:
     unit, _ = radicand.factors()
     square = Scalar.of(square_part(abs(unit.fraction().numerator)))
     return square * square_root(radicand / square**2)
-
-
-def _near(value: Scalar, point: Mapping[str, Scalar]) -> float:
-    from symobs.exact.functions import substitute  # noqa: PLC0415 - roots of polynomials only
-
-    return decimal(substitute(value, dict(point)))
