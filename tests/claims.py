@@ -403,10 +403,27 @@ def applicable(result: Result, point: Point) -> Iterator[Result]:
 
 
 def region_holds(result: Any, at: Setting) -> None:
-    """The inequalities hold at the point exactly if all roots are stable there."""
-    names = sorted(at.point)
+    """The inequalities hold at the point exactly if all roots are stable there, those of A moved by the margin."""
+    names, question = sorted(at.point), result.question
+    boundary = question.boundary
+    gains = [(at.B, question.K), (question.L, at.C)]
+    moved = [
+        multiply(*(part if isinstance(part, list) else matrix_at(part, at.point) for part in pair))
+        for pair, gain in zip(gains, (question.K, question.L), strict=True)
+        if gain is not None
+    ]
     inside = relations_hold(result.stable_if, names)([at.point[name] for name in names])
-    assert inside == at.is_stable(faddeev_leverrier(at.A)[0])
+    stable = [
+        at.is_stable(faddeev_leverrier(shifted(subtract(at.A, part) if part else at.A, boundary))[0])
+        for part in moved or [[]]
+    ]
+    assert inside == all(stable)
+
+
+def shifted(A: Rows, boundary: Any) -> Rows:
+    """Return A + αI, or A divided by the radius."""
+    margin, radius = boundary.margin.fraction(), boundary.radius.fraction()
+    return [[entry / radius + margin * (i == j) for j, entry in enumerate(row)] for i, row in enumerate(A)]
 
 
 HOLDS: dict[str, Callable[[Any, Setting], None]] = {

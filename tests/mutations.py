@@ -66,6 +66,8 @@ _OTHER_WORDS = [
     ("connected_bounded", "connected_unbounded"),
     ("box_bounded", "box_unbounded"),
 ]
+#: Sentences whose counting words are made, and checked, by what they count.
+_COUNTING = {"points_decide", "cells_decide", "pieces", "number_is_root", "routh_changes", "routh_changes_axis"}
 #: Words that count something: another of the same row says another number.
 _NUMBERS = (
     ("none", "one", "two", "three", "four", "all"),
@@ -122,7 +124,8 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, Sentence):
         if item.key in OTHER_WORDS:
             yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
-        yield from _of_counts(item)
+        if item.key in _COUNTING:
+            yield from _of_counts(item)
         yield from _of_parts(item)
     elif isinstance(item, RouthRow):
         yield from (Change(f".origin {o}", "structure", replace(item, origin=o)) for o in ORIGINS if o != item.origin)

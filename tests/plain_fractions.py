@@ -425,6 +425,8 @@ class World:
     def table(self, step: Tabulate) -> Iterator[tuple[str, Any]]:
         """Yield what a table says: the polynomial of its two upper rows, the rule of each row, its shape, its findings."""
         rows = [(row.power, [self.scalar(entry) for entry in row.entries], row.origin) for row in step.table.rows]
+        yield "=", Fraction(rows[0][0] + 1 - len(rows))
+        yield from (("=", Fraction(len(entries) - power // 2 - 1)) for power, entries, _ in rows)
         at, left = self.number(step.variable), single(self.value(step.polynomial))
         yield "means", left
         for power, entries, origin in rows[:2]:
@@ -479,8 +481,10 @@ class World:
             return self.polynomial_of(subject.terms[0])
         value = self.letters.get(subject.name) if isinstance(subject, Letter) else None
         value = value.value if isinstance(value, Literal) else value
-        if not isinstance(value, Scalar) or self.variable in value.denominator.names:
+        if not isinstance(value, Scalar):
             return None
+        if self.variable in value.denominator.names:
+            value = value.denominator  # whose roots are the poles
         return None if value.names & set(self.meanings) else value
 
     def names_of(self, subject: Formula) -> frozenset[str]:

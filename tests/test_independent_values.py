@@ -415,5 +415,9 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
     return compare(sympy_scalar(parse_scalar(left), names) - sympy_scalar(parse_scalar(right), names), operator)
 
 
+#: Regions are held to the roots at points, and to QEPCAD: see `test_region_points` and `regions_in_plain_fractions`.
+REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in path.read_text(encoding="utf-8")}
+
+
 def test_every_worked_example_is_written_out_here() -> None:
-    assert {path.stem for path in FOLDER.glob("*.toml")} == {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES}
+    assert {path.stem for path in FOLDER.glob("*.toml")} == {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES, *REGIONS}

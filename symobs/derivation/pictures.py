@@ -37,6 +37,7 @@ _SMALLER = 16
 #: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
 _PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
 _NOWHERE = (Fraction(0), Fraction(0))
+_ON_SEGMENT = (Fraction(2, 7), Fraction(5, 9), Fraction(3, 4))
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 _SIGNS: dict[str, Callable[[Fraction], bool]] = {
     "positive": lambda value: value > 0,
@@ -242,7 +243,7 @@ def _are_boundaries(curve: Curve, window: tuple[Interval, Interval], test: _Test
     At some of its points a place on either side is asked for; a boundary is what something stable lies beside.
     """
     width, height = (high - low for low, high in window)
-    points = curve.points if len(curve.points) > 2 else (curve.points[0], _middle(*curve.points), curve.points[-1])
+    points = curve.points if len(curve.points) > 2 else _along(*curve.points)
     seen: set[bool] = set()
     for k in range(1, len(points) - 1, max(1, len(points) // _ASKED)):
         (x, y), (x0, y0), (x1, y1) = points[k], points[k - 1], points[k + 1]
@@ -255,6 +256,11 @@ def _are_boundaries(curve: Curve, window: tuple[Interval, Interval], test: _Test
             if within(place, window):
                 seen.add(test.is_stable(*place))
     return {True in seen} if seen else {True, False}
+
+
+def _along(a: Place, b: Place) -> tuple[Place, ...]:
+    """Return places on a segment, ends included, none at its middle, where another curve may cross."""
+    return tuple((a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part) for part in (0, *_ON_SEGMENT, 1))
 
 
 def _on_border(place: Place, window: tuple[Interval, Interval], near: Place) -> bool:

@@ -16,7 +16,7 @@ from symobs.picture import Curve, End, LinePicture, Mark, RegionPicture
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symobs.exact.plane import Slab
+    from symobs.exact.plane import Slab, Wall
     from symobs.picture import Interval, Place
     from symobs.region.line import LineRegion
     from symobs.region.plane import Cell, PlaneRegion
@@ -246,7 +246,7 @@ def _branches(
 
 
 def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[Curve]:
-    """Return the vertical lines among the critical curves, as far as stable cells stand beside them."""
+    """Return the vertical lines among the critical curves in pieces: a boundary where something stable stands beside."""
     found = []
     (left, right), (bottom, top) = window
     for wall in region.plane.walls:
@@ -254,10 +254,30 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
             x = _middle(wall.x)
             if not left <= x <= right:
                 continue
-            stable = any(region.stable_in(wall.index)) or any(region.stable_in(wall.index + 1))
             equation = equation_of(region.plane.curves[curve].scalar)
-            found += [Curve(_rounded(piece, window), equation, stable) for piece in [((x, bottom), (x, top))]]
+            beside = _beside(region, wall, (right - left) / _GRID)
+            heights = {y for place in beside for y in _heights(region, place) if bottom < y < top}
+            for low, high in _pieces(sorted({bottom, top, *heights}), (top - bottom) / 100):
+                points = ({region.names[0]: place, region.names[1]: (low + high) / 2} for place in beside)
+                stable = any(region.critical.allows(p) and region.critical.is_stable(p) for p in points)
+                found.append(Curve(_rounded([(x, low), (x, high)], window), equation, stable))
     return found
+
+
+def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:
+    """Return a point close to a wall on either side, inside the slabs there."""
+    found = []
+    for end, slab in zip(wall.x.interval(), region.plane.slabs[wall.index : wall.index + 2], strict=True):
+        place = end + (slab.x - end) * min(Fraction(1, _CLOSE), step / abs(slab.x - end))
+        found.append(place.limit_denominator(1 << 40))
+    return found
+
+
+def _pieces(ends: Sequence[Fraction], least: Fraction) -> list[tuple[Fraction, Fraction]]:
+    """Return the intervals between ends that are not closer than this."""
+    kept = [ends[0]]
+    kept += [end for end in ends[1:-1] if end - kept[-1] > least and ends[-1] - end > least]
+    return list(pairwise([*kept, ends[-1]]))
 
 
 def equation_of(polynomial: Scalar, parameters: Sequence[str] = ()) -> Relation:
