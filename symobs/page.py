@@ -20,6 +20,7 @@ from symobs.derivation import (
     Step,
     Tabulate,
     findings_of,
+    is_faithful,
 )
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import identities, known, roots_in
@@ -301,7 +302,13 @@ class Page:
         return table
 
     def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
-        """Show where a polynomial is stable, or how its roots move: the picture is held against it."""
+        """Show where a polynomial is stable, or how its roots move: the picture is held against it.
+
+        One that numbers of a window's resolution cannot show faithfully is left out.
+        """
+        discrete = self.plant.is_discrete
+        if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):
+            return
         self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager

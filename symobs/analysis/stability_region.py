@@ -177,7 +177,9 @@ class StabilityRegion(Result):
             found |= intervals_of(region)
         elif self.short is not None:
             found |= of_conditions(self.short, self.question)
-        if isinstance(region, PlaneRegion):
+        if isinstance(region, PlaneRegion) and self.critical.never:
+            found |= {"bounded": True, "cells": [], "components": [], "excluded_points": [], "sample_points": []}
+        elif isinstance(region, PlaneRegion):
             found |= {"bounded": self.empty or region.bounded}
             found |= {"cells": cells_of(region), "components": components_of(region, self.parts)}
             found |= excluded_of(region)

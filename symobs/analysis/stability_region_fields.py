@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.region.bounds import box
+from symobs.region.description import are_whole
 from symobs.region.line import LineRegion
 from symobs.stability import as_inequality
 
@@ -139,6 +140,7 @@ def components_of(region: PlaneRegion, parts: Sequence[Part]) -> list[dict[str, 
             {
                 "bounded": component.bounded,
                 "sample": _point(region, region.cells[component.cells[0]].sample),
+                "parts_are_whole": are_whole(region, parts),
                 "parts": [
                     {
                         x: [end(part.low, "-", x), end(part.high, "+", x)],

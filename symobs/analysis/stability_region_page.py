@@ -195,7 +195,8 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
     if findings:
         page.steps.append(Survey(page[chi].formula, names, findings))
     page.steps += [_case(page, case, chi) for case in result.case_tree if case.result is not None]
-    if not result.question.symbols and len(names) == 2:
+    weak = {"nonnegative", "nonpositive"}.intersection(map(signs.get, names))
+    if not result.question.symbols and len(names) == 2 and not weak:
         page.remark("not_divided")
     if result.picture is not None:
         page.plot(result.picture, page[chi])

@@ -88,7 +88,14 @@ def read_question(
         chosen = read_names(parameters, names, "parameters")
     else:
         gained = {name for gain in found.values() if gain is not None for name in gain.names}
-        chosen = _free(gained or set(names), plant)
+        chosen = _free((gained or set(names)) - boundary.names or set(names), plant)
+    shared = boundary.names.intersection(chosen)
+    if shared:
+        name = "radius" if plant.is_discrete else "margin"
+        message = f"the {name} contains the parameter {min(shared)}"
+        raise InputError(
+            message, where=f"specification.{name}", repair="write another name, or leave it out of parameters"
+        )
     return Question(plant, found["K"], found["L"], chosen, boundary)
 
 

@@ -1,6 +1,7 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
+from symobs.derivation.pictures import is_faithful
 from symobs.derivation.regions import findings_of_conditions, findings_of_region
 from symobs.derivation.steps import (
     Case,
@@ -41,4 +42,5 @@ __all__ = [
     "findings_of",
     "findings_of_conditions",
     "findings_of_region",
+    "is_faithful",
 ]

@@ -11,7 +11,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from symobs.certificate import as_scalar
+from symobs.certificate import SENSELESS, as_scalar
 from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.properties import polynomial_of
@@ -24,7 +24,7 @@ from symobs.picture import LinePicture, PoleMap, RegionPicture
 from symobs.stability import stability
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symobs.formula import Environment, Formula, Relation
     from symobs.picture import Curve, End, Interval, Picture, Place
@@ -70,11 +70,19 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
     match picture:
         case RegionPicture():
             equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
-            yield from _of_region(picture, equations, _Test(polynomial, variable, axes, discrete))
+            yield from _of_region(picture, equations, _Test(polynomial, variable, axes, discrete, environment.signs))
         case LinePicture():
-            yield from _of_line(picture, _Test(polynomial, variable, axes, discrete))
+            yield from _of_line(picture, _Test(polynomial, variable, axes, discrete, environment.signs))
         case PoleMap():
             yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
+
+
+def is_faithful(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> bool:
+    """Tell whether nothing that a picture shows is false."""
+    try:
+        return next(faults(picture, subject, environment, discrete=discrete), None) is None
+    except SENSELESS:
+        return False
 
 
 def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
@@ -93,12 +101,22 @@ def _difference(relation: Relation, environment: Environment, numbers: dict[str,
 class _Test:
     """Stability of one polynomial at points of the picture: the same question is asked again and again."""
 
-    def __init__(self, polynomial: Scalar, variable: str, axes: tuple[str, ...], discrete: bool) -> None:  # noqa: FBT001
+    def __init__(
+        self,
+        polynomial: Scalar,
+        variable: str,
+        axes: tuple[str, ...],
+        discrete: bool,  # noqa: FBT001
+        signs: Mapping[str, str],
+    ) -> None:
+        self.allowed = [_SIGNS[signs.get(name, "real")] for name in axes]
         self.polynomial, self.variable, self.axes, self.discrete = polynomial, variable, axes, discrete
         self.degree = polynomial.degree(variable)
 
     def is_stable(self, *place: Fraction) -> bool:
-        """Whether all roots are stable; where the degree drops a root has gone to infinity, or there is no polynomial."""
+        """Whether all roots are stable where the signs allow it; where the degree drops a root has gone to infinity."""
+        if not all(allows(part) for allows, part in zip(self.allowed, place, strict=True)):
+            return False
         try:
             there = self.polynomial.substitute(_at(self.axes, place))
         except ZeroDivisionError:

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import acb_poly, arb, arb_mat, ctx, fmpq, fmpq_poly
 
 from symobs.exact.ideal import TooLarge
-from symobs.exact.real import FIRST_BITS, RealNumber, at_ball, rational_between, real_roots, simplest_between
+from symobs.exact.real import FIRST_BITS, RealNumber, at_ball, ends_of, rational_between, real_roots, simplest_between
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from fractions import Fraction
 
     from symobs.exact.plane import Event, Plane, PlaneCurve, Wall
 
@@ -92,6 +92,12 @@ def curves_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> t
         for index, curve in enumerate(plane.curves)
         if curve.degree and any(low < end < high for end, _ in _points_of(curve, wall.x))
     )
+
+
+def place_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    """Return an interval around the one point of the curves on a wall between two separators."""
+    places = [ends for curve in plane.curves if curve.degree for ends in _points_of(curve, wall.x)]
+    return next(ends for ends in places if low < ends[0] and ends[1] < high)
 
 
 def _points_of(curve: PlaneCurve, x: RealNumber) -> list[tuple[Fraction, Fraction]]:
@@ -299,8 +305,7 @@ def _isolated(coefficients: Sequence[arb], bits: int) -> list[tuple[Fraction, Fr
         mirrored = root.conjugate()
         if any(mirrored.overlaps(other) for place, other in enumerate(roots) if place != index):
             return None
-        low, high = root.real.lower().fmpq(), root.real.upper().fmpq()
-        found.append((Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q))))
+        found.append(ends_of(root.real, 2 * bits))
     found.sort()
     if any(one[1] >= other[0] for one, other in itertools.pairwise(found)):
         return None

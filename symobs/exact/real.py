@@ -89,8 +89,7 @@ class RealNumber:
         """Return rational bounds; both are the number itself where it is rational."""
         if self.is_rational:
             return self.fraction, self.fraction
-        ball = self.ball(bits)
-        return _fraction(ball.lower()), _fraction(ball.upper())
+        return ends_of(self.ball(bits), bits)
 
     def sign_of(self, polynomial: fmpz_poly) -> int:
         """Return the sign of a polynomial with integer coefficients at this number."""
@@ -187,6 +186,15 @@ class RealRoot(Function):
 
 def _from_coefficients(coefficients: tuple[int, ...], index: int) -> RealNumber:
     return RealNumber(fmpz_poly(list(coefficients)), index)
+
+
+def ends_of(ball: arb, bits: int) -> tuple[Fraction, Fraction]:
+    """Return rational bounds of a ball; they are rounded to twice the bits, outwards."""
+    before, ctx.prec = ctx.prec, 2 * bits
+    try:
+        return _fraction(ball.lower()), _fraction(ball.upper())
+    finally:
+        ctx.prec = before
 
 
 def _fraction(exact: arb) -> Fraction:

@@ -16,7 +16,12 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=64)
 def region_in(critical: Critical, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
-    """Return the exact region in one or two parameters, None in more or where the plane is too much to divide."""
+    """Return the exact region in one or two parameters, None in more or where the plane is too much to divide.
+
+    A parameter that may be 0 and not beyond has a boundary that belongs to it, which open cells do not see.
+    """
+    if any(critical.signs.get(name) in {"nonnegative", "nonpositive"} for name in names):
+        return None
     if len(names) == 1:
         return LineRegion(critical, names[0])
     if len(names) != 2:

@@ -103,7 +103,8 @@ def meetings_of(region: PlaneRegion) -> list[Meeting]:
 def is_regular(part: Part, end: RealNumber | None) -> bool:
     """Tell whether the bounds of a part have a meaning at one of its ends."""
     edges = [edge for edge in (part.lower, part.upper) if edge is not None]
-    return end is not None and all(edge.is_finite_at(end) for edge in edges)
+    # the number of a root may be another one on the wall itself
+    return end is not None and all(edge.closed is not None and edge.is_finite_at(end) for edge in edges)
 
 
 def are_whole(region: PlaneRegion, found: Sequence[Part]) -> bool:

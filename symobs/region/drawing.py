@@ -242,7 +242,8 @@ def _branches(
                 piece = []
         if len(piece) > 1:
             found.append((piece, equation, stable[place] or stable[place + 1]))
-    return [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
+    curves = [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
+    return [curve for curve in curves if len(curve.points) > 1]
 
 
 def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[Curve]:

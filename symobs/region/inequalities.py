@@ -86,6 +86,10 @@ def short_list(region: Region) -> tuple[Bound, ...]:
 def is_exact(region: Region, bounds: Sequence[Bound]) -> bool:
     """Tell whether these inequalities hold exactly on the region."""
     factors = irreducible(bound.polynomial for bound in bounds)
+    # these do not vanish anywhere in the region; of others a curve or a point inside might be left out by a list
+    known = {*region.critical.factors, *irreducible(region.critical.conditions)}
+    if not known.issuperset(factors):
+        return False
     right = all(sample.stable == _hold(bounds, sample) for sample in region.samples(factors))
     cuts = all(factor in factors for factor in region.surrounded())
     holes = all(any(factor in factors for factor in through) for through in region.through_holes())

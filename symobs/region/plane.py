@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 from symobs.exact import TooLarge
-from symobs.exact.fibre import Fibre, curves_between, fibre, point_between
+from symobs.exact.fibre import Fibre, curves_between, fibre, place_between, point_between
 from symobs.exact.plane import Branch, Plane, Slab, Wall
 from symobs.region.inequalities import Sample
 
@@ -181,8 +181,8 @@ class PlaneRegion:
 
     def _hole(self, wall: Wall, low: Fraction, high: Fraction) -> Hole:
         y = point_between(self.plane, wall, low, high)
-        x = wall.x.interval()[0]
-        return Hole(wall.x, y, (x, (low + high) / 2))
+        bottom, top = place_between(self.plane, wall, low, high)
+        return Hole(wall.x, y, (wall.x.interval()[0], (bottom + top) / 2))
 
     @cached_property
     def cuts(self) -> tuple[tuple[int, int], ...]:
