@@ -169,3 +169,31 @@ def test_control_and_observer_gains_together_give_the_product() -> None:
     plant = symobs.StateSpace("[0 1; -1 -1]", "[0; 1]", "[1 0]")
     found = region(plant, K="[k 0]", L="[l; 0]")
     assert set(found.stable_if) == {"k > -1", "l > -1"}
+
+
+#: Regions with turning branches, crossings, holes, slivers, vertical lines and several pieces.
+TWO_WAYS = [
+    s**3 + (2 + h1) * s**2 + (h1**2 + h2**2 - 4) * s + h1 * h2 + 1,
+    s**2 + (5 - h1**2 - h2**2) * s + h1**2 + h2**2 - 1,
+    s**2 + (h1**2 - 1) * s + 1 - h2**2,
+    s**2 + s + h1**2 + h2**2,
+    s**2 + s + (h1**2 - 2) ** 2 + (h2**2 - 3) ** 2,
+    s**2 + s + (h1**2 - h2**3) ** 2,
+    s + h1**2 * (h1 + 1) - h2**2,
+    s + (h1 * h2 - 1) * (h1**2 - 2),
+    s**4 + 3 * s**3 + h1 * s**2 + h2 * s + 1,
+    s**4 + (2 + h1) * s**3 + (3 + h2**2) * s**2 + (2 + h1 * h2) * s + 1 + h1 - h2,
+    h1 * s**2 + (h1 - h2) * s + h2**2 - 2,
+]
+
+
+@pytest.mark.parametrize("polynomial", TWO_WAYS, ids=str)
+def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(polynomial: Scalar) -> None:
+    critical = Critical(polynomial, Boundary("s"))
+    one, other = (PlaneRegion(critical, names) for names in (("h1", "h2"), ("h2", "h1")))
+    assert sorted(c.bounded for c in one.components) == sorted(c.bounded for c in other.components)
+    assert len(one.holes) == len(other.holes)
+    assert set(one.surrounded()) == set(other.surrounded())
+    bounds = None if one.empty else short_list(one)
+    assert is_region(one, bounds)
+    assert is_region(other, bounds)
