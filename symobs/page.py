@@ -19,8 +19,6 @@ from symobs.derivation import (
     Sentence,
     Step,
     Tabulate,
-    findings_of,
-    is_faithful,
 )
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import identities, known, roots_in
@@ -42,7 +40,6 @@ from symobs.formula import (
 )
 from symobs.formula.term import Term
 from symobs.notation import sans_serif
-from symobs.region.routh import routh_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -293,6 +290,9 @@ class Page:
 
         What the table says is told below it, unless `tell` is False.
         """
+        from symobs.derivation.tables import findings_of  # noqa: PLC0415 - only pages of regions pay for it
+        from symobs.region.routh import routh_table  # noqa: PLC0415
+
         variable = variable or self.environment.variable
         coefficients = polynomial.value.coefficients(variable)
         table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
@@ -306,6 +306,8 @@ class Page:
 
         One that numbers of a window's resolution cannot show faithfully is left out.
         """
+        from symobs.derivation.pictures import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
+
         discrete = self.plant.is_discrete
         if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):
             return

@@ -16,7 +16,8 @@ import sympy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate, findings_of
+from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
+from symobs.derivation.tables import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Sum
 from symobs.notation import THEOREMS

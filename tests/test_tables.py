@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate, findings_of
+from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
+from symobs.derivation.tables import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Exact, Letter, Literal, evaluate
 from symobs.phrases.routh import changes_sign, roots_lie

@@ -8,8 +8,8 @@ from symobs.analysis.pages import WRITTEN_UP_TO, determinant_form, given, state_
 from symobs.analysis.stability_region_fields import solved
 from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Step, Survey, Where, findings_of_conditions, findings_of_region
-from symobs.derivation.regions import interval_relations
+from symobs.derivation import Conclude, Step, Survey, Where
+from symobs.derivation.regions import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
 from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
 from symobs.page import predicate, relation, sentence

@@ -1,8 +1,6 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
-from symobs.derivation.pictures import is_faithful
-from symobs.derivation.regions import findings_of_conditions, findings_of_region
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -20,7 +18,6 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.tables import findings_of
 
 __all__ = [
     "Case",
@@ -39,8 +36,4 @@ __all__ = [
     "Survey",
     "Tabulate",
     "Where",
-    "findings_of",
-    "findings_of_conditions",
-    "findings_of_region",
-    "is_faithful",
 ]

@@ -11,9 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
-from symobs.derivation.pictures import faults, relations_of
 from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
-from symobs.derivation.regions import is_exactly, is_survey
+from symobs.derivation.region_claims import is_exactly
 from symobs.derivation.rejection import BUG, reject
 from symobs.derivation.steps import (
     Case,
@@ -33,7 +32,6 @@ from symobs.derivation.steps import (
     Where,
 )
 from symobs.derivation.strata import on_stratum
-from symobs.derivation.tables import is_tabulated, last_determinant
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of, roots_are
 from symobs.formula import (
@@ -147,6 +145,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Survey(polynomial):
             _about_letters(polynomial, environment)
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            from symobs.derivation.regions import is_survey  # noqa: PLC0415 - only pages of regions pay for it
+
             if not is_survey(step, value, environment, discrete=discrete):
                 reject(f"that this is the region of {plain(polynomial, environment.variable)}")
         case Plot(picture, subject):
@@ -204,6 +204,8 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
     polynomial, variable = step.polynomial, step.variable
     _about_letters(polynomial, environment)
     value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+    from symobs.derivation.tables import is_tabulated, last_determinant  # noqa: PLC0415 - only pages of regions pay for it
+
     if not is_tabulated(step, value, environment):
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
     for name, slot in step.sentence.slots if step.sentence else ():
@@ -214,6 +216,8 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     """Reject a picture that shows what is not true of the polynomial."""
+    from symobs.derivation.pictures import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
+
     for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
         _established(formula, environment)
     if not letters(subject) - {"s"} and not isinstance(subject, Apply):

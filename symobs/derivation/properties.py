@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from symobs.certificate import as_scalar
 from symobs.conditions import never_zero, sign_of
 from symobs.exact import Matrix, Scalar
-from symobs.region.conditions import is_stable_where
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
 if TYPE_CHECKING:
@@ -54,6 +53,21 @@ def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bo
     return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
 
 
+def is_criterion(
+    name: str,
+    polynomial: Scalar,
+    said: Sequence[Scalar],
+    environment: Environment,
+    discrete: bool,  # noqa: FBT001
+) -> bool:
+    """Tell whether what is said is what the criterion asks for, each up to a factor positive by the declared signs."""
+    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
+    if not bounds or not said:
+        return False
+    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
+    return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
+
+
 def holds_exactly_where(
     name: str,
     polynomial: Scalar,
@@ -66,13 +80,16 @@ def holds_exactly_where(
     Each must be, up to a factor that is positive by the declared signs, one of the conditions computed here.  A list of
     another form needs a proof that it says the same.
     """
-    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
-    if not bounds or not said:
-        return False
-    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
-    if all(map(any, same)) and all(map(any, zip(*same, strict=True))):
+    signs = environment.signs
+    if is_criterion(name, polynomial, said, environment, discrete):
         return True
-    return name == "stable" and is_stable_where(polynomial, environment.variable, said, signs, discrete=discrete)
+    if not said or not needed(name, polynomial, environment, discrete):
+        return False
+    if name != "stable":
+        return False
+    from symobs.region.conditions import is_stable_where  # noqa: PLC0415 - a list of another form is rare
+
+    return is_stable_where(polynomial, environment.variable, said, signs, discrete=discrete)
 
 
 #: What each property asks of a scalar, of the environment, and of discrete time.
