@@ -26,8 +26,6 @@ from symobs.render.diagrams import tikz
 from symobs.render.escape import escape
 from symobs.render.latex_printer import LatexPrinter
 from symobs.render.narrator import narrate, printer_for
-from symobs.render.plots_caption import below
-from symobs.render.plots_tikz import figure, latex_scene
 from symobs.render.roots import LATEX, listed
 from symobs.render.table_formats import latex_table
 from symobs.render.templates import fill
@@ -112,6 +110,9 @@ class LatexWriter:
             case TableBlock():
                 return latex_table(block, self.printer, self.sentence)
             case PictureBlock(picture, caption):
+                from symobs.render.plots_caption import below  # noqa: PLC0415 - only pages with pictures
+                from symobs.render.plots_tikz import figure, latex_scene  # noqa: PLC0415
+
                 scene = latex_scene(picture, self.printer)
                 return figure(scene, self.sentence(below(caption, scene)), self.printer)
             case CaseBlock(label, blocks):

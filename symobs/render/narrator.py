@@ -44,7 +44,6 @@ from symobs.render.blocks import (
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
-from symobs.render.plots_caption import caption
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -233,6 +232,8 @@ class _Page:
                 self.tell_survey(step)
             case Plot(picture=picture, sentence=sentence):
                 self.say(sentence)
+                from symobs.render.plots_caption import caption  # noqa: PLC0415 - only pages with pictures
+
                 self.blocks.append(PictureBlock(picture, caption(picture)))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.tell_case(when, steps, sentence)
