@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeVar, get_
 import symobs
 from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
+from symobs.document import Document
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, UsageError
 from symobs.page import Page
 
@@ -110,6 +111,11 @@ class Result:
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of this result and of those it is made of."""
         return self.certificates
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """Whether an observer of reduced order is part of it, which some conventions write in letters of their own."""
+        return False
 
     @property
     def picture(self) -> Picture | None:
@@ -241,20 +247,6 @@ class Task:
     keywords: Mapping[str, str]
     summary: str
     alone: bool = False
-
-
-@dataclass(frozen=True)
-class Document:
-    """What a format renders: a title, its source, and results."""
-
-    title: str
-    source: str
-    results: tuple[Result, ...]
-
-    @property
-    def derivations(self) -> tuple[Derivation, ...]:
-        """The checked derivations of the results."""
-        return tuple(result.derivation for result in self.results)
 
 
 _TASKS: dict[str, Task] = {}

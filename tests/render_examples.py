@@ -39,7 +39,7 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
-from symobs.method import Document
+from symobs.document import Document
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

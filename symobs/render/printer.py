@@ -34,7 +34,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import TIMED, is_of_time, shows_time
+from symobs.notation import LETTERS, TIMED, is_of_time, shows_time
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact.functions import Function
+    from symobs.notation import LetterForm
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
@@ -58,6 +59,7 @@ class Printer(Glyphs[B]):
         """Print polynomials in `variable`; `symbols` are the declared forms of parameters."""
         self.variable = variable
         self.symbols = dict(symbols or {})
+        self.letters: Mapping[str, LetterForm] = LETTERS
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
 
