@@ -93,7 +93,7 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
 @click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
-def solve(  # noqa: PLR0917 - one parameter an option
+def solve(
     file: str,
     task_name: str | None,
     format_name: str | None,

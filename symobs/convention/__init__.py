@@ -11,8 +11,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symobs.errors import UsageError
 from symobs.convention.forms import letter_form, of_determinant, of_polynomial
+from symobs.errors import UsageError
 from symobs.notation import FUNCTIONS, LETTERS
 
 if TYPE_CHECKING:

@@ -23,14 +23,19 @@ pair = "(C, A)"
 def listed() -> str:
     """Return a table of all conventions, and below it what each writes in place of the standard letters."""
     known = conventions()
-    rows = [_HEAD, *((name, _shown(found.law), _shown(found.observer_matrix), found.pair) for name, found in known.items())]
+    rows = [
+        _HEAD,
+        *((name, _shown(found.law), _shown(found.observer_matrix), found.pair) for name, found in known.items()),
+    ]
     widths = [max(len(row[column]) for row in rows) for column in range(len(_HEAD))]
     lines = ["   ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     lines.insert(1, "   ".join("─" * width for width in widths))
     for name, found in known.items():
         lines += ["", f"{name}: {found.title}", *_letters(found)]
     lines += ["", "The error is x − x̂ and the compensator F(s) stands in negative feedback, in all of them."]
-    lines += ["`symobs conventions NAME` prints the file of one, from which to make your own: NAME.toml beside the problem."]
+    lines += [
+        "`symobs conventions NAME` prints the file of one, from which to make your own: NAME.toml beside the problem."
+    ]
     return "\n".join(lines) + "\n"
 
 

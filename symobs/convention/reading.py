@@ -1,14 +1,14 @@
 """Reading a convention from a small TOML file.
 
-    name = "lecture"
-    title = "our lecture notes"
-    feedback = "u = K x_hat"          # or "u = -K x_hat"
-    observer = "A + M C"              # the observer matrix: the letter of its gain, and the sign
-    pair = "[A, C]"                   # brackets and order of the pair that is observable
-    [letters]                         # standard letter = what is written in its place
-    e = "x_bar"
-    [letters_of_reduced_order]        # besides, where a reduced-order observer has F, G, H, M of its own
-    M_z = "S"
+name = "lecture"
+title = "our lecture notes"
+feedback = "u = K x_hat"          # or "u = -K x_hat"
+observer = "A + M C"              # the observer matrix: the letter of its gain, and the sign
+pair = "[A, C]"                   # brackets and order of the pair that is observable
+[letters]                         # standard letter = what is written in its place
+e = "x_bar"
+[letters_of_reduced_order]        # besides, where a reduced-order observer has F, G, H, M of its own
+M_z = "S"
 """
 
 from __future__ import annotations
@@ -81,9 +81,8 @@ def read_convention(table: Mapping[str, Any], where: str) -> Convention:
     """Return the convention of a file's table.  Raises `ProblemErrors` with every error of it."""
     errors: list[InputError] = []
     known = (*_TEXTS, *_TABLES)
-    for key in table:
-        if key not in known:
-            errors.append(InputError("unknown key", where=key[:_SHOWN], repair=f"known keys are {', '.join(known)}"))
+    repair = f"known keys are {', '.join(known)}"
+    errors += [InputError("unknown key", where=key[:_SHOWN], repair=repair) for key in table if key not in known]
     texts = {key: _text(table, key, errors) for key in _TEXTS}
     letters, reduced = (_letters(table, key, errors) for key in _TABLES)
     law, matrix, pair = texts["feedback"], texts["observer"], texts["pair"]

@@ -16,7 +16,10 @@ TOP: dict[str, dict[str, Any]] = {
     "source": {"description": "where the problem comes from", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
-    "convention": {"description": "the convention the file is written in: standard, S0 to S4, or your own", "type": "string"},
+    "convention": {
+        "description": "the convention the file is written in: standard, S0 to S4, or your own",
+        "type": "string",
+    },
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},

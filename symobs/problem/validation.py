@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from unicodedata import category
 
 from symobs.convention import STANDARD, Convention, convention_named
@@ -23,6 +22,9 @@ from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time
 from symobs.viewed import Viewed, names_in
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _MAX_SYMBOLS = 400
 _MAX_TEXT = 2000

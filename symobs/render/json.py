@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.convention import STANDARD, Convention
-from symobs.document import Document
 from symobs.exact.functions import PI, symbols_named
 from symobs.face import to_json
 from symobs.method import Case, Result, output_format
 from symobs.viewed import Viewed
+
+if TYPE_CHECKING:
+    from symobs.document import Document
 
 SCHEMA = "symobs/1"
 

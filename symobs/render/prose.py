@@ -27,10 +27,11 @@ from symobs.formula import (
     Transpose,
     Turned,
 )
+from symobs.notation import LETTERS
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.derivation import Sentence
     from symobs.formula import Fact, Formula
@@ -50,7 +51,7 @@ def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
         phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
     inlines: list[Inline] = []
     for text, name, _, _ in string.Formatter().parse(phrase):
-        inlines += _prose(text, turned)
+        inlines += _prose(text, turned, convention.letters)
         if name is not None:
             inlines += _shown(slots[name])
     return joined(inlines)
@@ -92,11 +93,20 @@ def _pair(first: str, second: str, convention: Convention) -> str:
     return f"{opening}{', '.join(members)}{closing}"
 
 
-def _prose(text: str, turned: Turned) -> Iterator[Inline]:
+def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
+    """Return the letter alone where a convention writes both sides of an equation alike."""
+    written = {
+        letters.get(member.name, LETTERS[member.name].text) if isinstance(member, Letter) else ""
+        for member in relation.members
+    }
+    return relation.members[-1] if len(written) == 1 and "" not in written else relation
+
+
+def _prose(text: str, turned: Turned, letters: Mapping[str, str]) -> Iterator[Inline]:
     for place, part in enumerate(text.split("$")):
         if place % 2:
             named = _named(part)
-            yield turned.relation(named) if isinstance(named, Relation) else turned.formula(named)
+            yield _once(turned.relation(named), letters) if isinstance(named, Relation) else turned.formula(named)
         else:
             yield part
 
