@@ -39,7 +39,7 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
-from symobs.document import Document
+from symobs.method import Document
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -91,7 +91,7 @@ class HandWritten(Document):
 
 
 def document(*derivations: Derivation, title: str = "", source: str = "") -> HandWritten:
-    return HandWritten(title, source, (), derivations)
+    return HandWritten(title, source, (), written=derivations)
 
 
 def target_document() -> HandWritten:

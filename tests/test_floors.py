@@ -39,7 +39,6 @@ FLOORS = {
     "region": 4,
     "derivation": 5,
     "page": 6,
-    "document": 6,
     "method": 7,
     "analysis": 8,
     "design": 9,

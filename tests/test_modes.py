@@ -402,7 +402,7 @@ def test_what_is_not_known_is_refused_with_the_repair(call: Any) -> None:
 
 
 def test_pages_of_every_kind_render() -> None:
-    from symobs.document import Document  # noqa: PLC0415
+    from symobs.method import Document  # noqa: PLC0415
 
     plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[0 1]", symbols={"b": "positive"})
     results = (

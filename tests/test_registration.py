@@ -63,7 +63,7 @@ FORMAT = '''
 
 from typing import ClassVar
 
-from symobs.document import Document
+from symobs.method import Document
 from symobs.method import output_format
 
 

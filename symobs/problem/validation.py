@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 from unicodedata import category
 
 from symobs.convention import STANDARD, Convention, convention_named
-from symobs.document import Document
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
-from symobs.method import Result, Task, task_named, tasks
+from symobs.method import Document, Result, Task, task_named, tasks
 from symobs.problem.keys import PLANT, TOP
 from symobs.problem.tables import Decimal
 from symobs.specification import parse_signal, read_poles

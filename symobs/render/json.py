@@ -12,7 +12,7 @@ from symobs.method import Case, Result, output_format
 from symobs.viewed import Viewed
 
 if TYPE_CHECKING:
-    from symobs.document import Document
+    from symobs.method import Document
 
 SCHEMA = "symobs/1"
 

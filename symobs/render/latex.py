@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from symobs.document import Document
+    from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
 
 _INSET = 1.5  # em, as in the templates

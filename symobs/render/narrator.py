@@ -51,8 +51,8 @@ if TYPE_CHECKING:
 
     from symobs.convention import Convention
     from symobs.derivation import Step
-    from symobs.document import Document
     from symobs.formula import Formula, Relation
+    from symobs.method import Document
     from symobs.notation import LetterForm
     from symobs.region.routh import RouthTable
     from symobs.render.printer import Printer

@@ -22,7 +22,7 @@ from symobs.render.latex import typeset
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.document import Document
+    from symobs.method import Document
 
 TIME_LIMIT = 60.0  # seconds
 _INSTALL = (

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symobs.derivation import Plot
-from symobs.document import Document
 from symobs.errors import DerivationRejected, UsageError
+from symobs.method import Document
 from symobs.render.latex_printer import LatexPrinter
 from symobs.render.narrator import printer_for
 from symobs.render.plots_matplotlib import drawn_by_matplotlib, require_matplotlib

@@ -95,10 +95,8 @@ def _pair(first: str, second: str, convention: Convention) -> str:
 
 def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
     """Return the letter alone where a convention writes both sides of an equation alike."""
-    written = {
-        letters.get(member.name, LETTERS[member.name].text) if isinstance(member, Letter) else ""
-        for member in relation.members
-    }
+    names = [member.name if isinstance(member, Letter) else "" for member in relation.members]
+    written = {letters.get(name, LETTERS[name].text) if name in LETTERS else "" for name in names}
     return relation.members[-1] if len(written) == 1 and "" not in written else relation
 
 

@@ -31,7 +31,7 @@ from symobs.render.text_printer import TextPrinter, text_width
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.document import Document
+    from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
 
 WIDTH = 80
