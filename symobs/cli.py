@@ -35,10 +35,15 @@ class Tasks(click.Group):
     """The commands that stand in this file, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return all names; tasks come from the registry."""
-        from symobs.method import tasks  # noqa: PLC0415 - --help pays for it, --version does not
+        """Return all names."""
+        return [*super().list_commands(ctx), *_summaries()]
 
-        return [*super().list_commands(ctx), *sorted(tasks())]
+    def format_commands(self, _: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what every command does; those on tasks are read from the sources, which costs no kernel."""
+        own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()}
+        for title, listed in (("Commands", own), ("Tasks, each a command of its own", _summaries())):
+            with formatter.section(title):
+                formatter.write_dl(list(listed.items()))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command, made from the task's signature where it is a task."""
@@ -60,6 +65,14 @@ class Tasks(click.Group):
             meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
             ctx.fail(f"there is no command {name[:40]!r}{meant}")
         return super().resolve_command(ctx, args)
+
+
+def _summaries() -> dict[str, str]:
+    """Return the tasks with what each does."""
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.contents import task_summaries  # noqa: PLC0415
+
+    return task_summaries(symobs.TASK_PACKAGES)
 
 
 def _version(ctx: click.Context, _: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's signature

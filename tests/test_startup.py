@@ -104,3 +104,13 @@ design.to_latex(), design.to_json(), design.verdict, repr(design)
 def test_json_needs_no_templates_and_text_neither() -> None:
     for form in ("json", "text"):
         assert "jinja2" not in after("solve", str(SERVO), "--format", form)
+
+
+def test_help_lists_every_task_without_importing_one() -> None:
+    import symobs  # noqa: PLC0415 - what the list is held against
+    from symobs.contents import task_summaries  # noqa: PLC0415
+    from symobs.method import tasks  # noqa: PLC0415
+
+    assert task_summaries(symobs.TASK_PACKAGES) == {name: task.summary for name, task in sorted(tasks().items())}
+    found = after("--help")
+    assert not {name for name in found if name.startswith(("symobs.analysis", "symobs.design", "flint"))}

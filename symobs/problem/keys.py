@@ -19,6 +19,7 @@ TOP: dict[str, dict[str, Any]] = {
     "convention": {
         "description": "the convention the file is written in: standard, S0 to S4, or your own",
         "type": "string",
+        "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
