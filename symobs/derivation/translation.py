@@ -111,8 +111,10 @@ def _with_own_unknowns(steps: Any, final: Environment, convention: Convention) -
             sign = -1 if letter in convention.turned else 1
             if own != name[0] or sign < 0:
                 meant[name] = sign * Scalar.symbol(written)
-    fresh = {name for value in meant.values() for name in value.names}
-    return _substituted(steps, meant) if meant and not fresh & (used - meant.keys()) else steps
+    # A mass m1 would be printed like an entry m_1.
+    taken = {name.replace("_", "") for name in used - meant.keys()}
+    fresh = {name.replace("_", "") for value in meant.values() for name in value.names}
+    return _substituted(steps, meant) if meant and not fresh & taken else steps
 
 
 def _unknowns(steps: Any, letter: str, final: Environment) -> Iterator[str]:
