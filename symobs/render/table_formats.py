@@ -1,4 +1,4 @@
-"""Routh's table in LaTeX and on a terminal: powers, a rule, entries, and remarks beside the rows."""
+"""Routh's table in LaTeX, in HTML and on a terminal: powers, a rule, entries, and remarks beside the rows."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from symobs.render.blocks import Inlines, TableBlock
     from symobs.render.latex_printer import LatexPrinter
+    from symobs.render.mathml_printer import MathmlPrinter
     from symobs.render.text_printer import TextPrinter
 
     Words = Callable[[Inlines], str]
@@ -36,7 +37,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     """
 
     def room(remarks: Sequence[Inlines]) -> float:
-        widest = max(_latex_width(remark, printer) for remark in remarks)
+        widest = max(_em_width(remark, printer) for remark in remarks)
         return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
 
     found = fitted(block, printer, room, widths.COLUMN_GAP, printer.width)
@@ -54,7 +55,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     return f"{table}\n{words(block.where)}\n{printer.display(found.told)}" if found.told else table
 
 
-def _latex_width(inlines: Inlines, printer: LatexPrinter) -> float:
+def _em_width(inlines: Inlines, printer: LatexPrinter | MathmlPrinter) -> float:
     formulas = [part for part in inlines if not isinstance(part, str | Relation | Roots)]
     letters = sum(len(part) for part in inlines if isinstance(part, str))
     return _LETTER * letters + sum(printer.typeset(formula).width for formula in formulas)
@@ -91,3 +92,27 @@ def _padded(column: Sequence[str]) -> list[str]:
     """Return texts made equally wide."""
     widest = max(map(text_width, column))
     return [text + " " * (widest - text_width(text)) for text in column]
+
+
+# -- pages of HTML -------------------------------------------------------------------------------------------------------
+
+_CELL_GAP = 1.4  # em
+
+
+def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple[str, str]:
+    """Return a table, and the display of what its names stand for, if any."""
+
+    def room(remarks: Sequence[Inlines]) -> float:
+        widest = max(_em_width(remark, printer) for remark in remarks)
+        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
+
+    found = fitted(block, printer, room, _CELL_GAP, printer.width)
+    columns, has_remarks = len(found.rows[0]), any(found.remarks)
+    lines: list[str] = []
+    for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
+        cells = [*(f"<math>{entry.source}</math>" for entry in row), *[""] * (columns - len(row))]
+        beside = f'<td class="remark">{words(remark)}</td>' if has_remarks else ""
+        entries = "".join(f"<td>{cell}</td>" for cell in cells)
+        lines.append(f'<tr><th scope="row"><math>{head.source}</math></th>{entries}{beside}</tr>')
+    table = "\n".join(["<table>", *lines, "</table>"])
+    return table, printer.display(found.told) if found.told else ""
