@@ -47,6 +47,7 @@ _FOLDER = Path(__file__).parent
 _INSET = 2.0  # em, as in the style
 _SKETCH = 78  # columns
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
+_OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 _ROOTS = RootGlyphs(
     square_root=lambda inside: f"<msqrt>{inside}</msqrt>",
     plus_minus="<mo>±</mo>",
@@ -97,8 +98,13 @@ def style() -> str:
 
 
 def plain(text: str) -> str:
-    """Return text from outside as HTML that shows it; what would steer a reader's screen is left out."""
-    return escape(_CONTROL.sub("", re.sub(r"\s+", " ", text)))
+    """Return text from outside as HTML that shows it, its quotation marks curled as LaTeX curls them.
+
+    Characters that would steer the reader's screen, and those that no page may contain, are left out.
+    """
+    line = _CONTROL.sub("", re.sub(r"\s+", " ", text))
+    curled = _OPENING_QUOTE.sub("“", line).replace('"', "”").replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
+    return escape(curled)
 
 
 class HtmlWriter:

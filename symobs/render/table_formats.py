@@ -1,4 +1,4 @@
-"""Routh's table in LaTeX, in HTML and on a terminal: powers, a rule, entries, and remarks beside the rows."""
+"""Routh's table in LaTeX, HTML, Markdown and on a terminal: powers, a rule, entries, and remarks beside the rows."""
 
 from __future__ import annotations
 
@@ -35,12 +35,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
 
     A table that is too wide even with names is set small, without remarks.
     """
-
-    def room(remarks: Sequence[Inlines]) -> float:
-        widest = max(_em_width(remark, printer) for remark in remarks)
-        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
-
-    found = fitted(block, printer, room, widths.COLUMN_GAP, printer.width)
+    found = fitted(block, printer, _room(printer), widths.COLUMN_GAP, printer.width)
     rows = [[opened(entry) for entry in row] for row in found.rows]
     columns, has_remarks = len(rows[0]), found.fits and any(found.remarks)
     lines: list[str] = []
@@ -53,6 +48,16 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     array = f"\\begin{{array}}{{c|{'c' * columns}{last}}}\n{body}\n\\end{{array}}"
     table = f"\\[{_OPEN}\n{array}\n\\]" if found.fits else f"{{{_TIGHT}\n\\[\n{array}\n\\]}}"
     return f"{table}\n{words(block.where)}\n{printer.display(found.told)}" if found.told else table
+
+
+def _room(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
+    """Return what a choice of remarks leaves for the entries."""
+
+    def room(remarks: Sequence[Inlines]) -> float:
+        widest = max(_em_width(remark, printer) for remark in remarks)
+        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
+
+    return room
 
 
 def _em_width(inlines: Inlines, printer: LatexPrinter | MathmlPrinter) -> float:
@@ -101,12 +106,7 @@ _CELL_GAP = 1.4  # em
 
 def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple[str, str]:
     """Return a table, and the display of what its names stand for, if any."""
-
-    def room(remarks: Sequence[Inlines]) -> float:
-        widest = max(_em_width(remark, printer) for remark in remarks)
-        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
-
-    found = fitted(block, printer, room, _CELL_GAP, printer.width)
+    found = fitted(block, printer, _room(printer), _CELL_GAP, printer.width)
     columns, has_remarks = len(found.rows[0]), any(found.remarks)
     lines: list[str] = []
     for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
@@ -116,3 +116,19 @@ def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple
         lines.append(f'<tr><th scope="row"><math>{head.source}</math></th>{entries}{beside}</tr>')
     table = "\n".join(["<table>", *lines, "</table>"])
     return table, printer.display(found.told) if found.told else ""
+
+
+# -- Markdown ------------------------------------------------------------------------------------------------------------
+
+
+def markdown_table(
+    block: TableBlock, printer: LatexPrinter, words: Words, mathematics: Callable[[str], str]
+) -> tuple[str, Sequence[Relation]]:
+    """Return a table without a head, and what its names stand for; a column for remarks where there are any."""
+    found = fitted(block, printer, _room(printer), _CELL_GAP, printer.width)
+    columns, has_remarks = len(found.rows[0]), any(found.remarks)
+    lines = [[""] * (1 + columns + has_remarks), ["---:", *[":---:"] * columns, *[":---"] * has_remarks]]
+    for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
+        cells = [mathematics(head.source), *(mathematics(entry.source) for entry in row), *[""] * (columns - len(row))]
+        lines.append([*cells, *[words(remark)] * has_remarks])
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines), found.told
