@@ -80,7 +80,7 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT_HELP = "latex (default), text, json, pdf, …"
+FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 

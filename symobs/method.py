@@ -20,6 +20,7 @@ import symobs
 from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, UsageError
+from symobs.face import Faces
 from symobs.page import Page
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Stratum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Faces):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
     plant: StateSpace
@@ -191,22 +192,8 @@ class Result:
         return [*super().__dir__(), "conditions", "cases", *self.fields]
 
     def to(self, format_name: str) -> str | bytes:
-        """Return the result in a format: latex, fragment, text, json or pdf."""
+        """Return the result in a format: latex, fragment, html, markdown, text, json or pdf."""
         return render(Document("", "", (self,)), format_name)
-
-    def to_latex(self) -> str:
-        """Return the derivation as a LaTeX article."""
-        return str(self.to("latex"))
-
-    def to_json(self) -> str:
-        """Return the result as JSON."""
-        return str(self.to("json"))
-
-    def _repr_latex_(self) -> str:
-        return str(self.to("fragment"))
-
-    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
-        return {"text/plain": str(self.to("text")), "text/latex": self._repr_latex_()}
 
     def __repr__(self) -> str:
         shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
