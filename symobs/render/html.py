@@ -34,7 +34,7 @@ from symobs.render.mathml_elements import MINUS, PLUS
 from symobs.render.mathml_printer import MathmlPrinter
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.roots import RootGlyphs, listed
-from symobs.render.table_formats import html_table
+from symobs.render.table_web import html_table
 from symobs.render.text_printer import TextPrinter
 
 if TYPE_CHECKING:

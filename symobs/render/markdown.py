@@ -31,7 +31,7 @@ from symobs.render.latex_printer import LatexPrinter
 from symobs.render.layout import Layout
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.roots import LATEX, listed
-from symobs.render.table_formats import markdown_table
+from symobs.render.table_web import markdown_table
 from symobs.render.text import printable
 from symobs.render.text_printer import TextPrinter
 

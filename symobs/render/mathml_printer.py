@@ -256,10 +256,8 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(width, Level.ATOM, (element,), max(2, len(rows)))
 
     def _cell(self, entry: MathmlBox, strut: str) -> str:
-        """An entry; a fraction with more than numbers in it is set large."""
-        has_fraction = any(element.startswith("<mfrac>") for element in entry.elements[:2])
-        is_small = self.running or not has_fraction or _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
-        return f"<mtd{'' if is_small else LARGE}>{strut}{entry.source}</mtd>"
+        size = LARGE if not self.running and is_large(entry) else ""
+        return f"<mtd{size}>{strut}{entry.source}</mtd>"
 
     def rate(self, box: MathmlBox, name: str = "t") -> MathmlBox:
         """d/dt before a stack."""
@@ -371,6 +369,12 @@ class MathmlPrinter(Printer[MathmlBox]):
     def gap(self) -> MathmlBox:
         """A wide space."""
         return MathmlBox(2.0, Level.SUM, ('<mspace width="2em"/>',))
+
+
+def is_large(entry: MathmlBox) -> bool:
+    """Whether an entry of a table is set large: a fraction with more than numbers in it."""
+    has_fraction = any(element.startswith("<mfrac>") for element in entry.elements[:2])
+    return has_fraction and not _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
 
 
 def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> tuple[str, ...]:

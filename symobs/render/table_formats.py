@@ -1,4 +1,4 @@
-"""Routh's table in LaTeX, HTML, Markdown and on a terminal: powers, a rule, entries, and remarks beside the rows."""
+"""Routh's table in LaTeX and on a terminal: powers, a rule, entries, and remarks beside the rows."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
 
     A table that is too wide even with names is set small, without remarks.
     """
-    found = fitted(block, printer, _room(printer), widths.COLUMN_GAP, printer.width)
+    found = fitted(block, printer, room_for(printer), widths.COLUMN_GAP, printer.width)
     rows = [[opened(entry) for entry in row] for row in found.rows]
     columns, has_remarks = len(rows[0]), found.fits and any(found.remarks)
     lines: list[str] = []
@@ -50,7 +50,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     return f"{table}\n{words(block.where)}\n{printer.display(found.told)}" if found.told else table
 
 
-def _room(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
+def room_for(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
     """Return what a choice of remarks leaves for the entries."""
 
     def room(remarks: Sequence[Inlines]) -> float:
@@ -97,38 +97,3 @@ def _padded(column: Sequence[str]) -> list[str]:
     """Return texts made equally wide."""
     widest = max(map(text_width, column))
     return [text + " " * (widest - text_width(text)) for text in column]
-
-
-# -- pages of HTML -------------------------------------------------------------------------------------------------------
-
-_CELL_GAP = 1.4  # em
-
-
-def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple[str, str]:
-    """Return a table, and the display of what its names stand for, if any."""
-    found = fitted(block, printer, _room(printer), _CELL_GAP, printer.width)
-    columns, has_remarks = len(found.rows[0]), any(found.remarks)
-    lines: list[str] = []
-    for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
-        cells = [*(f"<math>{entry.source}</math>" for entry in row), *[""] * (columns - len(row))]
-        beside = f'<td class="remark">{words(remark)}</td>' if has_remarks else ""
-        entries = "".join(f"<td>{cell}</td>" for cell in cells)
-        lines.append(f'<tr><th scope="row"><math>{head.source}</math></th>{entries}{beside}</tr>')
-    table = "\n".join(["<table>", *lines, "</table>"])
-    return table, printer.display(found.told) if found.told else ""
-
-
-# -- Markdown ------------------------------------------------------------------------------------------------------------
-
-
-def markdown_table(
-    block: TableBlock, printer: LatexPrinter, words: Words, mathematics: Callable[[str], str]
-) -> tuple[str, Sequence[Relation]]:
-    """Return a table without a head, and what its names stand for; a column for remarks where there are any."""
-    found = fitted(block, printer, _room(printer), _CELL_GAP, printer.width)
-    columns, has_remarks = len(found.rows[0]), any(found.remarks)
-    lines = [[""] * (1 + columns + has_remarks), ["---:", *[":---:"] * columns, *[":---"] * has_remarks]]
-    for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
-        cells = [mathematics(head.source), *(mathematics(entry.source) for entry in row), *[""] * (columns - len(row))]
-        lines.append([*cells, *[words(remark)] * has_remarks])
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines), found.told
