@@ -93,7 +93,7 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT_HELP = "latex (default), text, json, pdf, …"
+FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
 CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."

@@ -16,6 +16,7 @@ from symobs.conditions import Condition, vanishing_factors
 from symobs.convention import STANDARD, Convention, convention_named
 from symobs.derivation import translated
 from symobs.errors import CertificateRejected, DerivationRejected
+from symobs.face import Faces
 from symobs.method.registry import render
 from symobs.page import Page
 
@@ -45,7 +46,7 @@ class Stratum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Faces):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
     plant: StateSpace
@@ -194,20 +195,6 @@ class Result:
     def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
         """Return the result in a format: latex, fragment, text, json, pdf, …; in a convention, by name or TOML file."""
         return render(Document("", "", (self,), convention_named(convention)), format_name)
-
-    def to_latex(self) -> str:
-        """Return the derivation as a LaTeX article."""
-        return str(self.to("latex"))
-
-    def to_json(self) -> str:
-        """Return the result as JSON."""
-        return str(self.to("json"))
-
-    def _repr_latex_(self) -> str:
-        return str(self.to("fragment"))
-
-    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
-        return {"text/plain": str(self.to("text")), "text/latex": self._repr_latex_()}
 
     def __repr__(self) -> str:
         shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]

@@ -34,7 +34,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import LETTERS, TIMED, is_of_time, shows_time
+from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -70,6 +70,18 @@ class Printer(Glyphs[B]):
     @abstractmethod
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
         """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+
+    # -- letters --------------------------------------------------------------------------------------------------
+
+    def letter_latex(self, name: str) -> str:
+        """Return the LaTeX of a letter, its variable put in, or of a parameter."""
+        form = self.letters.get(name)
+        return form.latex.replace("{v}", self.variable) if form else symbol_latex(name, self.symbols.get(name))
+
+    def function_latex(self, name: str) -> str:
+        """Return the LaTeX of a function's name."""
+        known = self.letters[name].latex if name in self.letters else FUNCTIONS.get(name, ("",))[0]
+        return known or rf"\operatorname{{{name.replace('_', ' ')}}}"
 
     # -- the walk -------------------------------------------------------------------------------------------------
 
