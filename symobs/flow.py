@@ -8,8 +8,9 @@ A figure is written as it looks.  Its grid places the nodes:
                               figure where none does; a label of that name is the signal there
 
 and its routes say which way the wires run: `a > b` straight, `a -| b` first across, then up or down, `a |- b` first up
-or down, then across.  A wire may have a gain too, `a >[U] b`, which is 1 or -1: a sign.  A box without a label is not drawn, nor what hangs on it alone: so one figure serves plants with
-and without feedthrough.  All mathematics comes with the labels, their signs too.
+or down, then across.  A wire may have a gain too, `a >[U] b`, which is 1 or -1: a sign.  A box without a label is not
+drawn, nor what hangs on it alone: so one figure serves plants with and without feedthrough.  All mathematics comes with
+the labels, their signs too.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 #: A gain or a signal; in the box of a whole system its equations.
 Label: TypeAlias = Formula | Together
 Labels: TypeAlias = "Mapping[str, Label]"
+
 
 @dataclass(frozen=True, slots=True)
 class Wire:

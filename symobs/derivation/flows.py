@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def equations_of(name: str, labels: Mapping[str, Label], environment: Environment) -> Iterator[Relation]:
-    """Yield what a diagram says.  Raises `ValueError` where it cannot be read."""
+    """Yield what a diagram says.  Raises `ValueError` where nothing can be read."""
     figure = figure_of(name).without_missing(labels)
     unused = {*labels} - {key(node) for node in figure.place} - {wire.gain for wire in figure.wires} - {"response"}
     is_named = {signal for signal, _ in figure_of(name).signals}
@@ -44,8 +44,10 @@ def equations_of(name: str, labels: Mapping[str, Label], environment: Environmen
     flow = _Flow(figure, labels, environment)
     for label, letter in figure.letters:
         yield Relation((Letter(letter), without_sign(flow.label(label))[1]), ("=",))  # type: ignore[arg-type]
-    for node in figure.place:
-        yield from flow.said_at(node)
+    said = [relation for node in figure.place for relation in flow.said_at(node)]
+    if not said:
+        raise ValueError("a figure that says nothing")
+    yield from said
 
 
 class _Flow:

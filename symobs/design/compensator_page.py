@@ -187,10 +187,10 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     factors = page.term(formula_of_factored(form))
     page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
+    draw_loop(page, plant_form, page.value(design.answer["F"]))
     unity = page.term(formula_of_factored(design.unity_loop))
     around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
     page.define("G_r", around, unity, say="unity_feedback", closing=False)
-    draw_loop(page, plant_form, page.value(design.answer["F"]))
     draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
     polynomial = design.loop_polynomial.value
     if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):

@@ -57,14 +57,16 @@ def draw_feedforward(page: Page, *, minimal: bool) -> None:
     """Feedback from the estimate, and the feedforward."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": -page["K"], "F": page["F_v"]}
-    page.diagram("estimated_state_feedback", say="drawn_feedforward", Plant=_plant(page), Observer=observer, **gains)
+    say = "drawn_feedforward_minimal" if minimal else "drawn_feedforward"
+    page.diagram("estimated_state_feedback", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
 def draw_tracking(page: Page, *, minimal: bool) -> None:
     """The generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": page["K"], "Kd": -page["K_d"], "Ad": page["A_ref"]}
-    page.diagram("tracking_loop", say="drawn_tracking", Plant=_plant(page), Observer=observer, **gains)
+    say = "drawn_tracking_minimal" if minimal else "drawn_tracking"
+    page.diagram("tracking_loop", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
 def draw_minimal_order(page: Page) -> None:

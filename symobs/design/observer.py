@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
-from symobs.design.gain import GainDesign, require_one
 from symobs.design.drawings import draw_collected, draw_copy
+from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
 from symobs.design.matching import matched_gain
 from symobs.design.observer_existence_page import write_ansatz, write_found

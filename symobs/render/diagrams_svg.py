@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
 
-from symobs.flow import without_sign
 from symobs.exact import Scalar
+from symobs.flow import without_sign
 from symobs.formula import Literal, Quotient, Relation, Together
 from symobs.notation import letter_text
 from symobs.phrases import PHRASES
@@ -84,7 +84,9 @@ def svg(drawing: Drawing, printer: TextPrinter) -> str:
         f'width="{coordinate(_PIXELS * width)}" height="{coordinate(_PIXELS * height)}" font-family="{FONTS}" '
         f'font-size="{coordinate(_EM)}" fill="none" stroke="currentColor" stroke-width=".9">'
     )
-    return "\n".join([head, f"<title>{escape(PHRASES['block_diagram'])}</title>", *_drawn(arrangement, letters), "</svg>"])
+    return "\n".join(
+        [head, f"<title>{escape(PHRASES['block_diagram'])}</title>", *_drawn(arrangement, letters), "</svg>"]
+    )
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:

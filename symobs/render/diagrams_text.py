@@ -55,9 +55,7 @@ def _metrics(printer: TextPrinter, gap: int) -> Metrics:
         rows = _rows(label, printer)
         return max(map(text_width, rows)) // 2 * 2 + 1, 2 * len(rows) - 1
 
-    return Metrics(
-        measure, inside=(2, 1), smallest=3, junction=1, gap=(gap, 1), beside=1, point=1, sign=4, rates=False
-    )
+    return Metrics(measure, inside=(2, 1), smallest=3, junction=1, gap=(gap, 1), beside=1, point=1, sign=4, rates=False)
 
 
 class _Canvas:
@@ -88,7 +86,9 @@ class _Canvas:
         rows = [row for _, row in self.cells]
         right = max(column for column, _ in self.cells)
         lines = (
-            "".join(self.cells.get((column, row), " ") for column in range(min(0, *(c for c, _ in self.cells)), right + 1))
+            "".join(
+                self.cells.get((column, row), " ") for column in range(min(0, *(c for c, _ in self.cells)), right + 1)
+            )
             for row in range(min(rows), max(rows) + 1)
         )
         return "\n".join(line.rstrip() for line in lines)

@@ -36,6 +36,8 @@ _STYLE = (
     ".symobs-picture .open{fill:var(--symobs-paper,Canvas)}"
 )
 _OWN_FILE = "svg{color-scheme:light dark;color:CanvasText}"
+
+
 def svg_scene(picture: Picture, printer: TextPrinter) -> Scene:
     """Return a picture's scene as SVG writes it."""
     return scene_of(picture, measure_for(printer))
