@@ -62,6 +62,7 @@ LETTERS: dict[str, LetterForm] = {
     "y_0": LetterForm(r"\tilde y(t)", "ỹ(t)", "output without the input's part"),
     "x_f": LetterForm(r"x_{\mathrm f}(t)", "x_f(t)", "state from rest"),
     "x_0": LetterForm("x_0", "x₀", "initial state"),
+    "r_in": LetterForm("r", "r", "reference input"),
     "r_0": LetterForm("r", "r", "right side of the moment equations"),
     "Q": LetterForm("Q", "Q", "intensity of the input noise"),
     "det_W": LetterForm(r"\det W(t)", "det W(t)", "determinant of the Gramian up to t"),

@@ -106,7 +106,7 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Conclude(None, (Together((one, said(strange, 1))),)),
         Conclude(slot(strange)),
         Note(slot(Shown(strange, literal(1)))),
-        Diagram("loop", (("plant", strange),)),
+        Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
         Section(slot(strange), ()),
         Case(said(strange, 0), (), ()),
     ):

@@ -32,6 +32,7 @@ FLOORS = {
     "pointwise": 3,
     "stability": 3,
     "picture": 3,
+    "flow": 3,
     "face": 3,
     "error_bounds": 3,
     "system": 3,

@@ -99,8 +99,10 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from (*_in_facts((fact,)), *_in_sentence(sentence))
         case Survey(polynomial=polynomial):
             yield polynomial
-        case Diagram(labels=labels):
-            yield from (formula for _, formula in labels)
+        case Diagram(labels=labels, sentence=sentence):
+            yield from _in_sentence(sentence)
+            for _, label in labels:
+                yield from _in_facts((label,)) if isinstance(label, Together) else (label,)
 
 
 def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:

@@ -235,7 +235,8 @@ class _Page:
                 self.blocks.append(Caution(LABELS["caution"], filled(sentence, self.convention)))
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.say(sentence)
-            case Diagram(name=name, labels=labels):
+            case Diagram(name=name, labels=labels, sentence=sentence):
+                self.say(sentence)
                 self.blocks.append(Drawing(name, labels))
             case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
                 self.say(sentence)
