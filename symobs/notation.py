@@ -229,6 +229,7 @@ OPERATORS: dict[str, tuple[str, str]] = {
     "<=": (r"\le", "≤"),
     ">=": (r"\ge", "≥"),
     "~": (r"\sim", "~"),
+    "≈": (r"\approx", "≈"),
 }
 
 GREEK = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Longer row-reduced forms are not written out, nor more vectors than there are letters for.
 _READABLE, _VECTORS = 150, 9
+#: A gain that rounding changes by more than this share of an entry is worth a warning.
+_HARM = Fraction(1, 100)
 
 
 def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -88,12 +91,26 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
         _reduce(page, side, part, number)
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
     f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
-    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())))
-    gain = f @ psi.inverse
+    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
+    gain, shown = f @ psi.inverse, f.shown @ psi.shown.inverse
+    unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
-        page.define_transposed("L", gain, say="row_reduced_observer")
+        page.define_transposed("L", gain, shown, say=f"row_reduced{unique}_observer")
     else:
-        page.define("K", gain, say="row_reduced_state_feedback", answer=True)
+        page.define("K", gain, shown, say=f"row_reduced{unique}_state_feedback", answer=True)
+    _rounded_too_early(page, gain.value)
+
+
+def _rounded_too_early(page: Page, gain: Matrix) -> None:
+    """Show what becomes of the gain when the columns of Ψ are rounded before it is inverted, where that does harm."""
+    near = page.decimals(page["Psi"].value)
+    if not near or near[1].value.determinant().is_zero:
+        return
+    spoiled = page["f_psi"].shown @ near[1].inverse
+    shown = page.decimals(spoiled.value)
+    pairs = zip(spoiled.value.entries, gain.entries, strict=True)
+    if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
+        page.equal(relation(spoiled, *shown), say="rounded_too_early")
 
 
 def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
@@ -106,7 +123,8 @@ def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
         page.equal(chain, say=f"{words}_reduced", pole=_named(page, part))
     if part.size == 1:
         _relations(page, part, number)
-    xi = page.define(f"xi_{number}", part.vector, say="" if part.size == 1 else "vectors_chosen")
+    near = page.decimals(part.vector)
+    xi = page.define(f"xi_{number}", part.vector, *near, say="" if part.size == 1 else "vectors_chosen")
     zero = Matrix.zeros(part.order * part.size, 1)
     matrix = part.matrix.select(range(part.matrix.shape[0]), range(part.vector.shape[0]))
     right = zero if part.before is None else Matrix.column([-entry for entry in part.before.T.entries])

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
 from symobs.conditions import vanishing_factors
 from symobs.design.gain import fresh_names
-from symobs.design.gain_pages import OBSERVER, define_test_matrix
+from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
 from symobs.design.names import taken_names
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
+from symobs.stability import stability
 
 if TYPE_CHECKING:
     from symobs.design.reduced_order_observer import ReducedOrderObserver
     from symobs.formula import Relation
+
+#: Plants of a larger order have their blocks listed one by one.
+_LISTED_FROM = 2
 
 
 def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
@@ -94,14 +98,22 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     if driven:
         first.append((page["B_1"], u))
         second.append((page["B_2"], u))
-    known = page["y"] - page["D"] @ u if page.plant.matrices.has_feedthrough else page["y"]
-    key = "parts_with_feedthrough" if page.plant.matrices.has_feedthrough else "parts"
+    feedthrough = page.plant.matrices.has_feedthrough
+    known = page["y"] - page["D"] @ u if feedthrough else page["y"]
+    said: dict[str, Any] = {
+        "measured": relation(x_1, page["C"] @ page["x"], known),
+        "unmeasured": relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+    }
+    key = "parts_with_feedthrough" if feedthrough else "parts"
+    if trivial and page.plant.order > _LISTED_FROM:
+        names = [f"A_{i}{j}" for i in "12" for j in "12"] + (["B_1", "B_2"] if driven else [])
+        page.equal(*(relation(page[name], page[name].shown) for name in names), say=f"{key}_blocks", **said)
+        key, said = "two_parts", {}
     page.equal(
         relation(x_1.derivative, summed(first), combination(page, first)),
         relation(x_2.derivative, summed(second), combination(page, second)),
         say=key,
-        measured=relation(x_1, page["C"] @ page["x"], known),
-        unmeasured=relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+        **said,
     )
     _mere_copy(page)
     if design.inner.fixed_polynomial.is_one:
@@ -137,6 +149,10 @@ def _mere_copy(page: Page) -> None:
     if page.plant.matrices.has_input:
         copy = copy + page["B_2"] @ page["u"]
     page.remark("mere_copy", left=relation(x_2.derivative - copy, page["A_22"] @ (x_2 - x_2_hat)))
+    own = (page.s @ page.identity(page["A_22"].value.shape[0]) - page["A_22"]).apply("det")
+    plant = page.plant
+    if stability(own.scalar, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "no":
+        page.remark("mere_copy_fails", predicate("unstable", own))
 
 
 def _error_matrix(page: Page) -> Term:
@@ -171,8 +187,9 @@ def _gain(page: Page, design: ReducedOrderObserver) -> None:
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)
+    page.in_decimals("L")
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
-    page.verified("as_required", check=relation(*members))
+    say_as_required(page, desired, *members)
 
 
 def observer_state(page: Page) -> str:
@@ -195,14 +212,11 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
         say="next_output" if page.plant.is_discrete else "derivative_of_output",
         state=relation(z, page["x_2_hat"] - L @ x_1),
     )
-    page.set("F_z", design.answer["F"])
-    page.set("H_z", design.answer["H"])
+    _matrices(page, design)
     pairs = [(page["F_z"], z)]
     if design.answer["G"] is not None:
-        page.set("G_z", design.answer["G"])
         pairs.append((page["G_z"], u))
     pairs.append((page["H_z"], page["y"]))
-    page.conclude_silently(relation(page["F_z"], closed))
     page.equal(relation(z.derivative, summed(pairs), combination(page, pairs)), say="reduced_final", answer=True)
     output = page["y"] - page["D"] @ u if m.has_feedthrough else page["y"]
     stacked = block([[output], [z]])
@@ -220,6 +234,19 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     )
     unseen = block([[corner @ page["e_2"]], [page["e_2"]]])
     page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
+
+
+def _matrices(page: Page, design: ReducedOrderObserver) -> None:
+    """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
+    L, m = page["L"], page.plant.matrices
+    page.define("F_z", _error_matrix(page), say="reduced_matrices")
+    page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"])
+    if m.has_input:
+        driven = page["B_2"] - L @ page["B_1"]
+        page.define("G_z", driven - page["H_z"] @ page["D"] if m.has_feedthrough else driven)
+    page.conclude_silently(
+        *(relation(page[f"{name}_z"], design.answer[name]) for name in "FGH" if design.answer[name] is not None)
+    )
 
 
 def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
