@@ -16,7 +16,7 @@ PHRASES: dict[str, str] = {
     "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",
     "existence_left": "and of the error there remains",
     "existence_observer": "With $H_x = L$ the observer is",
-    "separation": "By the separation principle the control law uses the estimate in place of the state:",
+    "separation": "By the separation principle§ the control law uses the estimate in place of the state:",
     "observer_closed": "Put into the observer, it leaves a system of the order of the plant that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
     "compensator_written": "With numbers the compensator is",
@@ -69,4 +69,7 @@ RESTS_ON: dict[str, str] = {
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
+    "similar_loops": "similarity",
+    "compensator_stable_low": "hurwitz",
+    "compensator_unstable_low": "hurwitz",
 }

@@ -12,9 +12,9 @@ PHRASES: dict[str, str] = {
     "blocks",
     "two_parts": "and the plant into two parts,",
     "parts_with_feedthrough": "Only {unmeasured} has to be estimated, since {measured} is known. The plant falls into two parts,",
-    "first_part_measures": "But everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
+    "first_part_measures": "Yet everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
     "($A_12$, $A_22$) is observable because ($C$, $A$) is: {rank}.",
-    "mere_copy": "A copy of the plant, corrected by its output error, is of no use here: it takes $x_1$ from the measurement, so its output "
+    "mere_copy": "A copy of the plant, corrected by its output error, is of no use here§: it takes $x_1$ from the measurement, so its output "
     "error is zero whatever the gain is, and the rest of the copy goes wrong by {left}.",
     "mere_copy_fails": "That does not even die out, since $A_22$ is not stable.",
     "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
@@ -45,6 +45,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 OPENS = ("reduced_observer", "derivative_of_output", "next_output", "parts", "parts_with_feedthrough")
 
 RESTS_ON: dict[str, str] = {
+    "mere_copy": "first_attempt",
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",
 }
