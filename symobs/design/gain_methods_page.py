@@ -10,8 +10,8 @@ from symobs.design.gain import fresh_names
 from symobs.design.matching import matching
 from symobs.design.names import taken_names
 from symobs.design.row_reduction import Reduction, gain_of, row_reduction
-from symobs.exact import Matrix, Scalar, companion
-from symobs.formula import Literal, Shown
+from symobs.exact import Matrix, Scalar, companion, roots_of
+from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
 
@@ -86,6 +86,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
+    _open_eigenvalues(page, side)
     page.remark(f"null_vectors_{side.kind}")
     for number, part in enumerate(found, 1):
         _reduce(page, side, part, number)
@@ -99,6 +100,14 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
     else:
         page.define("K", gain, shown, say=f"row_reduced{unique}_state_feedback", answer=True)
     _rounded_too_early(page, gain.value)
+
+
+def _open_eigenvalues(page: Page, side: Side) -> None:
+    """Say where the eigenvalues are without the gain, where they can be written down."""
+    own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
+    factors = own.scalar.factors()[1]
+    if own.scalar.names <= {page.plant.variable} and all(f.degree(page.plant.variable) <= 2 for f, _ in factors):
+        page.remark(f"open_eigenvalues_{side.kind}", roots=Roots(own.formula, roots_of(own.scalar, page.plant.variable)))
 
 
 def _rounded_too_early(page: Page, gain: Matrix) -> None:

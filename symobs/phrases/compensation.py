@@ -19,7 +19,7 @@ PHRASES: dict[str, str] = {
     "separation": "By the separation principle§ the control law uses the estimate in place of the state:",
     "observer_closed": "Put into the observer, it leaves a system of the order of the plant that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
-    "compensator_written": "With numbers the compensator is",
+    "compensator_written": "Written out, the compensator is",
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
     "compensator_stable_low": "It is strictly proper, and stable by itself because all coefficients of {polynomial} are positive.",

@@ -25,6 +25,8 @@ PHRASES: dict[str, str] = {
     "companion_vector_state_feedback": "The last row of the inverse of the controllability matrix is",
     "companion_rows": "With its images as rows,",
     "companion_reached": "the pair is brought to companion form:",
+    "open_eigenvalues_observer": "Without the gain the error would have the eigenvalues {roots} of $A$.",
+    "open_eigenvalues_state_feedback": "Without the gain the plant has the eigenvalues {roots}.",
     "null_vectors_observer": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of the transpose of $A - L C$ "
     "when the gain takes it to the lower part.",
     "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of $A - B K$ when the gain "
