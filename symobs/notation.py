@@ -169,6 +169,7 @@ LETTERS: dict[str, LetterForm] = {
     "K_0": LetterForm("K_0", "K₀", "gain by which the plant is shifted"),
     **{f"A_{side}0": LetterForm(rf"A_{{\mathrm {side}0}}", f"A_{side}₀", "shifted state matrix") for side in "co"},
     "x_1": LetterForm("x_1", "x₁", "measured states"),
+    **{f"x_hat_{k}": LetterForm(rf"\hat x_{k}", f"x̂{'₀₁₂'[k]}", "component of the estimate") for k in (1, 2)},
     "x_2": LetterForm("x_2", "x₂", "states that are not measured"),
     "x_2_hat": LetterForm(r"\hat x_2", "x̂₂", "estimate of the states that are not measured"),
     "e_2": LetterForm("e_2", "e₂", "error of the reduced-order observer"),

@@ -107,7 +107,9 @@ def _open_eigenvalues(page: Page, side: Side) -> None:
     own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
     factors = own.scalar.factors()[1]
     if own.scalar.names <= {page.plant.variable} and all(f.degree(page.plant.variable) <= 2 for f, _ in factors):
-        page.remark(f"open_eigenvalues_{side.kind}", roots=Roots(own.formula, roots_of(own.scalar, page.plant.variable)))
+        page.remark(
+            f"open_eigenvalues_{side.kind}", roots=Roots(own.formula, roots_of(own.scalar, page.plant.variable))
+        )
 
 
 def _rounded_too_early(page: Page, gain: Matrix) -> None:

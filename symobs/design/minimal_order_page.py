@@ -18,9 +18,10 @@ from symobs.design.compensator_page import (
     return_path_of_several,
     say_stability,
 )
+from symobs.design.components import combination
 from symobs.design.gain_pages import FEEDBACK, error_determinant, name_entries, write_gain
 from symobs.design.observer import page_style
-from symobs.design.reduced_order_page import combination, observer_state, write_observer_of_rest
+from symobs.design.reduced_order_page import observer_state, write_observer_of_rest
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Literal, Quotient
 from symobs.formula.term import Term, block

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
 from symobs.conditions import vanishing_factors
+from symobs.design.components import combination, summed
 from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
 from symobs.design.names import taken_names
@@ -264,30 +265,3 @@ def _impossible(page: Page, design: ReducedOrderObserver) -> None:
     fixed, facts = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
     page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)
-
-
-def summed(pairs: list[tuple[Term, Term]]) -> Term:
-    """Return Σ matrix · signal, as letters."""
-    total = pairs[0][0] @ pairs[0][1]
-    for matrix, signal in pairs[1:]:
-        total = total + matrix @ signal
-    return total
-
-
-def combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
-    """Return the sum with numbers: what is zero is left out, and a 1×1 matrix is a number."""
-    total: Term | None = None
-    for matrix, signal in pairs:
-        value = matrix.value
-        if value.is_zero:
-            continue
-        single = value[0, 0] if value.shape == (1, 1) else None
-        negative = single is not None and single.is_constant and single.fraction() < 0
-        if single is not None:
-            size = -single if negative else single
-            part = signal if size.is_one else page.value(size) * signal
-        else:
-            part = page.value(value) @ signal
-        part = -part if negative and total is None else part
-        total = part if total is None else total - part if negative else total + part
-    return summed(pairs) if total is None else total

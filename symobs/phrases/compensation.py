@@ -10,7 +10,11 @@ _DEFECTIVE = (
 PHRASES: dict[str, str] = {
     "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
     "error_equation": "Whatever the input, the error {error} then obeys",
+    "feedthrough_cancels": "The output error does not contain the input, since the feedthrough cancels in it:",
     "observer_collected": "Collected, the observer reads",
+    "observer_collected_with_feedthrough": "Collected, with $B - L D$ in place of $B$ so that the feedthrough does cancel, the observer reads",
+    "in_components": "Component by component these are the equations",
+    "right_estimate_stays": "An estimate that is right stays right: {consistent}.",
     "existence_ansatz": "Let a linear system be driven by what is known, with matrices still to be determined:",
     "existence_error": "Then {error} obeys",
     "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",

@@ -47,7 +47,25 @@ if TYPE_CHECKING:
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
-    {"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o", "v_r", "x_d", "e_d"}
+    {
+        "x",
+        "x_hat",
+        "e",
+        "u",
+        "y",
+        "y_hat",
+        "x_1",
+        "x_2",
+        "x_2_hat",
+        "e_2",
+        "x_hat_1",
+        "x_hat_2",
+        "z_o",
+        "w_o",
+        "v_r",
+        "x_d",
+        "e_d",
+    }
 )
 
 
