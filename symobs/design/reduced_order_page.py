@@ -227,6 +227,9 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     page.define("M_z", page["T"].inverse @ lift, silent=True)
     page.signal("x_hat", page["M_z"] @ stacked, silent=True)
     estimate = block([[x_1], [page["x_2_hat"]]])
+    single = order == outputs == 1 and not m.has_feedthrough
+    numbers = [combination(page, [(page.value(Matrix.identity(1)), z), (L, page["y"])])] if single else []
+    page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say="rest_estimated")
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
         relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
@@ -241,10 +244,11 @@ def _matrices(page: Page, design: ReducedOrderObserver) -> None:
     """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
     L, m = page["L"], page.plant.matrices
     page.define("F_z", _error_matrix(page), say="reduced_matrices")
+    if m.has_input and not m.has_feedthrough:
+        page.define("G_z", page["B_2"] - L @ page["B_1"])
     page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"])
-    if m.has_input:
-        driven = page["B_2"] - L @ page["B_1"]
-        page.define("G_z", driven - page["H_z"] @ page["D"] if m.has_feedthrough else driven)
+    if m.has_input and m.has_feedthrough:
+        page.define("G_z", page["B_2"] - L @ page["B_1"] - page["H_z"] @ page["D"])
     page.conclude_silently(
         *(relation(page[f"{name}_z"], design.answer[name]) for name in "FGH" if design.answer[name] is not None)
     )

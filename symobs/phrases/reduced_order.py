@@ -13,7 +13,7 @@ PHRASES: dict[str, str] = {
     "two_parts": "and the plant into two parts,",
     "parts_with_feedthrough": "Only {unmeasured} has to be estimated, since {measured} is known. The plant falls into two parts,",
     "first_part_measures": "Yet everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
-    "($A_12$, $A_22$) is observable because ($C$, $A$) is: {rank}.",
+    "($A_12$, $A_22$) is observable because ($C$, $A$) is§: {rank}.",
     "mere_copy": "A copy of the plant, corrected by its output error, is of no use here§: it takes $x_1$ from the measurement, so its output "
     "error is zero whatever the gain is, and the rest of the copy goes wrong by {left}.",
     "mere_copy_fails": "That does not even die out, since $A_22$ is not stable.",
@@ -31,6 +31,7 @@ PHRASES: dict[str, str] = {
     "as the state:",
     "reduced_matrices": "With the output in place of $x_1$ its matrices are",
     "reduced_final": "and the observer is",
+    "rest_estimated": "The estimate is found again from the definition of its state,",
     "assembled": "and the whole state is estimated by",
     "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the modes "
     "{modes}, and they are not among the poles asked for: there is no such observer.",

@@ -23,6 +23,7 @@ PHRASES: dict[str, str] = {
     "gramian_integral": "Its products, integrated over the horizon, are the Gramian:",
     "gramian_determinant": "Its determinant is",
     "lyapunov": "Lyapunov's equation {equation} has the solution",
+    "lyapunov_denominator": "Where its denominator vanishes there is no such solution, and the integral is taken directly.",
     "gramian_by_lyapunov": "Since the derivative of $exp_Atᵀ P_l exp_At$ is $- exp_Atᵀ Cᵀ C exp_At$, the Gramian is the same expression for every "
     "sign of the discriminant:",
     "gramian_in_case": "Entry by entry,",
