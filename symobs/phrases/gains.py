@@ -48,7 +48,7 @@ PHRASES: dict[str, str] = {
     "row_reduced_unique_state_feedback": "The gain takes each upper part to its lower part. There is one input, so no other gain places these "
     "poles, and what was chosen for the free components cancels:",
     "in_decimals": "In decimals this is",
-    "rounded_too_early": "The fractions are kept to the end with reason. Had the columns been rounded first, the same formula would have given",
+    "rounded_too_early": "The fractions are kept to the end with reason. Had the columns been rounded first, the product of $f_psi$ with the inverse would have been",
     "last_column": "Ackermann's formula§ takes the last column of the inverse of the observability matrix,",
     "last_row": "Ackermann's formula§ takes the last row of the inverse of the controllability matrix,",
     "ackermann_observer": "and puts $A$ into the polynomial asked for:",
