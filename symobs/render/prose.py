@@ -63,15 +63,15 @@ def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
 def with_reference(inlines: Inlines, number: int | None) -> Inlines:
     """Return a sentence with the number of what it rests on: where its phrase says so, else before its last mark."""
     if any(isinstance(part, str) and MARK in part for part in inlines):
-        shown = "" if number is None else f" [{number}]"
+        shown = "" if number is None else f"\N{NO-BREAK SPACE}[{number}]"
         return tuple(part.replace(MARK, shown) if isinstance(part, str) else part for part in inlines)
     if number is None:
         return inlines
     *rest, last = inlines
     if not isinstance(last, str):
-        return joined((*inlines, f" [{number}]"))
+        return joined((*inlines, f"\N{NO-BREAK SPACE}[{number}]"))
     words = last.rstrip(".:,")
-    return joined((*rest, f"{words} [{number}]{last[len(words) :]}"))
+    return joined((*rest, f"{words}\N{NO-BREAK SPACE}[{number}]{last[len(words) :]}"))
 
 
 def joined(inlines: Iterable[Inline]) -> Inlines:
