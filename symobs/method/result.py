@@ -208,12 +208,13 @@ def _denominators(values: Iterable[Any]) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, results, and the convention in which they are told."""
+    """What a format renders: a title, its source, results, the convention in which they are told, the problem in words."""
 
     title: str
     source: str
     results: tuple[Result, ...]
     convention: Convention = STANDARD
+    text: str = ""
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

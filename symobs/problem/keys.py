@@ -14,6 +14,7 @@ TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
     "id": {"description": "ids of the problem", "type": ["array", "string"], "items": {"type": "string"}},
     "source": {"description": "where the problem comes from", "type": "string"},
+    "text": {"description": "the problem in words, printed under the title", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
     "convention": {

@@ -46,6 +46,7 @@ class Problem:
     specification: Mapping[str, Any]
     expect: Mapping[str, Any] = field(default_factory=dict)
     convention: Convention = STANDARD
+    text: str = ""
 
     def solve(self, report: Callable[[str], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins.  All errors of all tasks are raised together."""
@@ -69,7 +70,7 @@ class Problem:
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""
-        return Document(self.title, self.source, results, convention or self.convention)
+        return Document(self.title, self.source, results, convention or self.convention, self.text)
 
 
 class _Errors:
@@ -111,7 +112,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     """
     errors = _Errors()
     _report_unknown(data, TOP, "", errors)
-    title, source = _text(data, "title", errors), _text(data, "source", errors)
+    title, source, text = (_text(data, name, errors) for name in ("title", "source", "text"))
     ids = _ids(data.get("id", []), errors)
     convention = _convention(data, folder, errors)
     asked = _tasks(data, errors, required=only is None)
@@ -122,7 +123,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = _table(data, "expect", errors)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect, convention)
+        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text)
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention).solve()
