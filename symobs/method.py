@@ -190,9 +190,9 @@ class Result:
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), "conditions", "cases", *self.fields]
 
-    def to(self, format_name: str) -> str | bytes:
-        """Return the result in a format: latex, fragment, text, json or pdf."""
-        return render(Document("", "", (self,)), format_name)
+    def to(self, format_name: str, *, detail: str = "full") -> str | bytes:
+        """Return the result in a format: latex, text, json, …; `detail` is full, outline or answer."""
+        return render(Document("", "", (self,), detail=detail), format_name)
 
     def to_latex(self) -> str:
         """Return the derivation as a LaTeX article."""
@@ -245,11 +245,12 @@ class Task:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, and results."""
+    """What a format renders: a title, its source, results, and how much of their derivations is told."""
 
     title: str
     source: str
     results: tuple[Result, ...]
+    detail: str = field(default="full", kw_only=True)
 
     @property
     def derivations(self) -> tuple[Derivation, ...]:

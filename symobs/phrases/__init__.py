@@ -83,6 +83,13 @@ NAMING = frozenset(key for module in _MODULES for key in getattr(module, "NAMING
 OPENS = frozenset(key for module in _MODULES for key in getattr(module, "OPENS", ()))
 
 
+#: Phrases that only explain, and refer to nothing but what was just shown: a shorter page leaves them out.
+EXPLAINS = frozenset(key for module in _MODULES for key in getattr(module, "EXPLAINS", ()))
+
+#: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
+SPELLS_OUT = frozenset(key for module in _MODULES for key in getattr(module, "SPELLS_OUT", ()))
+
+
 def slots_of(key: str) -> frozenset[str]:
     """Return the names of the slots of a phrase."""
     return frozenset(name for _, name, _, _ in string.Formatter().parse(PHRASES[key]) if name)

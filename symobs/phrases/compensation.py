@@ -61,3 +61,7 @@ RESTS_ON: dict[str, str] = {
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
 }
+
+SPELLS_OUT = ("named_entries", "with_coefficients")
+
+EXPLAINS = ("similar_loops",)

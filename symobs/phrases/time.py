@@ -97,3 +97,8 @@ RESTS_ON: dict[str, str] = {
 }
 
 NAMING = ("no_closed_form",)
+
+EXPLAINS = (
+    "exponential_sum",
+    "gramian_integral",
+)

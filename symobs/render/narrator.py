@@ -7,6 +7,7 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import (
@@ -44,6 +45,7 @@ from symobs.render.blocks import (
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.detail import at_detail
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -72,29 +74,27 @@ def narrate(document: Document) -> tuple[Block, ...]:
     """Return the blocks of a document; a derivation with a false line raises before a word is written."""
     for derivation in document.derivations:
         derivation.check()
+    parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
     page = _Page()
     page.blocks.append(_title(document))
-    together, apart = _statements(document)
+    together, apart = _statements(parts)
     page.tell_given(together)
-    for index, derivation in enumerate(document.derivations):
+    for index, steps in enumerate(parts):
         if index in apart:
             page.told.clear()
             page.tell_given(apart[index])
-        for step in derivation.steps:
+        for step in steps:
             if not _is_statement(step):
                 page.tell_step(step)
-        page.told |= _inside(derivation.steps)
-    page.blocks += _sources(document)
+        page.told |= _inside(steps)
+    page.blocks += _sources(parts)
     return _punctuated(page.blocks)
 
 
-def _sources(document: Document) -> list[Block]:
+def _sources(parts: Sequence[Sequence[Step]]) -> list[Block]:
     """Return the closing paragraph: the theorems that the sentences appeal to, each with its source."""
     keys = dict.fromkeys(
-        RESTS_ON[sentence.key]
-        for derivation in document.derivations
-        for sentence in _sentences(derivation.steps)
-        if sentence.key in RESTS_ON
+        RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
     )
     if not keys:
         return []
@@ -102,13 +102,13 @@ def _sources(document: Document) -> list[Block]:
     return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",), warns=False)]
 
 
-def _statements(document: Document) -> tuple[list[Step], dict[int, list[Step]]]:
+def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
     """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
     seen: dict[Formula, Relation] = {}
     together: list[Step] = []
     apart: dict[int, list[Step]] = {}
-    for index, derivation in enumerate(document.derivations):
-        statement = [step for step in derivation.steps if _is_statement(step)]
+    for index, steps in enumerate(parts):
+        statement = [step for step in steps if _is_statement(step)]
         relations = [relation for step in statement for relation in _given_relations(step)]
         if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
             apart[index] = statement
@@ -340,7 +340,7 @@ def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
     A comma where the sentence goes on in small letters after it, else a full stop.
     """
     punctuated: list[Block] = []
-    for block, following in zip(blocks, [*blocks[1:], None], strict=True):
+    for block, following in zip_longest(blocks, blocks[1:]):
         if isinstance(block, Display) and not block.boxed:
             goes_on = isinstance(following, Paragraph) and _starts_small(following.inlines)
             punctuated.append(replace(block, closing="," if goes_on else "."))
