@@ -23,6 +23,8 @@ from symobs.errors import CertificateRejected, DerivationRejected, InputError, U
 from symobs.page import Page
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
     from symobs.picture import Picture
@@ -245,12 +247,13 @@ class Task:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, results, and how much of their derivations is told."""
+    """What a format renders: a title, its source, results, how much of them is told, and the user's own templates."""
 
     title: str
     source: str
     results: tuple[Result, ...]
     detail: str = field(default="full", kw_only=True)
+    templates: Path | None = field(default=None, kw_only=True)
 
     @property
     def derivations(self) -> tuple[Derivation, ...]:
@@ -388,10 +391,7 @@ def render(document: Document, format_name: str) -> str | bytes:
 
 
 def format_named(name: str) -> Any:
-    """Return a format; raises `UsageError` naming those that exist.
-
-    A module with the format's name is looked at first, so that a run which needs one format does not pay for all.
-    """
+    """Return a format; a module of its name is looked at first. Raises `UsageError` naming those that exist."""
     if name.isidentifier() and name in {found.name for found in _modules(symobs.FORMAT_PACKAGE)}:
         importlib.import_module(f"{symobs.FORMAT_PACKAGE}.{name}")
     if name not in _FORMATS and name not in formats():

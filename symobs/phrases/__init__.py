@@ -23,6 +23,7 @@ from symobs.phrases import (
     pictures,
     pole_advice,
     polynomials,
+    questions,
     rank,
     reduced_order,
     regions,
@@ -53,6 +54,7 @@ _MODULES = (
     routh,
     regions,
     pictures,
+    questions,
 )
 
 

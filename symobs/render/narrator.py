@@ -59,6 +59,9 @@ if TYPE_CHECKING:
 
 P = TypeVar("P", bound="Printer[Any]")
 
+#: The sections of a question.
+_UNNUMBERED = {"task", "tasks"}
+
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
     "conventions": "Conventions:",
@@ -243,8 +246,9 @@ class _Page:
                 self.tell_section(title, steps)
 
     def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
-        self.numbers[-1] += 1
-        number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
+        is_numbered = self.numbered and title.key not in _UNNUMBERED
+        self.numbers[-1] += is_numbered
+        number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         self.blocks.append(Heading(number, filled(title)))
         self.numbers.append(0)
         for step in steps:

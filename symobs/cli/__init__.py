@@ -32,19 +32,23 @@ _MOST_LINES = 100
 
 
 class Tasks(click.Group):
-    """The commands that stand in this file, and one for every registered task."""
+    """The commands that stand in this file, `sheet`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return all names; tasks come from the registry."""
         from symobs.method import tasks  # noqa: PLC0415 - --help pays for it, --version does not
 
-        return [*super().list_commands(ctx), *sorted(tasks())]
+        return [*sorted([*super().list_commands(ctx), "sheet"]), *sorted(tasks())]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command, made from the task's signature where it is a task."""
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
+        if cmd_name == "sheet":
+            from symobs.cli.sheet import sheet  # noqa: PLC0415 - only sheets pay for it
+
+            return sheet
         from symobs.method import task_named  # noqa: PLC0415
 
         task = task_named(cmd_name.replace("-", "_"))
