@@ -10,6 +10,7 @@ import inspect
 import re
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
@@ -86,6 +87,8 @@ def cli() -> None:
 
 FORMAT_HELP = "latex (default), text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
+DETAIL_HELP = "How much of the derivation is told: full (default), outline or answer."
+TEMPLATES_HELP = "Use your own LaTeX templates: see `symobs templates`."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 
 
@@ -94,8 +97,18 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
 @click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
+@click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
+@click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
-def solve(file: str, task_name: str | None, format_name: str | None, target: str | None, plot: str | None) -> None:
+def solve(
+    file: str,
+    task_name: str | None,
+    format_name: str | None,
+    target: str | None,
+    detail: str,
+    templates: str | None,
+    plot: str | None,
+) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs.method import tasks  # noqa: PLC0415
     from symobs.problem import parse, validate  # noqa: PLC0415
@@ -104,7 +117,25 @@ def solve(file: str, task_name: str | None, format_name: str | None, target: str
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     _check_plot(plot, target)
-    _run(validate(parse(_read(file), file), task_name), chosen, target, plot, some=task_name is not None)
+    page = _page(detail, templates, chosen)
+    _run(validate(parse(_read(file), file), task_name), chosen, target, plot, some=task_name is not None, **page)
+
+
+def _page(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
+    """Return how the page is to be told and set; raises `UsageError` for what does not exist."""
+    from symobs.render.detail import detail_named  # noqa: PLC0415 - it imports the steps
+
+    if templates is None:
+        return {"detail": detail_named(detail)}
+    from symobs.method import format_named, formats  # noqa: PLC0415
+    from symobs.render.templates import check_folder  # noqa: PLC0415 - only with --templates
+
+    if not hasattr(format_named(format_name), "template"):
+        having = ", ".join(sorted(found.name for found in formats().values() if hasattr(found, "template")))
+        message = f"the format {format_name} has no LaTeX template"
+        raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
+    check_folder(Path(templates))
+    return {"detail": detail_named(detail), "templates": Path(templates)}
 
 
 def _check_plot(path: str | None, target: str | None) -> None:
@@ -117,10 +148,13 @@ def _check_plot(path: str | None, target: str | None) -> None:
             raise UsageError("the result is written to that file", where="--plot", repair="name another file")
 
 
-def _run(found: Any, format_name: str, target: str | None, plot: str | None, *, some: bool = False) -> None:
+def _run(
+    found: Any, format_name: str, target: str | None, plot: str | None, *, some: bool = False, **page: Any
+) -> None:
     """Solve a problem, write the document and the picture, and leave with the contract's exit code.
 
-    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.
+    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
+    is put into the document.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.method import render  # noqa: PLC0415
@@ -128,7 +162,7 @@ def _run(found: Any, format_name: str, target: str | None, plot: str | None, *, 
     results = found.solve(_progress(found))
     expect = applicable(results, found.expect) if some else found.expect
     unmet = mismatches(results, expect)
-    write(render(found.document(results), format_name), target)
+    write(render(replace(found.document(results), **page), format_name), target)
     if plot is not None:
         from symobs.render.plot_files import picture_file  # noqa: PLC0415
 
@@ -222,6 +256,8 @@ def _task_command(task: Any) -> click.Command:
         click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
         click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
         click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
+        click.Option(["--detail"], default="full", metavar="NAME", help=DETAIL_HELP),
+        click.Option(["--templates"], metavar="FOLDER", help=TEMPLATES_HELP),
         click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
     ]
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
@@ -244,13 +280,14 @@ def _run_task(task: Any, options: dict[str, Any]) -> None:
 
     chosen = _format_of(options["format_name"], options["target"])
     _check_plot(options["plot"], options["target"])
+    page = _page(options["detail"], options["templates"], chosen)
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     try:
-        _run(validate(data), chosen, options["target"], options["plot"])
+        _run(validate(data), chosen, options["target"], options["plot"], **page)
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)

@@ -11,20 +11,35 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symobs.cli import (
+    DETAIL_HELP,
+    EXIT_BUG,
+    EXIT_NO,
+    EXIT_UNDECIDED,
+    TARGET_HELP,
+    TEMPLATES_HELP,
+    _format_of,
+    _page,
+    _read,
+    _say,
+)
 from symobs.errors import InputError, ProblemErrors, SymobsError, TypesettingError, UsageError
+from symobs.expect import mismatches
 from symobs.expression.source import shown
+from symobs.method import format_named, formats
 from symobs.output import write
 from symobs.phrases import PHRASES
+from symobs.problem import parse, validate
+from symobs.problem.question import question_of
 from symobs.sheet import Entry, Sheet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.method import Document
-    from symobs.problem import Problem
 
-EXIT_BUG, EXIT_INPUT, EXIT_NO, EXIT_UNDECIDED = 1, 3, 4, 5
-_WORST_FIRST = (EXIT_BUG, EXIT_INPUT, EXIT_NO, EXIT_UNDECIDED)
+_LONGEST_TITLE = 300
+_WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 
 
 @dataclass(frozen=True)
@@ -35,20 +50,18 @@ class _Wanted:
     questions: bool
     solutions: bool
     detail: str
-    templates: Path | None
+    templates: Path | None = None
 
 
 @click.command()
 @click.argument("files", nargs=-1, metavar="FILE...")
-@click.option(
-    "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
-)
+@click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
 @click.option("--format", "format_name", metavar="NAME", help="latex (default), pdf, html, text, json, …")
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@click.option("--detail", default="full", metavar="NAME", help="How much is told: full (default), outline or answer.")
-@click.option("--templates", metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`.")
+@click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
+@click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 def sheet(
     files: tuple[str, ...],
     target: str | None,
@@ -65,9 +78,8 @@ def sheet(
     """
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
-    wanted = _Wanted(
-        _sheet_format(format_name, target), not solutions, not questions, _detail(detail), _folder(templates)
-    )
+    chosen = _sheet_format(format_name, target)
+    wanted = _Wanted(chosen, not solutions, not questions, **_page(detail, templates, chosen.name))
     _check_target(target)
     texts = _texts(files)
     entries: list[Entry] = []
@@ -93,30 +105,11 @@ def sheet(
 
 def _sheet_format(name: str | None, target: str | None) -> Any:
     """Return the format; raises `UsageError` for one that has no sheets."""
-    from symobs.cli import _format_of  # noqa: PLC0415 - it imports this module
-    from symobs.method import format_named, formats  # noqa: PLC0415
-
     found = format_named(_format_of(name, target))
     if not hasattr(found, "sheet"):
         having = ", ".join(sorted(each.name for each in formats().values() if hasattr(each, "sheet")))
         raise UsageError(f"the format {found.name} is for one problem", where="--format", repair=f"use one of {having}")
     return found
-
-
-def _detail(name: str) -> str:
-    from symobs.render.detail import detail_named  # noqa: PLC0415 - it imports the steps
-
-    return detail_named(name)
-
-
-def _folder(name: str | None) -> Path | None:
-    """Return the folder of the user's templates; raises `InputError` where there are none."""
-    if name is None:
-        return None
-    from symobs.render.templates import check_folder  # noqa: PLC0415 - only with --templates
-
-    check_folder(Path(name))
-    return Path(name)
 
 
 def _check_target(target: str | None) -> None:
@@ -132,8 +125,6 @@ def _check_target(target: str | None) -> None:
 
 def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     """Return the text of every file; raises all errors together, before work starts."""
-    from symobs.cli import _read  # noqa: PLC0415 - it imports this module
-
     if not files:
         raise UsageError("no problem file is named", repair="write for example `symobs sheet *.toml -o sheet.pdf`")
     if list(files).count("-") > 1:
@@ -164,14 +155,12 @@ def _entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, i
 
 def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
-    from symobs.expect import mismatches  # noqa: PLC0415 - as above
-    from symobs.problem import parse, validate  # noqa: PLC0415
-
-    problem = validate(parse(text))
-    entry = replace(entry, title=problem.title or entry.title)
+    data = parse(text, "the file")
+    entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
+        problem = validate(data)
         if wanted.questions:
-            entry = replace(entry, question=_part(_question(problem), wanted))
+            entry = replace(entry, question=_part(question_of(problem), wanted))
         results = problem.solve()
         if wanted.solutions:
             entry = replace(entry, solution=_part(problem.document(results), wanted))
@@ -186,15 +175,9 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
     return entry, min(codes, default=0), messages
 
 
-def _question(problem: Problem) -> Document:
-    from symobs.problem.question import question_of  # noqa: PLC0415 - only for sheets with questions
-
-    return question_of(problem)
-
-
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return what the format will want of a question or a solution."""
-    return wanted.format.part(replace(document, detail=wanted.detail))
+    return wanted.format.part(replace(document, detail=wanted.detail, templates=wanted.templates))
 
 
 def _failure(error: Exception) -> tuple[int, list[str]]:
@@ -205,11 +188,6 @@ def _failure(error: Exception) -> tuple[int, list[str]]:
         several = error.errors if isinstance(error, ProblemErrors) else (error,)
         return max(found.exit_code for found in several), str(error).split("\n")
     return EXIT_BUG, [f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this"]
-
-
-def _say(text: str) -> None:
-    with suppress(OSError):
-        click.echo(text, err=True)
 
 
 # -- what a terminal shows --------------------------------------------------------------------------------------------

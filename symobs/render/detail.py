@@ -62,8 +62,8 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
         case Define(silent=True):
             yield step
         case Define(answer=True) | Equal(answer=True):
-            told = step if detail == "outline" else _result_alone(step)
-            yield told if _introduces(step.sentence) else replace(told, sentence=None)
+            answer = step if detail == "outline" else _result_alone(step)
+            yield answer if _introduces(step.sentence) else replace(answer, sentence=None)
         case Define(sentence=sentence) | Equal(sentence=sentence) if _spells_out(step) or conditions(sentence):
             yield step
         case Define() | Diagram() if detail == "outline":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from itertools import pairwise, zip_longest
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
@@ -48,10 +48,11 @@ class LatexArticle:
 
     name: ClassVar[str] = "latex"
     suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "article.tex"
 
     def render(self, document: Document) -> str:
         """Return the document's LaTeX."""
-        return typeset(document, "article.tex", folder=document.templates)
+        return typeset(document, self.template, folder=document.templates)
 
     def part(self, document: Document) -> dict[str, object]:
         """Return what a template says of a question or a solution."""
@@ -68,10 +69,11 @@ class LatexFragment:
 
     name: ClassVar[str] = "fragment"
     suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "fragment.tex"
 
     def render(self, document: Document) -> str:
         """Return the LaTeX of the body."""
-        return typeset(document, "fragment.tex", folder=document.templates)
+        return typeset(document, self.template, folder=document.templates)
 
 
 def typeset(document: Document, template: str, *, folder: Path | None = None) -> str:
@@ -94,9 +96,9 @@ def values_of(document: Document) -> dict[str, object]:
 
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; a problem's values are those of its part, its number, and what failed."""
-    chapters = []
+    chapters: list[dict[str, Any]] = []
     for name, parts in sheet.chapters():
-        problems = [
+        problems: list[dict[str, Any]] = [
             {"title": escape(entry.title), "source": "", "conventions": "", "body": "", **(part or {})}
             | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
             for entry, part in parts

@@ -51,10 +51,11 @@ class Pdf:
 
     name: ClassVar[str] = "pdf"
     suffix: ClassVar[str] = ".pdf"
+    template: ClassVar[str] = "article.tex"
 
     def render(self, document: Document) -> bytes:
         """Return the bytes of the PDF."""
-        return compiled(typeset(document, "article.tex", folder=document.templates))
+        return compiled(typeset(document, self.template, folder=document.templates))
 
     def part(self, document: Document) -> dict[str, object]:
         """Return what a template says of a question or a solution."""
