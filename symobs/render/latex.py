@@ -90,8 +90,13 @@ def values_of(document: Document) -> dict[str, object]:
         "source": escape(title.source).strip(),
         "conventions": writer.sentence(title.conventions),
         "body": writer.body(blocks),
-        "drawings": any(isinstance(block, Drawing | PictureBlock) for block in every(blocks)),
+        "drawings": has_drawings(blocks),
     }
+
+
+def has_drawings(blocks: Sequence[Block]) -> bool:
+    """Whether a page needs TikZ."""
+    return any(isinstance(block, Drawing | PictureBlock) for block in every(blocks))
 
 
 def typeset_sheet(sheet: Sheet, template: str) -> str:
