@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.method import output_format
 from symobs.phrases import PHRASES
-from symobs.render.blocks import Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.render.blocks import Display, Drawing, Heading, PictureBlock, TableBlock, opened
 from symobs.render.escape import escape
 from symobs.render.latex import LatexWriter, has_drawings
 from symobs.render.latex_printer import LatexPrinter
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
 WIDTH = 39.5
+#: Displays of more rows than this may be too high for a slide.
+_TALL = 6
 
 
 @output_format
@@ -96,6 +98,7 @@ class _SlideWriter(LatexWriter):
     def block(self, block: Block) -> str:
         """Return one block."""
         written = super().block(block)
-        if isinstance(block, Drawing | PictureBlock | TableBlock):
+        is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
+        if is_tall or isinstance(block, Drawing | PictureBlock | TableBlock):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
