@@ -87,12 +87,13 @@ def sheet(
     progress = _Progress(len(texts))
     for number, (file, text) in enumerate(texts, 1):
         progress.show(number, Path(file).stem)
+        name = shown(file, 200)
         entry, code, messages = _entry(number, file, text, wanted)
         entries.append(entry)
         codes.add(code)
         progress.clear()
         for message in messages:
-            _say(f"{shown(file, 200)}: {message}")
+            _say(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
     whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
     progress.clear()
@@ -155,7 +156,7 @@ def _entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, i
 
 def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
-    data = parse(text, "the file")
+    data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
         problem = validate(data)

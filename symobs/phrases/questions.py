@@ -50,6 +50,8 @@ PHRASES: dict[str, str] = {
     "ask initial_state": "Find the initial state from the output.",
     "ask initial_state output": "Up to the time {horizon} the output was measured as {output}, and there was no input. Find the initial state.",
     "ask initial_state output input": "Up to the time {horizon} the output was measured as {output} under the input {input}. Find the initial state.",
+    "also initial_state input": "The input is {input}.",
+    "also initial_state_covariance Q": "White noise {Q} is added to the known input.",
     "ask initial_state_covariance": "Find the covariance of the initial state that the Gramian reconstructs from a noisy output.",
     "ask initial_state_covariance R": "The output is measured with white noise {R} up to the time {horizon}. Find the covariance of the initial state "
     "that the Gramian reconstructs, and the best horizon for each component.",
@@ -68,6 +70,7 @@ PHRASES: dict[str, str] = {
     "ask stability_region K parameters": "For which {parameters} is the loop with the feedback gain $K$ stable?",
     "ask stability_region L parameters": "For which {parameters} is the observer with the gain $L$ stable?",
     "ask stability_region K L parameters": "For which {parameters} is the loop with the feedback gain $K$ and the observer gain $L$ stable?",
+    "also stability_region polynomial": "The polynomial is {polynomial}.",
     "also stability_region margin": "Every root is to lie to the left of the imaginary axis by more than {margin}.",
     "also stability_region radius": "Every root is to have an absolute value below {radius}.",
     # -- design ---------------------------------------------------------------------------------------------------

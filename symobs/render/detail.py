@@ -68,12 +68,8 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
             yield step
         case Define() | Diagram() if detail == "outline":
             yield step if isinstance(step, Diagram) else replace(step, sentence=None)
-        case Tabulate(findings=findings):
-            told = tuple(finding for finding in findings if finding.key not in EXPLAINS)
-            if detail == "outline":
-                yield replace(step, findings=told)
-            else:
-                yield from (Note(finding) for finding in told)
+        case Tabulate(findings=findings) if detail == "answer":
+            yield from (Note(finding) for finding in findings if finding.key not in EXPLAINS)
         case Survey(findings=findings):
             yield replace(step, findings=tuple(finding for finding in findings if finding.key not in EXPLAINS))
         case Plot() if detail == "outline":
