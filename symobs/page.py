@@ -279,9 +279,13 @@ class Page:
         """Remark."""
         self.steps.append(Note(sentence(key, slots), facts))
 
-    def diagram(self, name: str, **labels: Member) -> None:
-        """Draw."""
-        self.steps.append(Diagram(name, tuple((key, formula_of(label)) for key, label in labels.items())))
+    def diagram(self, name: str, say: str = "", **labels: Member | Together) -> None:
+        """Draw a figure of `flow` with these gains; its signals have their own letters unless others are given."""
+        from symobs.flow import with_signals  # noqa: PLC0415 - only pages with a diagram pay for it
+
+        given = {key: label if isinstance(label, Together) else formula_of(label) for key, label in labels.items()}
+        because = sentence(say, {}) if say else None
+        self.steps.append(Diagram(name, tuple(with_signals(name, given).items()), because))
 
     def tabulate(
         self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot

@@ -394,7 +394,10 @@ class World:
                     yield from self.facts(facts)
                 case Diagram(_, labels):
                     for name, label in labels:
-                        yield f"label {name}", self.value(label)
+                        if isinstance(label, Together):
+                            yield from self.facts((label,))
+                        elif name[0].isupper():
+                            yield f"label {name}", self.value(label)
                 case Tabulate():
                     yield from self.table(step)
                 case Where(fact):

@@ -91,7 +91,7 @@ class HandWritten(Document):
 
 
 def document(*derivations: Derivation, title: str = "", source: str = "") -> HandWritten:
-    return HandWritten(title, source, (), derivations)
+    return HandWritten(title, source, (), written=derivations)
 
 
 def target_document() -> HandWritten:
@@ -268,13 +268,6 @@ def compensator() -> Section:
                 say("proper", polynomial=Shown(determinant, Literal(pole_polynomial))),
                 (Predicate("strictly_proper", Letter("F")), Predicate("stable", Letter("F"))),
             ),
-            Diagram(
-                "loop",
-                (
-                    ("plant", Quotient(number(1), times(Letter("s"), Literal(s + 1)))),
-                    ("compensator", Literal(transfer)),
-                ),
-            ),
         ),
     )
 
@@ -296,6 +289,15 @@ def closed_loop() -> Section:
                 ),
                 say("plant", plant=equals(P, Quotient(number(1), times(Letter("s"), Literal(s + 1))))),
                 answer=True,
+            ),
+            Diagram(
+                "loop",
+                (
+                    *((name, Letter(letter)) for name, letter in (("r", "r_in"), ("u", "u"), ("y", "y"))),
+                    ("P", Quotient(number(1), times(Letter("s"), Literal(s + 1)))),
+                    ("F", Negative(Literal((319 * s + 400) / (s**2 + 23 * s + 161)))),
+                    ("response", Literal(top / bottom)),
+                ),
             ),
             Conclude(say("both")),
             Note(

@@ -195,8 +195,11 @@ class Reader:
                     self.fact(fact)
             case Diagram(_, labels):
                 for name, label in labels:
-                    letter = {"plant": "P", "compensator": "F"}[name]
-                    assert self.agree(self.value(label), self.letters[letter]), label
+                    if isinstance(label, Together):
+                        self.fact(label)
+                    elif step.name in {"loop", "unity_loop"} and name in {"P", "F"}:
+                        drawn = label.operand if isinstance(label, Negative) else label
+                        assert self.agree(self.value(drawn), self.letters[name]), label
             case Tabulate():
                 self.table(step)
             case Case(when, substitution, steps):

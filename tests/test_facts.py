@@ -22,6 +22,7 @@ from symobs.formula import (
     Apply,
     Exactly,
     Fact,
+    Formula,
     Letter,
     Literal,
     Negative,
@@ -208,11 +209,22 @@ def test_slots_match_their_phrase() -> None:
 
 def test_the_labels_of_a_diagram_are_what_its_letters_mean() -> None:
     known = (Given((said(P, 1 / s), said(F, 2 / (s + 1)))),)
-    checked(*known, Diagram("loop", (("plant", literal(1 / s)), ("compensator", F))))
-    refused(*known, Diagram("loop", (("plant", literal(2 / s)), ("compensator", F))))
-    refused(*known, Diagram("loop", (("plant", F),)))
-    checked(*known, Diagram("loop", (("controller", F),)))
-    checked(Diagram("loop", (("plant", literal(2 / s)),)))
+    loop = (s + 1) / (s**2 + s + 2)
+    true: dict[str, Formula] = {"P": literal(1 / s), "F": Negative(F), "response": literal(loop)}
+    checked(*known, Diagram("loop", tuple(true.items())))
+    wrong: list[dict[str, Formula]] = [
+        {"P": literal(2 / s)},
+        {"F": F},
+        {"F": Negative(P)},
+        {"response": literal(2 * loop)},
+        {"controller": F},
+    ]
+    for change in wrong:
+        refused(*known, Diagram("loop", tuple({**true, **change}.items())))
+    for name in true:
+        refused(*known, Diagram("loop", tuple((key, label) for key, label in true.items() if key != name)))
+    refused(Diagram("loop", tuple({**true, "F": literal(-2 / (s + 1))}.items())))
+    refused(*known, Diagram("unity_loop", tuple(true.items())))
 
 
 def test_roots_without_closed_form_are_held_to_their_factor() -> None:

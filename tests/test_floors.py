@@ -21,8 +21,10 @@ LONGEST = 400
 # A module imports from strictly lower floors; the modules of one package folder may import one another.
 FLOORS = {
     "errors": 0,
+    "contents": 0,
     "exact": 1,
     "notation": 1,
+    "convention": 2,
     "phrases": 1,
     "expression": 2,
     "formula": 2,
@@ -30,6 +32,7 @@ FLOORS = {
     "pointwise": 3,
     "stability": 3,
     "picture": 3,
+    "flow": 3,
     "face": 3,
     "error_bounds": 3,
     "system": 3,
@@ -43,6 +46,7 @@ FLOORS = {
     "sheet": 8,
     "design": 9,
     "render": 9,
+    "viewed": 8,
     "expect": 10,
     "output": 11,
     "problem": 11,

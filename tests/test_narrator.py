@@ -53,8 +53,8 @@ def test_the_page_to_aim_at_block_by_block() -> None:
         *(Heading, Display, Paragraph),
         *(Heading, Paragraph, Display, Verified),
         *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Verified),
-        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Paragraph, Drawing),
-        *(Heading, Paragraph, Display, Paragraph, Caution),
+        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Paragraph),
+        *(Heading, Paragraph, Display, Drawing, Paragraph, Caution),
     ]
 
 

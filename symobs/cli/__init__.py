@@ -6,8 +6,6 @@ Standard output carries the result only; messages go to standard error.
 from __future__ import annotations
 
 import gc
-import inspect
-import re
 import sys
 from contextlib import suppress
 from dataclasses import replace
@@ -21,39 +19,45 @@ from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
-PLANT_OPTIONS = {
-    "A": 'state matrix, "[0 1; 0 -1]"',
-    "B": "input matrix",
-    "C": "output matrix",
-    "D": "feedthrough; 0 if left out",
-    "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
-    "dt": "0: continuous (default); true, or the period: discrete",
-}
 _MOST_LINES = 100
+#: Commands in modules of their own, imported when they are called, and what each does.
+_LATE = {"sheet": "Put several problem files on one sheet: all questions first, then all solutions."}
 
 
 class Tasks(click.Group):
     """The commands that stand in this file, `sheet`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return all names; tasks come from the registry."""
-        from symobs.method import tasks  # noqa: PLC0415 - --help pays for it, --version does not
+        """Return all names."""
+        return [*sorted([*super().list_commands(ctx), *_LATE]), *_summaries()]
 
-        return [*sorted([*super().list_commands(ctx), "sheet"]), *sorted(tasks())]
+    def format_commands(self, _: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what every command does; those on tasks are read from the sources, which costs no kernel."""
+        own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()} | _LATE
+        for title, listed in (
+            ("Commands", dict(sorted(own.items()))),
+            ("Tasks, each a command of its own", _summaries()),
+        ):
+            with formatter.section(title):
+                formatter.write_dl(list(listed.items()))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command, made from the task's signature where it is a task."""
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
-        if cmd_name == "sheet":
+        if cmd_name in _LATE:
             from symobs.cli.sheet import sheet  # noqa: PLC0415 - only sheets pay for it
 
             return sheet
         from symobs.method import task_named  # noqa: PLC0415
 
         task = task_named(cmd_name.replace("-", "_"))
-        return None if task is None else _task_command(task)
+        if task is None:
+            return None
+        from symobs.cli.task import task_command  # noqa: PLC0415 - it reads the task's signature
+
+        return task_command(task)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -65,6 +69,14 @@ class Tasks(click.Group):
             meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
             ctx.fail(f"there is no command {name[:40]!r}{meant}")
         return super().resolve_command(ctx, args)
+
+
+def _summaries() -> dict[str, str]:
+    """Return the tasks with what each does."""
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.contents import task_summaries  # noqa: PLC0415
+
+    return task_summaries(symobs.TASK_PACKAGES)
 
 
 def _version(ctx: click.Context, _: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's signature
@@ -85,10 +97,11 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT_HELP = "latex (default), text, json, pdf, …"
+FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
 DETAIL_HELP = "How much of the derivation is told: full (default), outline or answer."
 TEMPLATES_HELP = "Use your own LaTeX templates: see `symobs templates`."
+CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 
 
@@ -100,14 +113,16 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
 @click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
+@click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
 def solve(
     file: str,
     task_name: str | None,
     format_name: str | None,
     target: str | None,
+    plot: str | None,
+    convention_name: str | None,
     detail: str,
     templates: str | None,
-    plot: str | None,
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs.method import tasks  # noqa: PLC0415
@@ -117,8 +132,19 @@ def solve(
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     _check_plot(plot, target)
+    convention = _convention(convention_name)
+    found = validate(parse(_read(file), file), task_name, Path(file).parent)
     page = _page(detail, templates, chosen)
-    _run(validate(parse(_read(file), file), task_name), chosen, target, plot, some=task_name is not None, **page)
+    _run(found, chosen, target, plot, convention, some=task_name is not None, **page)
+
+
+def _convention(name: str | None) -> Any:
+    """Return the convention asked for, None for the file's own."""
+    if name is None:
+        return None
+    from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
+
+    return convention_named(name)
 
 
 def _page(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
@@ -149,7 +175,14 @@ def _check_plot(path: str | None, target: str | None) -> None:
 
 
 def _run(
-    found: Any, format_name: str, target: str | None, plot: str | None, *, some: bool = False, **page: Any
+    found: Any,
+    format_name: str,
+    target: str | None,
+    plot: str | None,
+    convention: Any,
+    *,
+    some: bool = False,
+    **page: Any,
 ) -> None:
     """Solve a problem, write the document and the picture, and leave with the contract's exit code.
 
@@ -160,9 +193,10 @@ def _run(
     from symobs.method import render  # noqa: PLC0415
 
     results = found.solve(_progress(found))
-    expect = applicable(results, found.expect) if some else found.expect
-    unmet = mismatches(results, expect)
-    write(render(replace(found.document(results), **page), format_name), target)
+    viewed = found.viewed(results)
+    expect = applicable(viewed, found.expect) if some else found.expect
+    unmet = mismatches(viewed, expect)
+    write(render(replace(found.document(results, convention), **page), format_name), target)
     if plot is not None:
         from symobs.render.plot_files import picture_file  # noqa: PLC0415
 
@@ -237,69 +271,6 @@ def _read(file: str) -> str:
         raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
 
 
-# -- one command a task ---------------------------------------------------------------------------------------------
-
-
-def _task_command(task: Any) -> click.Command:
-    """Return the command of a task: the plant's options, then the task's keywords."""
-    from symobs.specification import KINDS  # noqa: PLC0415
-
-    def option(group: str, name: str, described: str) -> click.Option:
-        return click.Option(
-            [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described
-        )
-
-    parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
-    parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
-    signs = "For example omega=positive; repeat it. With it, no other names exist."
-    parameters += [
-        click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
-        click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
-        click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
-        click.Option(["--detail"], default="full", metavar="NAME", help=DETAIL_HELP),
-        click.Option(["--templates"], metavar="FOLDER", help=TEMPLATES_HELP),
-        click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
-    ]
-    first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
-    return click.Command(
-        task.name,
-        params=parameters,
-        callback=lambda **options: _run_task(task, options),
-        help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
-        short_help=task.summary,
-    )
-
-
-def _run_task(task: Any, options: dict[str, Any]) -> None:
-    """Put the options into a problem's tables and run it; undeclared names are real symbols."""
-    from symobs.problem import OPEN, validate  # noqa: PLC0415
-
-    def given(group: str) -> dict[str, Any]:
-        chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
-        return {name.removeprefix(group): value for name, value in chosen.items()}
-
-    chosen = _format_of(options["format_name"], options["target"])
-    _check_plot(options["plot"], options["target"])
-    page = _page(options["detail"], options["templates"], chosen)
-    plant = given("plant_")
-    if plant.get("dt", "").lower() == "true":
-        plant["dt"] = True
-    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
-    data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
-    try:
-        _run(validate(data), chosen, options["target"], options["plot"], **page)
-    except SymobsError as raised:
-        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
-            error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
-            error.where = re.sub(r"^symbols\.", "--symbol ", error.where)
-        raise
-
-
-def _declaration(entry: str) -> tuple[str, str]:
-    name, separator, sign = entry.partition("=")
-    return name.strip(), sign.strip() if separator else "real"
-
-
 # -- lists ----------------------------------------------------------------------------------------------------------
 
 
@@ -328,9 +299,12 @@ def schema() -> None:
 
 
 @cli.command()
-def conventions() -> None:
-    """List the conventions a page can be written in."""
-    write("standard: u = −K x̂, observer matrix A − L C, error e = x − x̂, compensator F in negative feedback\n")
+@click.argument("name", required=False)
+def conventions(name: str | None) -> None:
+    """List the conventions a page can be written in, or print the file of the one called NAME."""
+    from symobs.convention.listing import file_of, listed  # noqa: PLC0415
+
+    write(listed() if name is None else file_of(name))
 
 
 @cli.group(invoke_without_command=True)

@@ -159,7 +159,7 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
-        problem = validate(data)
+        problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
             entry = replace(entry, question=_part(question_of(problem), wanted))
         results = problem.solve()
@@ -167,7 +167,7 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
             entry = replace(entry, solution=_part(problem.document(results), wanted))
     except Exception as error:  # noqa: BLE001 - as above
         return replace(entry, failure=PHRASES["sheet_failed"]), *_failure(error)
-    unmet = mismatches(results, problem.expect)
+    unmet = mismatches(problem.viewed(results), problem.expect)
     if problem.expect:
         return entry, EXIT_NO if unmet else 0, unmet
     verdicts = [(result.task, result.verdict) for result in results if result.verdict in {"no", "undecided"}]

@@ -94,8 +94,6 @@ class Derivation:
 
 #: Sentences that move a boundary, and those that say to which limit.
 MOVES = {"moved_right": "sought_margin", "enlarged": "sought_radius"}
-#: The letter that a label of a diagram must agree with, where the page has it.
-_LABELS = {"plant": "P", "compensator": "F"}
 
 
 def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
@@ -133,11 +131,11 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _fact(fact, environment, discrete)
             _asserted(step.sentence, facts)
             environment = _sought(step.sentence, environment)
-        case Diagram(_, labels):
-            for name, label in labels:
-                _established(label, environment)
-                if environment.knows(_LABELS.get(name, "")):
-                    _fact(Relation((Letter(_LABELS[name]), label), ("=",)), environment, discrete)
+        case Diagram(name, labels):
+            from symobs.derivation.flows import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
+
+            for relation in equations_of(name, dict(labels), environment):
+                _fact(relation, environment, discrete)
         case Tabulate():
             environment = _tabulated(step, environment, discrete)
         case Where(fact):

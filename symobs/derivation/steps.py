@@ -12,6 +12,7 @@ from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
+    from symobs.flow import Label
     from symobs.formula import Exactly, Fact, Formula, Relation, Together
     from symobs.picture import Picture
     from symobs.region.routh import RouthTable
@@ -92,10 +93,14 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """A block diagram drawn from a named description (`loop`: plant above, compensator in the return path)."""
+    """A block diagram: a figure of `flow` by its name, with the gains and signals that label it.
+
+    Labels may be wider than the page; a format then draws the letters that the figure has for them.
+    """
 
     name: str
-    labels: tuple[tuple[str, Formula], ...]
+    labels: tuple[tuple[str, Label], ...]
+    sentence: Sentence | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given
+from symobs.design.drawings import draw_compensator, draw_loop, draw_unity_loop
 from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import (
     FEEDBACK,
@@ -87,6 +88,7 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
     page.equal(relation(page["x_hat"].derivative, closed @ page["x_hat"] + L @ page["y"]), say="observer_closed")
     page.define("A_c", closed, shown, say="compensator_matrix")
+    draw_compensator(page)
 
 
 def _transfer_function(page: Page, design: CompensatorDesign) -> None:
@@ -179,16 +181,17 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
 def return_path(page: Page, design: OutputFeedback) -> None:
     """P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
-    page.diagram("loop", plant=plant_form, compensator=page.value(design.answer["F"]))
     form = design.single_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     factors = page.term(formula_of_factored(form))
     page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
+    draw_loop(page, plant_form, page.value(design.answer["F"]))
     unity = page.term(formula_of_factored(design.unity_loop))
     around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
     page.define("G_r", around, unity, say="unity_feedback", closing=False)
+    draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
     polynomial = design.loop_polynomial.value
     if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):
         page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
@@ -204,7 +207,6 @@ def return_path_of_several(page: Page, design: OutputFeedback) -> None:
         response = response + page["D"]
     P = Matrix.of([[design.plant_function]]) if isinstance(design.plant_function, Scalar) else design.plant_function
     define_or_hold(page, "P", response, P, "plant_transfer")
-    page.diagram("loop", plant=page["P"], compensator=page["F"])
     formula = (page.identity(plant.outputs) + page["P"] @ page["F"]).inverse @ page["P"]
     entries = [[page.term(formula_of_factored(entry)) for entry in row] for row in design.loop_of_several]
     loop = Matrix.of([[entry.value for entry in row] for row in design.loop_of_several])
@@ -212,6 +214,7 @@ def return_path_of_several(page: Page, design: OutputFeedback) -> None:
     page.define("G_cl", formula, *shown, say="return_path", answer=True, closing=False)
     page.conclude_silently(relation(page["G_cl"], loop))
     page.conclude("loop_matrix_poles")
+    draw_loop(page, page["P"], page["F"])
 
 
 def _plant(page: Page, design: OutputFeedback) -> Term:
@@ -273,12 +276,12 @@ class Namer:
 def named_return_path(page: Page, design: OutputFeedback, own: Term) -> None:
     """P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
     _plant(page, design)
-    page.diagram("loop", plant=page["P"], compensator=page["F"])
     numerator, _ = design.plant_transfer
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     product = page.value(numerator) @ own / (page["phi_c"] @ page["phi_o"])
     page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
     page.conclude("loop_polynomial")
+    draw_loop(page, page["P"], page["F"])
 
 
 def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:

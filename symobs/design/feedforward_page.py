@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored
 from symobs.design.compensator_page import MATRIX
+from symobs.design.drawings import draw_feedforward
 from symobs.design.estimate_pages import is_ill_posed, write_both_gains
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
@@ -33,6 +34,7 @@ def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
             return
         _loop(page, design, minimal=minimal)
         _gain(page, design)
+        draw_feedforward(page, minimal=minimal)
 
 
 def _at_rest(page: Page) -> Term:

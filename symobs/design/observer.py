@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
+from symobs.design.drawings import draw_collected, draw_copy
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
 from symobs.design.matching import matched_gain
@@ -91,7 +92,9 @@ class ObserverDesign(GainDesign):
             if by_ansatz:
                 write_found(page)
             elif self.answer["L"] is not None:
-                write_observer(page)
+                write_observer(page, drawn=True)
+            if self.answer["L"] is not None:
+                draw_collected(page)
 
 
 def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
@@ -108,7 +111,7 @@ def page_style(method_name: str, plant: StateSpace, *, several: bool = False) ->
 _CANONICAL_PAGES, _PARAMETRIC_CANONICAL_PAGES = 4, 2
 
 
-def write_observer(page: Page) -> None:
+def write_observer(page: Page, *, drawn: bool = False) -> None:
     """Write the observer in both forms and its error equation, each line checked on signals."""
     m = page.plant.matrices
     A, C, L, x_hat, y = (page[name] for name in ("A", "C", "L", "x_hat", "y"))
@@ -117,6 +120,8 @@ def write_observer(page: Page) -> None:
         model = model + page["B"] @ page["u"]
     innovation = y - predicted - page["D"] @ page["u"] if m.has_feedthrough else y - predicted
     page.dynamics("x_hat", model + L @ innovation, say="observer_equation")
+    if drawn:
+        draw_copy(page)
     page.signal("e", page["x"] - page["x_hat"], silent=True)
     closed = A - L @ C
     page.equal(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
 from symobs.conditions import vanishing_factors
+from symobs.design.drawings import draw_minimal_order
 from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import OBSERVER, define_test_matrix
 from symobs.design.names import taken_names
@@ -25,6 +26,8 @@ def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
     """Write data, test, gain, and the observer without the derivative of the output."""
     given(page, ("observer", design.desired))
     write_observer_of_rest(page, design)
+    if design.answer["L"] is not None:
+        draw_minimal_order(page)
 
 
 def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import formula_of_factored
+from symobs.design.drawings import draw_tracking
 from symobs.design.estimate_pages import is_ill_posed, write_both_gains
 from symobs.design.minimal_order_page import partitioned_gain
 from symobs.design.reduced_order_observer import ReducedOrderObserver
@@ -28,6 +29,7 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
             _law(page, design)
         _gain(page, design)
         if design.has_gains and design.answer["K_d"] is not None:
+            draw_tracking(page, minimal=isinstance(loop.estimator, ReducedOrderObserver))
             _errors(page, design)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from symobs.phrases import (
     compensation,
     coordinates,
+    diagrams,
     duality,
     families,
     feedforward,
@@ -54,6 +55,7 @@ _MODULES = (
     routh,
     regions,
     pictures,
+    diagrams,
     questions,
 )
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import string
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.horizons import INFINITE, read_horizon
 from symobs.analysis.pages import formula_of_factored, given, state_signs
-from symobs.derivation import Note, Section
+from symobs.derivation import Note, Section, translated
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
 from symobs.formula import Names, Roots
@@ -52,10 +53,10 @@ class Question(Document):
 
     page: Derivation | None = None
 
-    @property
+    @cached_property
     def derivations(self) -> tuple[Derivation, ...]:
-        """The page that states data and tasks."""
-        return (self.page,) if self.page is not None else ()
+        """The page that states data and tasks, in the signs of the convention."""
+        return (translated(self.page, self.convention),) if self.page is not None else ()
 
 
 def question_of(problem: Problem) -> Question:
@@ -70,7 +71,7 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
-    return Question(problem.title, problem.source, (), page=page.derivation())
+    return Question(problem.title, problem.source, (), problem.convention, page=page.derivation())
 
 
 def _has(asked: Iterable[tuple[Task, Mapping[str, Any]]], name: str) -> bool:

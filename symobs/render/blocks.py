@@ -13,6 +13,7 @@ from symobs.formula import Formula, Relation, Roots
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from symobs.flow import Label
     from symobs.picture import Picture
     from symobs.region.routh import RouthTable
 
@@ -74,10 +75,10 @@ class Caution:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """A block diagram known by name, with the formulas that label its boxes."""
+    """A block diagram: a figure of `flow` by its name, with the formulas and equations that label it."""
 
     name: str
-    labels: tuple[tuple[str, Formula], ...]
+    labels: tuple[tuple[str, Label], ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,16 +7,14 @@ the browser's own background.
 
 from __future__ import annotations
 
-import re
-import unicodedata
-from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
 from symobs.render.plots import scene_of
 from symobs.render.plots_caption import below, caption
 from symobs.render.plots_rows import ABOVE, NARROWEST, ROW, rows_of, spaced, words_of
 from symobs.render.scene import FONT_SIZE, RADIUS, STYLES, Box, Sign, arrow_head, coordinate
+from symobs.render.svg_text import FONTS, Piece, spans, width_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -38,23 +36,6 @@ _STYLE = (
     ".symobs-picture .open{fill:var(--symobs-paper,Canvas)}"
 )
 _OWN_FILE = "svg{color-scheme:light dark;color:CanvasText}"
-_FONTS = "'STIX Two Text','Latin Modern Roman','Cambria','Times New Roman','DejaVu Serif',serif"
-#: Sub- and superscripts: their size, and how far they are lowered, in parts of the size of the font.
-_SCRIPT, _LOWERED = 0.72, {"sub": 0.2, "super": -0.36, "": 0.0}
-#: Names of several letters, such as Re, stand upright.
-_WORDS = re.compile(r"[A-Za-z]{2,}")
-_SPECIAL_WIDTHS = {
-    **dict.fromkeys("ijlIft.,:;!|'()[]/ ", 0.36),
-    **dict.fromkeys("mwMW", 0.9),
-    **dict.fromkeys("+−=<>≤≥≠±", 0.68),
-}
-
-
-class Piece(NamedTuple):
-    """A part of a line of text; letters of mathematics are set in italics."""
-
-    text: str
-    is_math: bool
 
 
 def svg_scene(picture: Picture, printer: TextPrinter) -> Scene:
@@ -100,14 +81,6 @@ def _mathematics(content: Formula | Relation, printer: TextPrinter) -> Piece:
     return Piece(printer.inline(content).replace("-", "−"), True)  # noqa: FBT003
 
 
-def _width(pieces: Iterable[Piece]) -> float:
-    return FONT_SIZE * sum(
-        (_SCRIPT if level else 1.0) * _SPECIAL_WIDTHS.get(character, 0.56)
-        for piece in pieces
-        for character, level, _ in _characters(piece)
-    )
-
-
 # -- elements ---------------------------------------------------------------------------------------------------------
 
 
@@ -117,7 +90,7 @@ def _element(whole: Box, parts: Iterable[str], title: str, style: str) -> str:
     size = f'width="{coordinate(_PIXELS * width)}" height="{coordinate(_PIXELS * height)}"'
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="symobs-picture" role="img" viewBox="{box}" {size} '
-        f'font-family="{_FONTS}" font-size="{FONT_SIZE:g}" fill="none" stroke-linejoin="round">'
+        f'font-family="{FONTS}" font-size="{FONT_SIZE:g}" fill="none" stroke-linejoin="round">'
     )
     named = [f"<title>{escape(title)}</title>"] if title else []
     return "\n".join([head, *named, f"<style>{style}</style>", *parts, "</svg>"])
@@ -180,30 +153,13 @@ def _path(points: Iterable[Point]) -> str:
 
 
 def _written(place: Point, anchor: str, pieces: Iterable[Piece]) -> str:
-    """A text at its baseline; scripts are lowered or raised and the rest of the line put back."""
+    """A text at its baseline."""
     x, y = coordinate(place[0]), coordinate(0.3 * FONT_SIZE - place[1])
-    spans: list[str] = []
-    before = 0.0
-    every = (character for piece in pieces for character in _characters(piece))
-    for (level, is_italic), run in groupby(every, key=lambda item: item[1:]):
-        text = escape("".join(character for character, _, _ in run))
-        lowered = _LOWERED[level] * FONT_SIZE
-        attributes = [f'dy="{coordinate(lowered - before)}"'] if lowered != before else []
-        attributes += [f'font-size="{coordinate(_SCRIPT * FONT_SIZE)}"'] if level else []
-        attributes += ['font-style="italic"'] if is_italic else []
-        spans.append(f"<tspan {' '.join(attributes)}>{text}</tspan>" if attributes else text)
-        before = lowered
-    return f'<text x="{x}" y="{y}" text-anchor="{anchor}" fill="currentColor">{"".join(spans)}</text>'
+    return f'<text x="{x}" y="{y}" text-anchor="{anchor}" fill="currentColor">{spans(pieces, FONT_SIZE)}</text>'
 
 
-def _characters(piece: Piece) -> Iterator[tuple[str, str, bool]]:
-    """Yield every character, whether it is a sub- or superscript, and whether it is set in italics."""
-    words = {place for word in _WORDS.finditer(piece.text) for place in range(*word.span())}
-    for place, character in enumerate(piece.text):
-        form = unicodedata.decomposition(character)
-        level = {"<sub>": "sub", "<super>": "super"}.get(form.partition(" ")[0], "")
-        plain = unicodedata.normalize("NFKC", character) if level else character
-        yield plain, level, piece.is_math and plain.isalpha() and place not in words
+def _width(pieces: Iterable[Piece]) -> float:
+    return width_of(pieces, FONT_SIZE)
 
 
 def _caption_rows(words: Inlines, whole: Box, printer: TextPrinter) -> list[list[Piece]]:
