@@ -54,6 +54,7 @@ if TYPE_CHECKING:
 
     from symobs.convention import Convention
     from symobs.derivation.check import Derivation
+    from symobs.flow import Label
     from symobs.formula import Environment
 
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
@@ -82,10 +83,17 @@ def _in_signs(item: Any, turned: Turned) -> Any:
         case Shown(formula, value):
             return Shown(*turned.relation(Relation((formula, value), ("=",))).members)
         case Diagram(labels=labels):
-            return replace(item, labels=tuple((name, turned.whole(label)) for name, label in labels))
+            signed = tuple((name, _label_in_signs(label, turned)) for name, label in labels)
+            return replace(item, labels=signed, sentence=_in_signs(item.sentence, turned))
     if isinstance(item, Formula):
         return turned.formula(item)
     return _rebuilt(item, lambda part: _in_signs(part, turned))
+
+
+def _label_in_signs(label: Label, turned: Turned) -> Label:
+    """Return what labels a box or a wire, a gain with its sign."""
+    found: Label = _in_signs(label, turned) if isinstance(label, Together) else turned.whole(label)
+    return found
 
 
 def _rebuilt(item: Any, of_part: Callable[[Any], Any]) -> Any:

@@ -34,7 +34,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex
+from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -77,6 +77,11 @@ class Printer(Glyphs[B]):
         """Return the LaTeX of a letter, its variable put in, or of a parameter."""
         form = self.letters.get(name)
         return form.latex.replace("{v}", self.variable) if form else symbol_latex(name, self.symbols.get(name))
+
+    def letter_text(self, name: str) -> str:
+        """Return a letter as a terminal shows it, its variable put in, or a parameter."""
+        form = self.letters.get(name)
+        return form.text.replace("{v}", self.variable) if form else symbol_text(name)
 
     def function_latex(self, name: str) -> str:
         """Return the LaTeX of a function's name."""

@@ -84,8 +84,7 @@ class TextPrinter(Printer[TextBox]):
 
     def letter(self, name: str, mark: str) -> TextBox:
         """A letter; ẋ, xₖ, xₖ₊₁."""
-        form = self.letters.get(name)
-        text = form.text.replace("{v}", self.variable) if form else symbol_text(name)
+        text = self.letter_text(name)
         if mark == "dot":
             dotted = unicodedata.normalize("NFC", f"{text}\u0307")
             return text_box(dotted if len(dotted) == 1 else f"d{text}/dt", Level.POWER)
