@@ -43,6 +43,7 @@ FLOORS = {
     "page": 6,
     "method": 7,
     "analysis": 8,
+    "sheet": 8,
     "design": 9,
     "render": 9,
     "viewed": 8,

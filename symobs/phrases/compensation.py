@@ -77,3 +77,7 @@ RESTS_ON: dict[str, str] = {
     "compensator_stable_low": "hurwitz",
     "compensator_unstable_low": "hurwitz",
 }
+
+SPELLS_OUT = ("named_entries", "with_coefficients")
+
+EXPLAINS = ("similar_loops",)

@@ -108,3 +108,17 @@ RESTS_ON: dict[str, str] = {
     "last_column": "ackermann",
     "last_row": "ackermann",
 }
+
+EXPLAINS = (
+    "assignable_observer",
+    "assignable_state_feedback",
+    "already_canonical",
+    "null_vectors_observer",
+    "null_vectors_state_feedback",
+    "row_observer",
+    "row_state_feedback",
+    "row_reduced_observer",
+    "row_reduced_state_feedback",
+)
+
+SPELLS_OUT = ("coefficients",)

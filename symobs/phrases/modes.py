@@ -76,3 +76,14 @@ RESTS_ON: dict[str, str] = {
     "means_stabilizability": "detectability",
     "means_lyapunov": "lyapunov",
 }
+
+EXPLAINS = (
+    "asks_detectability_continuous",
+    "asks_stabilizability_continuous",
+    "asks_detectability_discrete",
+    "asks_stabilizability_discrete",
+    "means_detectability",
+    "means_stabilizability",
+    "pbh_asks_observability",
+    "pbh_asks_controllability",
+)

@@ -50,3 +50,5 @@ RESTS_ON: dict[str, str] = {
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",
 }
+
+EXPLAINS = ("first_part_measures", "mere_copy")

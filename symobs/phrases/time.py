@@ -98,3 +98,8 @@ RESTS_ON: dict[str, str] = {
 }
 
 NAMING = ("no_closed_form",)
+
+EXPLAINS = (
+    "exponential_sum",
+    "gramian_integral",
+)

@@ -7,6 +7,7 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import (
@@ -44,6 +45,7 @@ from symobs.render.blocks import (
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
+from symobs.render.detail import at_detail
 from symobs.render.prose import filled, joined, with_reference
 
 if TYPE_CHECKING:
@@ -58,6 +60,9 @@ if TYPE_CHECKING:
     from symobs.render.printer import Printer
 
 P = TypeVar("P", bound="Printer[Any]")
+
+#: The sections of a question.
+_UNNUMBERED = {"task", "tasks"}
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
@@ -78,31 +83,29 @@ def narrate(document: Document) -> tuple[Block, ...]:
     """Return the blocks of a document; a derivation with a false line raises before a word is written."""
     for derivation in document.derivations:
         derivation.check()
-    numbers = numbered(document)
+    parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
+    numbers = numbered(parts)
     page = _Page(document.convention, numbers=numbers)
     page.blocks.append(_title(document))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
-    together, apart = _statements(document)
+    together, apart = _statements(parts)
     page.tell_given(together)
-    for index, derivation in enumerate(document.derivations):
+    for index, steps in enumerate(parts):
         if index in apart:
             page.told.clear()
             page.tell_given(apart[index])
-        for step in derivation.steps:
+        for step in steps:
             if not _is_statement(step):
                 page.tell_step(step)
-        page.told |= _inside(derivation.steps)
+        page.told |= _inside(steps)
     page.blocks += _sources(numbers)
     return _punctuated(page.blocks)
 
 
-def numbered(document: Document) -> dict[str, int]:
+def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
     """Return the theorems that the sentences appeal to, numbered in the order of the page."""
     keys = dict.fromkeys(
-        RESTS_ON[sentence.key]
-        for derivation in document.derivations
-        for sentence in _sentences(derivation.steps)
-        if sentence.key in RESTS_ON
+        RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
     )
     return {key: number for number, key in enumerate(keys, 1)}
 
@@ -115,13 +118,13 @@ def _sources(numbers: Mapping[str, int]) -> list[Block]:
     return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
 
 
-def _statements(document: Document) -> tuple[list[Step], dict[int, list[Step]]]:
+def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
     """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
     seen: dict[Formula, Relation] = {}
     together: list[Step] = []
     apart: dict[int, list[Step]] = {}
-    for index, derivation in enumerate(document.derivations):
-        statement = [step for step in derivation.steps if _is_statement(step)]
+    for index, steps in enumerate(parts):
+        statement = [step for step in steps if _is_statement(step)]
         relations = [relation for step in statement for relation in _given_relations(step)]
         if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
             apart[index] = statement
@@ -276,8 +279,9 @@ class _Page:
                 self.tell_section(title, steps)
 
     def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
-        self.numbers[-1] += 1
-        number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
+        is_numbered = self.numbered and title.key not in _UNNUMBERED
+        self.numbers[-1] += is_numbered
+        number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         self.blocks.append(Heading(number, filled(title, self.convention)))
         self.numbers.append(0)
         for step in steps:
@@ -373,7 +377,7 @@ def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
     A comma where the sentence goes on in small letters after it, else a full stop.
     """
     punctuated: list[Block] = []
-    for block, following in zip(blocks, [*blocks[1:], None], strict=True):
+    for block, following in zip_longest(blocks, blocks[1:]):
         if isinstance(block, Display) and not block.boxed:
             goes_on = isinstance(following, Paragraph) and _starts_small(following.inlines)
             punctuated.append(replace(block, closing="," if goes_on else "."))
