@@ -26,6 +26,20 @@ TOP: dict[str, dict[str, Any]] = {
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
+    "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
+}
+#: What one entry of [[printed]] may say.
+PRINTED: dict[str, dict[str, Any]] = {
+    "where": {"description": "the place in the source", "type": "string"},
+    "erratum": {"description": "the id of the erratum, where it is a known one", "type": "string"},
+    "convention": {"description": "the convention of its letters, where it is not the file's", "type": "string"},
+    "relation": {"description": 'an equation: "A + M C = [-3 1; -2 0]"', "type": "string"},
+    "let": {
+        "description": "letters of this entry alone, and what they stand for",
+        "type": "object",
+        "additionalProperties": {"type": "string"},
+    },
+    "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
 }
 PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
 
@@ -61,6 +75,15 @@ def schema() -> dict[str, Any]:
             "additionalProperties": False,
         },
         "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
+        "printed": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": PRINTED,
+                "additionalProperties": False,
+                "oneOf": [{"required": ["relation"]}, {"required": ["expect"]}],
+            },
+        },
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
