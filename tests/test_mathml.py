@@ -6,7 +6,7 @@ import random
 import re
 import unicodedata
 import xml.etree.ElementTree as ET
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING
 
 import pytest
@@ -26,8 +26,8 @@ from tests.test_printers import (
     Reader,
     Token,
     at_point,
-    displays,
     equation,
+    hostile_members,
     lit,
     matrix_formula,
     polynomial,
@@ -67,7 +67,7 @@ def tokens_of(nodes: Sequence[ET.Element]) -> list[Token]:
     outer: list[Token] = []
     listed: list[list[list[Token]]] = []
     for node in nodes:
-        sign = node.text if node.tag == "mo" else ""
+        sign = node.text if node.tag == "mo" else node[0].text if node.tag == "msup" else ""
         if sign == "[":
             listed, tokens, outer = [[]], [], tokens
         elif sign in {",", ";", "]"} and listed:
@@ -77,6 +77,7 @@ def tokens_of(nodes: Sequence[ET.Element]) -> list[Token]:
                 listed.append([])
             elif sign == "]":
                 tokens, listed = [*outer, Token("table", listed)], []
+                tokens += [power(node[1])] if node.tag == "msup" else []
         else:
             tokens += tokens_of_one(node)
     return merged(tokens)
@@ -205,8 +206,8 @@ def test_a_long_number_loses_no_digit() -> None:
 
 
 def test_long_displays_are_made_of_elements_that_browsers_know() -> None:
-    for display in displays(random.Random(6), MathmlPrinter()):  # noqa: S311
-        assert list(faults(display)) == []
+    for member in islice(hostile_members(random.Random(6)), 0, None, 3):  # noqa: S311
+        assert list(faults(MathmlPrinter().display([equation(K, A, member)], boxed=True))) == []
 
 
 def test_a_display_that_cannot_be_broken_says_how_wide_it_is() -> None:
