@@ -145,6 +145,7 @@ def test_a_fragment_restyles_nothing_around_it() -> None:
     assert fragment.startswith('<div class="symobs">')
     assert "<html" not in fragment
     assert "<h1" not in fragment
+    assert " id=" not in fragment
 
 
 def test_parts_of_one_page_have_ids_of_their_own() -> None:

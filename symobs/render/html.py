@@ -103,7 +103,8 @@ class HtmlFragment:
 
     def render(self, document: Document) -> str:
         """Return the body."""
-        body = HtmlWriter(printer_for(document, MathmlPrinter), level=2).body(narrate(document))
+        writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=None, level=2)
+        body = writer.body(narrate(document))
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
 
 
@@ -143,10 +144,11 @@ def plain(text: str) -> str:
 class HtmlWriter:
     """Writes blocks as HTML: the text around the mathematics, which the printer writes."""
 
-    def __init__(self, printer: MathmlPrinter, *, prefix: str = "", level: int = 1, inset: float = 0.0) -> None:
+    def __init__(self, printer: MathmlPrinter, *, prefix: str | None = "", level: int = 1, inset: float = 0.0) -> None:
         """Write mathematics with `printer`, on lines shorter by `inset` em.
 
-        A title is a heading of `level`, and `prefix` begins every id: parts of one page are told apart by it.
+        A title is a heading of `level`, and `prefix` begins every id: parts of one page are told apart by it.  Without a
+        prefix there are no ids, since nobody knows the page around.
         """
         self.printer = copy(printer)
         self.printer.width = printer.width - inset
@@ -183,7 +185,8 @@ class HtmlWriter:
             case PictureBlock():
                 return self._picture(block)
             case CaseBlock(label, blocks):
-                inside = HtmlWriter(self.printer, prefix=f"{self.prefix}case-", level=self.level + 1, inset=_INSET)
+                prefix = None if self.prefix is None else f"{self.prefix}case-"
+                inside = HtmlWriter(self.printer, prefix=prefix, level=self.level + 1, inset=_INSET)
                 inside.unnumbered = self.unnumbered
                 label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
@@ -206,8 +209,11 @@ class HtmlWriter:
     def _heading(self, number: str, words: str) -> str:
         """A heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
         depth = min(6, self.level + max(1, number.count(".")))
+        words = f"{number} {words}".strip().removesuffix(".")
+        if self.prefix is None:
+            return f"<h{depth}>{words}</h{depth}>"
         place = number.rstrip(".").replace(".", "-") or f"part-{next(self.unnumbered)}"
-        return f'<h{depth} id="{self.prefix}s-{place}">{f"{number} {words}".strip().removesuffix(".")}</h{depth}>'
+        return f'<h{depth} id="{self.prefix}s-{place}">{words}</h{depth}>'
 
     def _display(self, mathematics: str) -> str:
         return f'<div class="display">{mathematics}</div>'
