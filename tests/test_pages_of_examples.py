@@ -43,7 +43,7 @@ def documents() -> Iterator[tuple[str, Document]]:
 
 _COMMANDS = {"varphi": "φ", "varepsilon": "ε", "lambda": "λ", "Lambda": "Λ", "le": "≤", "ge": "≥", "neq": "≠"}
 _COMMANDS |= {"not": "≢", "equiv": "", "sim": "\N{TILDE OPERATOR}", "ast": "\N{ASTERISK OPERATOR}", "pm": "±"}
-_COMMANDS |= {"int": "∫", "sum": "∑", "cdot": "⋅", "times": "×", "ldots": "..."}
+_COMMANDS |= {"approx": "≈", "int": "∫", "sum": "∑", "cdot": "⋅", "times": "×", "ldots": "..."}
 _COMMANDS |= {
     name: unicodedata.lookup(f"GREEK {'SMALL' if name.islower() else 'CAPITAL'} LETTER {name.upper()}")
     for name in GREEK
