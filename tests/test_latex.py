@@ -91,6 +91,7 @@ def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> examp
         ("o\u0308", "ö"),
         ("state x\u0302 and ẋ of ω", r"state $\hat x$ and $\dot x$ of $\omega$"),
         ("1 − 2 – 3", "1 $-$ 2 -- 3"),
+        ("a\N{NO-BREAK SPACE}[1]", "a~[1]"),
         ("漢 \ud800 \U0001f600", "? ? ?"),
         ("\u202eright to left\u200b", "right to left"),
         ("a\u0301\u0302\u0303", "?"),

@@ -15,6 +15,7 @@ from typing import Any, NoReturn
 
 import click
 
+from symobs.audit_command import command as audit_command
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write
 
@@ -341,6 +342,7 @@ def _templates() -> list[Path]:
 
 #: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
 _COLLECTED_AFTER = 50_000
+cli.add_command(audit_command(_read, _say))
 
 
 def main() -> NoReturn:

@@ -212,12 +212,13 @@ def _denominators(values: Iterable[Any]) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, results, and how they are told and set."""
+    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
 
     title: str
     source: str
     results: tuple[Result, ...]
     convention: Convention = STANDARD
+    text: str = ""
     detail: str = field(default="full", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)
 

@@ -46,7 +46,7 @@ from symobs.render.blocks import (
 )
 from symobs.render.conventions import letters_used, stated_conventions
 from symobs.render.detail import at_detail
-from symobs.render.prose import filled, joined
+from symobs.render.prose import filled, joined, with_reference
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -84,8 +84,10 @@ def narrate(document: Document) -> tuple[Block, ...]:
     for derivation in document.derivations:
         derivation.check()
     parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
-    page = _Page(document.convention)
+    numbers = numbered(parts)
+    page = _Page(document.convention, numbers=numbers)
     page.blocks.append(_title(document))
+    page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
     page.tell_given(together)
     for index, steps in enumerate(parts):
@@ -96,19 +98,24 @@ def narrate(document: Document) -> tuple[Block, ...]:
             if not _is_statement(step):
                 page.tell_step(step)
         page.told |= _inside(steps)
-    page.blocks += _sources(parts)
+    page.blocks += _sources(numbers)
     return _punctuated(page.blocks)
 
 
-def _sources(parts: Sequence[Sequence[Step]]) -> list[Block]:
-    """Return the closing paragraph: the theorems that the sentences appeal to, each with its source."""
+def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
+    """Return the theorems that the sentences appeal to, numbered in the order of the page."""
     keys = dict.fromkeys(
         RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
     )
-    if not keys:
+    return {key: number for number, key in enumerate(keys, 1)}
+
+
+def _sources(numbers: Mapping[str, int]) -> list[Block]:
+    """Return the closing paragraph: each theorem under its number, with its source."""
+    if not numbers:
         return []
-    listed = "; ".join(f"{THEOREMS[key].name}: {THEOREMS[key].source}" for key in keys)
-    return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",), warns=False)]
+    listed = "; ".join(f"[{number}] {THEOREMS[key].name}: {THEOREMS[key].source}" for key, number in numbers.items())
+    return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
 
 
 def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
@@ -173,10 +180,16 @@ class _Page:
     """The blocks written so far, and what the next ones depend on."""
 
     def __init__(
-        self, convention: Convention, *, given: Mapping[Formula, Relation] | None = None, numbered: bool = True
+        self,
+        convention: Convention,
+        *,
+        given: Mapping[Formula, Relation] | None = None,
+        numbered: bool = True,
+        numbers: Mapping[str, int] | None = None,
     ) -> None:
         self.convention = convention
         self.blocks: list[Block] = []
+        self.theorems = dict(numbers or {})
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.told: set[Step] = set()
@@ -286,7 +299,7 @@ class _Page:
 
     def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
-        inner = _Page(self.convention, given=self.given, numbered=False)
+        inner = _Page(self.convention, given=self.given, numbered=False, numbers=self.theorems)
         inner.say(sentence)
         inner.tell(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
@@ -298,7 +311,7 @@ class _Page:
         """Add a sentence, to the paragraph before it where there is one."""
         if sentence is None:
             return
-        inlines = filled(sentence, self.convention)
+        inlines = with_reference(filled(sentence, self.convention), self.theorems.get(RESTS_ON.get(sentence.key, "")))
         goes_on = sentence.key not in OPENS
         if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
             self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))

@@ -135,7 +135,21 @@ class TextWriter:
         if isinstance(part, Roots):
             return ", ".join(root.replace(" ", _NO_BREAK) for root in listed(part, self.printer, TEXT))
         written = self.printer.inline(part)
-        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else written
+        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else _kept_inside(written)
+
+
+def _kept_inside(written: str) -> str:
+    """Return a formula that breaks outside its parentheses and brackets only, unless one of them is itself too long."""
+    depth, start, kept = 0, 0, list(written)
+    for place, character in enumerate(written):
+        if character in "([":
+            start = start if depth else place
+            depth += 1
+        elif character in ")]":
+            depth -= 1
+            if not depth and text_width(written[start:place]) <= _KEPT_TOGETHER:
+                kept[start:place] = written[start:place].replace(" ", _NO_BREAK)
+    return "".join(kept)
 
 
 def printable(text: str) -> str:
