@@ -65,11 +65,11 @@ def test_every_promised_value_is_on_a_line_of_its_own() -> None:
 def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str], tmp_path: Path) -> None:
     require_tool("latexmk")
     require_tool("pdflatex")
-    (problem,) = blocks("toml")
+    problem, *_ = blocks("toml")
     for name in ("problem", "servo"):
         (tmp_path / f"{name}.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 13
+    assert len(lines) == 16
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
@@ -80,7 +80,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
 
 
 def test_the_template_replaces_one_block(tmp_path: Path) -> None:
-    (problem,) = blocks("toml")
+    problem, *_ = blocks("toml")
     (template,) = blocks("tex")
     (tmp_path / "problem.toml").write_text(problem, encoding="utf-8")
     (tmp_path / "article.tex").write_text(template, encoding="utf-8")
