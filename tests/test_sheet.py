@@ -302,7 +302,8 @@ def test_a_sheet_is_typeset_without_a_fault(folder: Path, require_tool: RequireT
     hostile = r"100 % of $x_1^2$ \input{x} & #~ " * 4
     text = f"title = {json.dumps(hostile)}\nsource = {json.dumps(hostile)}\n"
     (folder / "hostile.toml").write_text(text + (folder / "good.toml").read_text().partition("\n")[2], encoding="utf-8")
-    files = ["hostile.toml", "bad.toml", "no.toml", str(SERVO), str(REGION), "good.toml", "good.toml"]
+    gramian = ROOT / "worked_examples" / "third_order_gramian.toml"  # wide: functions of time in a matrix
+    files = ["hostile.toml", "bad.toml", "no.toml", str(SERVO), str(REGION), str(gramian), "good.toml"]
     run = inside("sheet", *files, "--title", hostile, folder=folder)
     faults, pages = typeset(run.out, folder, require_tool("pdflatex"), runs=2)
     assert faults == []
