@@ -86,10 +86,10 @@ class Html:
         pieces = [f"<h1>{plain(sheet.title)}</h1>"] if sheet.title else []
         pieces += [_contents(sheet)] if sheet.is_long else []
         for name, parts in sheet.chapters():
-            pieces.append(f'<h2 id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
+            pieces.append(f'<h2 class="chapter" id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
             for entry, part in parts:
                 place = f"{name}-{entry.number}"
-                pieces.append(f'<h3 id="{place}">{entry.number}. {plain(entry.title)}</h3>')
+                pieces.append(f'<h3 class="problem" id="{place}">{entry.number}. {plain(entry.title)}</h3>')
                 pieces.append(part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>")
         return page(sheet.title, "\n".join(pieces))
 
@@ -113,7 +113,7 @@ def _contents(sheet: Sheet) -> str:
     names = [name for name, _ in sheet.chapters()]
     rows = []
     for entry in sheet.entries:
-        links = [f'<a href="#{name}-{entry.number}">{PHRASES[f"sheet_{name}"].lower()}</a>' for name in names[1:]]
+        links = [f'<a href="#{name}-{entry.number}">{PHRASES["sheet_solution"]}</a>' for name in names[1:]]
         first = f'<a href="#{names[0]}-{entry.number}">{plain(entry.title)}</a>'
         rows.append(f"<li>{first}{''.join(f' ({link})' for link in links)}</li>")
     listed = "\n".join(rows)
