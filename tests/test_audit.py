@@ -341,6 +341,18 @@ def test_errors_of_all_files_are_told_together(files: dict[str, str]) -> None:
     assert sum(line.startswith(files["bad"]) for line in run.lines) == 2
 
 
+def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> None:
+    own = 'name = "lecture"\nfeedback = "u = K x_hat"\nobserver = "A + N C"\n[letters]\ne = "x_bar"\n'
+    (tmp_path / "lecture.toml").write_text(own, encoding="utf-8")
+    relations = ("N = [-19; -81]", "A + N C = [-19 1; -81 -1]", "x_bar' = (A + N C) x_bar", "N = [19; 81]")
+    printed = [{"relation": relation} for relation in relations]
+    (tmp_path / "file.json").write_text(problem(convention="lecture", printed=printed), encoding="utf-8")
+    run = inside("audit", "file.json", folder=tmp_path)
+    assert run.code == 4
+    assert "all signs are wrong" in run.out
+    assert run.out.endswith("4 printed equations, 1 wrong.\n")
+
+
 def test_a_problem_without_printed_equations_has_nothing_wrong(tmp_path: Path) -> None:
     assert inside("audit", str(ROOT / "worked_examples" / "bridge_circuit.toml"), folder=tmp_path).code == 0
 
