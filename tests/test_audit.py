@@ -14,13 +14,15 @@ from hypothesis import strategies as st
 from symobs.audit import audit, report
 from symobs.audit.differences import decimal_of
 from symobs.audit.grammar import every, read_relation
-from symobs.errors import ProblemErrors, SymobsError
+from symobs.errors import CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
 from tests.command_line import ROOT, SERVO, inside
 from tests.printed import finding, findings, problem
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from symobs.audit.grammar import Node
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [
@@ -248,6 +250,16 @@ def test_an_equation_is_written_as_it_is_read(left: str, right: str) -> None:
 def test_what_would_build_too_much_is_refused(relation: str) -> None:
     with pytest.raises(ProblemErrors):
         findings(relation)
+
+
+def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lie(left: Node, _right: Node, *_: object) -> tuple[Node, Node, str]:
+        return left, left.parts[0], "no reason"
+
+    monkeypatch.setattr("symobs.audit.findings.found_slip", lie)
+    with pytest.raises(ProblemErrors, match="does not hold") as raised:
+        findings("A + L C = A - B C")
+    assert isinstance(raised.value.errors[0], CertificateRejected)
 
 
 # -- files that cannot be read -----------------------------------------------------------------------------------------
