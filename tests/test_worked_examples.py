@@ -118,8 +118,8 @@ def test_boxes_of_a_drawing_hold_fractions() -> None:
     """The widths of the boxes are those of fractions, so written as quotients in a line they would overlap."""
     found, results = solved(next(path for path in FILES if path.stem == "output_feedback_servo"))
     page = str(render(found.document(results), "fragment"))
-    assert r"(P) {$\displaystyle \frac{1}{s(s+1)}$}" in page
-    assert r"(F) {$\displaystyle \frac{319s+400}{s^2+23s+161}$}" in page
+    assert r"{$\displaystyle \frac{1}{s(s+1)}$}" in page
+    assert r"{$\displaystyle \frac{319s+400}{s^2+23s+161}$}" in page
 
 
 # -- a spoiled expectation is noticed ----------------------------------------------------------------------------------
