@@ -164,6 +164,8 @@ MEASURED = """(() => {
     beyond: root.scrollWidth - root.clientWidth,
     unseen: all('math, svg, pre', element => box(element).width < 2 || box(element).height < 2),
     low: all('mtable:not([class])', table => !fenced(table)),
+    merged: all('mover', over => '.¯'.includes(over.lastElementChild.textContent[0])
+      && box(over.firstElementChild).top - box(over.lastElementChild).bottom < 1),
     ragged: all('mtable.aligned > mtr > mtd:first-child',
       cell => cell.lastElementChild && box(cell).right - box(cell.lastElementChild).right > 2),
     cut: all('p, .display, .table, pre, figure', element => element.scrollWidth > element.clientWidth),
@@ -185,7 +187,7 @@ def test_every_example_shows_in_a_browser(require_tool: Callable[[str], str], tm
             assert browser.requests() == [path.as_uri()], name
             wide: dict[str, Any] = browser.value(MEASURED)
             assert wide["beyond"] == 0, name
-            assert [wide[fault] for fault in ("unseen", "low", "ragged", "hidden")] == [[], [], [], []], name
+            assert [wide[fault] for fault in ("unseen", "low", "merged", "ragged", "hidden")] == [[]] * 5, name
             browser.size(NARROW)
             assert browser.value(MEASURED)["beyond"] == 0, name
             browser.media("print")

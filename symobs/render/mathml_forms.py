@@ -112,8 +112,8 @@ def indexed(part: Part, index: str) -> Part:
 
 
 def _over(base: str, mark: str) -> str:
-    """Put a mark over an element; dots are set as limits, for as accents browsers let them touch the letter."""
-    accent = "" if mark.startswith(".") else ' accent="true"'
+    """Put a mark over an element; bars and dots are set as limits, for as accents browsers let them touch the letter."""
+    accent = "" if mark[0] in ".¯" else ' accent="true"'
     return f'<mover{accent}>{base}<mo stretchy="false">{mark}</mo></mover>'
 
 
