@@ -68,14 +68,8 @@ class _Letters(TextPrinter):
 
 def svg(drawing: Drawing, printer: TextPrinter) -> str:
     """Return a drawing as an `svg` element to stand in a page."""
-    letters: TextPrinter = _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
-
-    def measure(label: Label) -> Point:
-        rows = _rows(label, letters)
-        return max(row.width for row in rows), sum(row.height for row in rows)
-
-    metrics = Metrics(measure, inside=(0.55, 0.3), smallest=2.0, junction=0.95, gap=(1.9, 1.1), beside=0.3, sign=1.2)
-    arrangement = arranged(drawing, metrics, _WIDTH, discrete=printer.discrete)
+    letters = _letters(printer)
+    arrangement = arranged(drawing, metrics_of(printer), _WIDTH, discrete=printer.discrete)
     left, top = -_MARGIN * _EM, -_MARGIN * _EM
     width, height = (_EM * (part + 2 * _MARGIN) for part in arrangement.size)
     box = " ".join(map(coordinate, (left, top, width, height)))
@@ -87,6 +81,21 @@ def svg(drawing: Drawing, printer: TextPrinter) -> str:
     return "\n".join(
         [head, f"<title>{escape(PHRASES['block_diagram'])}</title>", *_drawn(arrangement, letters), "</svg>"]
     )
+
+
+def metrics_of(printer: TextPrinter) -> Metrics:
+    """Return the measures of a drawing; the reader's fonts are not known."""
+    letters = _letters(printer)
+
+    def measure(label: Label) -> Point:
+        rows = _rows(label, letters)
+        return max(row.width for row in rows), sum(row.height for row in rows)
+
+    return Metrics(measure, inside=(0.55, 0.3), smallest=2.0, junction=0.95, gap=(1.9, 1.1), beside=0.3, sign=1.2)
+
+
+def _letters(printer: TextPrinter) -> TextPrinter:
+    return _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:
