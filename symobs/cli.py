@@ -35,10 +35,15 @@ class Tasks(click.Group):
     """The commands that stand in this file, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return all names; tasks come from the registry."""
-        from symobs.method import tasks  # noqa: PLC0415 - --help pays for it, --version does not
+        """Return all names."""
+        return [*super().list_commands(ctx), *_summaries()]
 
-        return [*super().list_commands(ctx), *sorted(tasks())]
+    def format_commands(self, _: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what every command does; those on tasks are read from the sources, which costs no kernel."""
+        own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()}
+        for title, listed in (("Commands", own), ("Tasks, each a command of its own", _summaries())):
+            with formatter.section(title):
+                formatter.write_dl(list(listed.items()))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command, made from the task's signature where it is a task."""
@@ -62,6 +67,14 @@ class Tasks(click.Group):
         return super().resolve_command(ctx, args)
 
 
+def _summaries() -> dict[str, str]:
+    """Return the tasks with what each does."""
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.contents import task_summaries  # noqa: PLC0415
+
+    return task_summaries(symobs.TASK_PACKAGES)
+
+
 def _version(ctx: click.Context, _: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's signature
     if value and not ctx.resilient_parsing:
         from importlib.metadata import PackageNotFoundError, version  # noqa: PLC0415
@@ -80,8 +93,9 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT_HELP = "latex (default), text, json, pdf, …"
+FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
+CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 
 
@@ -91,7 +105,15 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
-def solve(file: str, task_name: str | None, format_name: str | None, target: str | None, plot: str | None) -> None:
+@click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
+def solve(
+    file: str,
+    task_name: str | None,
+    format_name: str | None,
+    target: str | None,
+    plot: str | None,
+    convention_name: str | None,
+) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs.method import tasks  # noqa: PLC0415
     from symobs.problem import parse, validate  # noqa: PLC0415
@@ -100,7 +122,18 @@ def solve(file: str, task_name: str | None, format_name: str | None, target: str
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     _check_plot(plot, target)
-    _run(validate(parse(_read(file), file), task_name), chosen, target, plot, some=task_name is not None)
+    convention = _convention(convention_name)
+    found = validate(parse(_read(file), file), task_name, Path(file).parent)
+    _run(found, chosen, target, plot, convention, some=task_name is not None)
+
+
+def _convention(name: str | None) -> Any:
+    """Return the convention asked for, None for the file's own."""
+    if name is None:
+        return None
+    from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
+
+    return convention_named(name)
 
 
 def _check_plot(path: str | None, target: str | None) -> None:
@@ -113,7 +146,9 @@ def _check_plot(path: str | None, target: str | None) -> None:
             raise UsageError("the result is written to that file", where="--plot", repair="name another file")
 
 
-def _run(found: Any, format_name: str, target: str | None, plot: str | None, *, some: bool = False) -> None:
+def _run(
+    found: Any, format_name: str, target: str | None, plot: str | None, convention: Any, *, some: bool = False
+) -> None:
     """Solve a problem, write the document and the picture, and leave with the contract's exit code.
 
     With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.
@@ -122,9 +157,10 @@ def _run(found: Any, format_name: str, target: str | None, plot: str | None, *, 
     from symobs.method import render  # noqa: PLC0415
 
     results = found.solve(_progress(found))
-    expect = applicable(results, found.expect) if some else found.expect
-    unmet = mismatches(results, expect)
-    write(render(found.document(results), format_name), target)
+    viewed = found.viewed(results)
+    expect = applicable(viewed, found.expect) if some else found.expect
+    unmet = mismatches(viewed, expect)
+    write(render(found.document(results, convention), format_name), target)
     if plot is not None:
         from symobs.render.plot_files import picture_file  # noqa: PLC0415
 
@@ -219,6 +255,7 @@ def _task_command(task: Any) -> click.Command:
         click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
         click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
         click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
+        click.Option(["--convention", "convention_name"], metavar="NAME", help=CONVENTION_HELP),
     ]
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
     return click.Command(
@@ -245,8 +282,9 @@ def _run_task(task: Any, options: dict[str, Any]) -> None:
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
+    convention = _convention(options["convention_name"])
     try:
-        _run(validate(data), chosen, options["target"], options["plot"])
+        _run(validate(data), chosen, options["target"], options["plot"], convention)
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
@@ -287,9 +325,12 @@ def schema() -> None:
 
 
 @cli.command()
-def conventions() -> None:
-    """List the conventions a page can be written in."""
-    write("standard: u = −K x̂, observer matrix A − L C, error e = x − x̂, compensator F in negative feedback\n")
+@click.argument("name", required=False)
+def conventions(name: str | None) -> None:
+    """List the conventions a page can be written in, or print the file of the one called NAME."""
+    from symobs.convention.listing import file_of, listed  # noqa: PLC0415
+
+    write(listed() if name is None else file_of(name))
 
 
 @cli.group(invoke_without_command=True)

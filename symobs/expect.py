@@ -17,7 +17,7 @@ from symobs.expression.source import shown
 from symobs.formula import Environment, Literal, Relation
 
 if TYPE_CHECKING:
-    from symobs.method import Result
+    from symobs.viewed import Answered
 
 _RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
 _COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
@@ -27,7 +27,7 @@ _WORD = re.compile(r"[A-Za-z]+")
 _MOST_SHOWN = 200
 
 
-def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str]:
+def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[str]:
     """Return one line for each expected answer that is not met; raises `ProblemErrors` for what cannot be read.
 
     `[expect.TASK]` belongs to one task; other keys belong to every task that has the field, and at least one must.
@@ -49,7 +49,7 @@ def mismatches(results: Sequence[Result], expect: Mapping[str, Any]) -> list[str
     return lines
 
 
-def applicable(results: Sequence[Result], expect: Mapping[str, Any]) -> dict[str, Any]:
+def applicable(results: Sequence[Answered], expect: Mapping[str, Any]) -> dict[str, Any]:
     """Return those expected answers that belong to one of these results."""
     tasks = {result.task for result in results}
     fields = {name for result in results for name in _available(result)}
@@ -58,7 +58,7 @@ def applicable(results: Sequence[Result], expect: Mapping[str, Any]) -> dict[str
     }
 
 
-def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], errors: list[SymobsError]) -> list[str]:
+def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], errors: list[SymobsError]) -> list[str]:
     """Return the lines for one result; of answers that are not unique, the others are held against the one expected."""
     lines: list[str] = []
     chosen = result
@@ -79,7 +79,7 @@ def _held_against(result: Result, expected: Mapping[str, tuple[Any, str]], error
     return lines
 
 
-def _with_member(result: Result, name: str, entry: Any, where: str) -> Result:
+def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answered:
     """Return the result with another gain of its family, where that is what is expected; else the result itself."""
     answer = result.answer[name]
     if not isinstance(answer, Matrix) or result.fields.get("family") is None:
@@ -124,11 +124,11 @@ def _no_field(where: str, message: str, known: Sequence[str]) -> InputError:
     return InputError(message, where=where, repair=f"known fields are {', '.join(known)}")
 
 
-def _available(result: Result) -> list[str]:
+def _available(result: Answered) -> list[str]:
     return ["verdict", "conditions", *result.fields]
 
 
-def _found(result: Result, name: str) -> Any:
+def _found(result: Answered, name: str) -> Any:
     if name == "verdict":
         return result.verdict
     if name == "conditions":
@@ -136,7 +136,7 @@ def _found(result: Result, name: str) -> Any:
     return result.fields[name]
 
 
-def _names(result: Result) -> Any:
+def _names(result: Answered) -> Any:
     """Return the declared names, and those that the answers use by themselves, such as t and t0."""
     declared, plant = result.plant.symbols.names, result.plant
     if declared is None:
@@ -157,7 +157,7 @@ def _shown(value: Any) -> str:
     return "none" if value is None else str(value)
 
 
-def met(result: Result, name: str, expected: Any, where: str) -> bool:
+def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Tell whether an expected answer is the result's."""
     found, names, variable = _found(result, name), _names(result), result.plant.variable
     if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
@@ -191,7 +191,7 @@ def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
     return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])
 
 
-def _lists_agree(found: list[Any], expected: list[Any], result: Result, where: str) -> bool:
+def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
     names, variable = _names(result), result.plant.variable
     if not found or not expected:
         return not found and not expected
@@ -354,7 +354,7 @@ def _is_number(found: Complex | Root, expected: Complex) -> bool:
 # -- modes ----------------------------------------------------------------------------------------------------------
 
 
-def _modes_agree(found: list[Any], expected: list[Any], result: Result, where: str) -> bool:
+def _modes_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
     """Tell whether each expected mode is one of those found, each once; of a mode the keys given are compared."""
     waiting = list(found)
     for i, wanted in enumerate(expected):
@@ -366,7 +366,7 @@ def _modes_agree(found: list[Any], expected: list[Any], result: Result, where: s
     return not waiting
 
 
-def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Result, where: str) -> bool:
+def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str) -> bool:
     if not isinstance(wanted, Mapping) or not set(wanted) <= set(mode):
         return False
     names, variable = _names(result), result.plant.variable

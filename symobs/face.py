@@ -1,4 +1,4 @@
-"""What leaves the library: exact values as SymPy objects and as JSON."""
+"""What leaves the library: exact values as SymPy objects and as JSON, and the faces of a result."""
 
 from __future__ import annotations
 
@@ -11,6 +11,37 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
+
+
+class Faces:
+    """The formats of a result under names of their own, and what a notebook shows of it."""
+
+    def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
+        """Return the result in a format, in a convention."""
+        raise NotImplementedError
+
+    def to_latex(self) -> str:
+        """Return the derivation as a LaTeX article."""
+        return str(self.to("latex"))
+
+    def to_html(self) -> str:
+        """Return the derivation as an HTML page of its own."""
+        return str(self.to("html"))
+
+    def to_markdown(self) -> str:
+        """Return the derivation as Markdown."""
+        return str(self.to("markdown"))
+
+    def to_json(self) -> str:
+        """Return the result as JSON."""
+        return str(self.to("json"))
+
+    def _repr_latex_(self) -> str:
+        return str(self.to("fragment"))
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
+        kinds = {"plain": "text", "markdown": "markdown", "latex": "fragment", "html": "html_fragment"}
+        return {f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}
 
 
 def to_json(value: Any) -> Any:

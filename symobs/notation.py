@@ -18,6 +18,11 @@ class LetterForm:
     text: str
     spoken: str
 
+    @property
+    def alone(self) -> LetterForm:
+        """The form without the variable: of the function, not of its values."""
+        return LetterForm(self.latex.replace("({v})", ""), self.text.replace("({v})", ""), self.spoken)
+
 
 LETTERS: dict[str, LetterForm] = {
     "A": LetterForm("A", "A", "state matrix"),
@@ -264,9 +269,9 @@ GREEK = [
     "Psi",
     "Omega",
 ]
-_GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
-_GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name != "omicron"} | {"lam": r"\lambda", "omicron": "o"}
-_SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
+GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name != "omicron"} | {"lam": r"\lambda", "omicron": "o"}
+SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _NAME = re.compile(r"^([A-Za-z]+?)_?(\d*)((?:_[A-Za-z0-9]+)*)$")
 
 
@@ -275,7 +280,7 @@ def symbol_latex(name: str, declared: str | None = None) -> str:
     if declared:
         return declared
     stem, digits, rest = _split(name)
-    head = _GREEK_LATEX.get(stem) or (stem if len(stem) == 1 else rf"\mathit{{{stem}}}")
+    head = GREEK_LATEX.get(stem) or (stem if len(stem) == 1 else rf"\mathit{{{stem}}}")
     below = ",".join([digits, *rest] if digits else rest)
     return f"{head}_{{{below}}}" if below else head
 
@@ -295,9 +300,9 @@ def symbol_text(name: str, declared: str | None = None) -> str:
     if declared == sans_serif(name):
         return "".join(_SANS_SERIF.get(character, character) for character in name)
     stem, digits, rest = _split(name)
-    if rest or (len(stem) > 1 and stem not in _GREEK_LETTERS):
+    if rest or (len(stem) > 1 and stem not in GREEK_LETTERS):
         return name
-    return _GREEK_LETTERS.get(stem, stem) + digits.translate(_SUBSCRIPTS)
+    return GREEK_LETTERS.get(stem, stem) + digits.translate(SUBSCRIPTS)
 
 
 def _split(name: str) -> tuple[str, str, list[str]]:
@@ -306,16 +311,6 @@ def _split(name: str) -> tuple[str, str, list[str]]:
         return name.replace("_", ""), "", []
     stem, digits, rest = match.groups()
     return stem, digits, [part for part in rest.split("_") if part]
-
-
-def letter_latex(name: str, variable: str) -> str:
-    """Return a letter's LaTeX, its variable put in."""
-    return LETTERS[name].latex.replace("{v}", variable)
-
-
-def letter_text(name: str, variable: str) -> str:
-    """Return a letter as a terminal shows it."""
-    return LETTERS[name].text.replace("{v}", variable)
 
 
 @dataclass(frozen=True, slots=True)

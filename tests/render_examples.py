@@ -91,7 +91,7 @@ class HandWritten(Document):
 
 
 def document(*derivations: Derivation, title: str = "", source: str = "") -> HandWritten:
-    return HandWritten(title, source, (), derivations)
+    return HandWritten(title, source, (), written=derivations)
 
 
 def target_document() -> HandWritten:

@@ -354,6 +354,12 @@ def test_every_face_of_a_result_shows_one_page() -> None:
     bundle = result._repr_mimebundle_()
     assert result.to_latex() == result.to("latex")
     assert result.to_json() == result.to("json")
-    assert bundle == {"text/plain": result.to("text"), "text/latex": result._repr_latex_()}
+    assert (result.to_html(), result.to_markdown()) == (result.to("html"), result.to("markdown"))
+    assert bundle == {
+        "text/plain": result.to("text"),
+        "text/markdown": result.to("markdown"),
+        "text/latex": result._repr_latex_(),
+        "text/html": result.to("html_fragment"),
+    }
     assert {"L", "poles", "conditions", "derivation"} <= set(dir(result))
     assert repr(result).startswith("ObserverDesign(L=[19; 81], polynomial=s**2 + 20*s + 100, verdict='yes')")

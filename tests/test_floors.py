@@ -21,8 +21,10 @@ LONGEST = 400
 # A module imports from strictly lower floors; the modules of one package folder may import one another.
 FLOORS = {
     "errors": 0,
+    "contents": 0,
     "exact": 1,
     "notation": 1,
+    "convention": 2,
     "phrases": 1,
     "expression": 2,
     "formula": 2,
@@ -43,6 +45,7 @@ FLOORS = {
     "analysis": 8,
     "design": 9,
     "render": 9,
+    "viewed": 8,
     "expect": 10,
     "output": 11,
     "problem": 11,

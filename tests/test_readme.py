@@ -68,10 +68,11 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     (problem,) = blocks("toml")
     (tmp_path / "problem.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 6
+    assert len(lines) == 8
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
         assert run.out or "-o" in line
     assert (tmp_path / "region.svg").read_bytes().startswith(b"<")
+    assert (tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")

@@ -63,7 +63,8 @@ FORMAT = '''
 
 from typing import ClassVar
 
-from symobs.method import Document, output_format
+from symobs.method import Document
+from symobs.method import output_format
 
 
 @output_format

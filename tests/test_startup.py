@@ -52,6 +52,8 @@ def after(*arguments: str) -> set[str]:
         ["solve", str(SERVO)],
         ["solve", str(SERVO), "--format", "text"],
         ["solve", str(SERVO), "--format", "json"],
+        ["solve", str(SERVO), "--format", "html"],
+        ["solve", str(SERVO), "--format", "markdown"],
         ["observer", "--A", "[0 1; 0 -b]", "--C", "[1 0]", "--poles", "-p, -q"],
     ],
     ids=" ".join,
@@ -101,6 +103,16 @@ design.to_latex(), design.to_json(), design.verdict, repr(design)
     assert "sympy" in imported(f"{design}design.L\n{shown}")
 
 
-def test_json_needs_no_templates_and_text_neither() -> None:
-    for form in ("json", "text"):
+def test_only_latex_needs_its_templates() -> None:
+    for form in ("json", "text", "html", "markdown"):
         assert "jinja2" not in after("solve", str(SERVO), "--format", form)
+
+
+def test_help_lists_every_task_without_importing_one() -> None:
+    import symobs  # noqa: PLC0415 - what the list is held against
+    from symobs.contents import task_summaries  # noqa: PLC0415
+    from symobs.method import tasks  # noqa: PLC0415
+
+    assert task_summaries(symobs.TASK_PACKAGES) == {name: task.summary for name, task in sorted(tasks().items())}
+    found = after("--help")
+    assert not {name for name in found if name.startswith(("symobs.analysis", "symobs.design", "flint"))}

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from symobs.method import Result
     from symobs.problem import Problem
+    from symobs.viewed import Viewed
 
 FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 #: Rows of the catalogue of sources that the examples must cover.
@@ -63,7 +64,7 @@ def test_says_what_it_is(path: Path) -> None:
 def test_meets_its_expectations(path: Path) -> None:
     found, results = solved(path)
     assert [result.task for result in results] == [task.name for task in found.tasks]
-    assert mismatches(results, found.expect) == []
+    assert mismatches(found.viewed(results), found.expect) == []
 
 
 @every_file
@@ -189,7 +190,8 @@ def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
 
 @every_file
 def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[str, object], None]) -> None:
-    found, results = solved(path)
+    found, solutions = solved(path)
+    results = found.viewed(solutions)
     count = 0
     for place, expect in every_spoiled(found):
         lines = mismatches(results, expect)
@@ -205,18 +207,20 @@ def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[s
     assert count > len(found.expect) / 2
 
 
-def is_of_family(result: Result, place: str) -> bool:
+def is_of_family(viewed: Viewed, place: str) -> bool:
     """Tell whether an expected answer is a gain that is not unique."""
-    return place.rpartition(".")[2] in {"K", "L"} and result.fields.get("family") is not None
+    letter, _ = viewed.standard(place.rpartition(".")[2])
+    return letter in {"K", "L"} and viewed.result.fields.get("family") is not None
 
 
-def is_member(result: Result, place: str, expect: Mapping[str, Any]) -> bool:
+def is_member(viewed: Viewed, place: str, expect: Mapping[str, Any]) -> bool:
     """Tell whether a spoiled gain meets the claim all the same, there being many: by SymPy's own determinant."""
-    if not is_of_family(result, place):
+    if not is_of_family(viewed, place):
         return False
-    letter = place.rpartition(".")[2]
-    entry = expect.get(result.task, expect)[letter]
-    gain = rows(*[[sympy_scalar(parse_scalar(x), {}) for x in row] for row in entry])
+    result, own = viewed.result, place.rpartition(".")[2]
+    letter, sign = viewed.standard(own)
+    entry = expect.get(result.task, expect)[own]
+    gain = sign * rows(*[[sympy_scalar(parse_scalar(x), {}) for x in row] for row in entry])
     part, variable = part_with(result, letter), sympy.Symbol(result.plant.variable)
     A, moved = part.plant.A, gain * part.plant.C if letter == "L" else part.plant.B * gain
     if part.task == "reduced_order_observer":

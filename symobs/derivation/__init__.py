@@ -18,6 +18,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
+from symobs.derivation.translation import translated
 
 __all__ = [
     "Case",
@@ -36,4 +37,5 @@ __all__ = [
     "Survey",
     "Tabulate",
     "Where",
+    "translated",
 ]

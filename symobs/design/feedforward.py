@@ -59,6 +59,11 @@ class FeedforwardDesign(Result):
                 answer |= {"F": F[0, 0] if single else F, "transfer_function": T[0, 0] if single else T}
         return cls(plant, method_name, answer, loop)
 
+    @property
+    def has_reduced_observer(self) -> bool:
+        """The loop's estimator may be one."""
+        return self.loop.has_reduced_observer
+
     def claims(self) -> Iterator[Claim]:
         """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
         K, F, w, stuck = self.loop.answer["K"], self.answer["F"], self.answer["w"], self.answer["stuck"]

@@ -55,6 +55,11 @@ class MinimalOrderCompensator(OutputFeedback):
             answer["F"] = _function(feedback.plant, K, estimator)
         return cls(feedback.plant, method_name, answer, feedback, estimator)
 
+    @property
+    def has_reduced_observer(self) -> bool:
+        """The estimator is one."""
+        return True
+
     def claims(self) -> Iterator[Claim]:
         """Yield: K and L are the certified gains; F is what u = −K x̂ makes of y, or the law cannot be solved for u."""
         have = self.feedback.answer["K"] is not None and self.estimator.answer["L"] is not None

@@ -138,6 +138,11 @@ class ReducedOrderObserver(Result):
         inner = self.inner.with_answer("L", value)
         return type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
 
+    @property
+    def has_reduced_observer(self) -> bool:
+        """It is one."""
+        return True
+
     def claims(self) -> Iterator[Claim]:
         """Yield that z follows P x, that [C; P] is undone by M, and where the poles are."""
         plant, answer = self.plant, self.answer

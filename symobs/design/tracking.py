@@ -65,6 +65,11 @@ class TrackingDesign(Result):
             answer["w"] = left.select(range(B.shape[0]), [index]).T
         return cls(loop.plant, method_name, answer, loop, reference, start)
 
+    @property
+    def has_reduced_observer(self) -> bool:
+        """The loop's estimator may be one."""
+        return self.loop.has_reduced_observer
+
     def claims(self) -> Iterator[Claim]:
         """Yield that the reference has no part in the error, or that no K_d makes it so; and the error's polynomial."""
         K_d, w = self.answer["K_d"], self.answer["w"]

@@ -34,6 +34,7 @@ from symobs.formula.nodes import (
     with_children,
 )
 from symobs.formula.restricted import Restricted
+from symobs.formula.signs import Turned
 
 __all__ = [
     "Apply",
@@ -65,6 +66,7 @@ __all__ = [
     "Sum",
     "Together",
     "Transpose",
+    "Turned",
     "agree",
     "children",
     "contains",

@@ -3,6 +3,8 @@
 A file is never executed and never partly trusted: its size, its nesting and its keys are bounded before it is parsed.
 """
 
+from pathlib import Path
+
 from symobs.problem.keys import schema
 from symobs.problem.tables import MAX_BYTES, Decimal, parse
 from symobs.problem.validation import OPEN, Problem, validate
@@ -10,9 +12,9 @@ from symobs.problem.validation import OPEN, Problem, validate
 __all__ = ["MAX_BYTES", "OPEN", "Decimal", "Problem", "parse", "read", "schema", "validate"]
 
 
-def read(text: str, where: str = "problem") -> Problem:
+def read(text: str, where: str = "problem", folder: Path | None = None) -> Problem:
     """Return the problem a file describes; text that starts with `{` is JSON, else TOML.
 
-    Raises `ProblemErrors` with every error of the file.
+    `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error of the file.
     """
-    return validate(parse(text, where))
+    return validate(parse(text, where), folder=folder)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from symobs.conditions import SIGNS
+from symobs.convention import conventions
 from symobs.method import tasks
 from symobs.specification import KINDS
+from symobs.viewed import names_in
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -14,7 +16,11 @@ TOP: dict[str, dict[str, Any]] = {
     "source": {"description": "where the problem comes from", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
-    "convention": {"description": "the convention the file is written in", "enum": ["standard"]},
+    "convention": {
+        "description": "the convention the file is written in: standard, S0 to S4, or your own",
+        "type": "string",
+        "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
+    },
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},
@@ -39,6 +45,10 @@ def schema() -> dict[str, Any]:
     for name in known:
         for keyword, kind in tasks()[name].keywords.items():
             keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
+    for convention in conventions().values():
+        for own, (name, _) in names_in(convention).items():
+            if own not in keywords and name in keywords:
+                keywords[own] = {**keywords[name], "description": f"{name}, in the convention {convention.name}"}
     properties: dict[str, Any] = {
         **TOP,
         "task": {"enum": known},

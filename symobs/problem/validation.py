@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from unicodedata import category
 
-from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.convention import STANDARD, Convention, convention_named
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
@@ -18,6 +20,10 @@ from symobs.problem.tables import Decimal
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time
+from symobs.viewed import Viewed, names_in
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _MAX_SYMBOLS = 400
 _MAX_TEXT = 2000
@@ -39,6 +45,7 @@ class Problem:
     plant: StateSpace
     specification: Mapping[str, Any]
     expect: Mapping[str, Any] = field(default_factory=dict)
+    convention: Convention = STANDARD
 
     def solve(self, report: Callable[[str], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins.  All errors of all tasks are raised together."""
@@ -53,12 +60,16 @@ class Problem:
         if errors.found:
             kinds = _kinds(self.tasks)
             _read_alone(self.specification, kinds, self.expect, self.plant.symbols, self.plant.variable, errors)
-            raise errors.together()
+            raise errors.together(self.convention)
         return tuple(results)
 
-    def document(self, results: tuple[Result, ...]) -> Document:
-        """Return what a format renders."""
-        return Document(self.title, self.source, results)
+    def viewed(self, results: tuple[Result, ...]) -> tuple[Viewed, ...]:
+        """Return the results in the file's convention."""
+        return tuple(Viewed(result, self.convention) for result in results)
+
+    def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
+        """Return what a format renders, in the file's convention or in another one."""
+        return Document(self.title, self.source, results, convention or self.convention)
 
 
 class _Errors:
@@ -85,39 +96,40 @@ class _Errors:
         taken = {error.where for error in self.found}
         self.found += [error for error in others.found if error.where not in taken]
 
-    def together(self) -> ProblemErrors:
-        """Return all of them, each once."""
+    def together(self, convention: Convention = STANDARD) -> ProblemErrors:
+        """Return all of them, each once, at places named as the convention names them."""
+        for own, (name, _) in names_in(convention).items():
+            for error in self.found:
+                error.where = re.sub(rf"^specification\.{name}\b", f"specification.{own}", error.where)
         return ProblemErrors(tuple({str(error): error for error in self.found}.values()))
 
 
-def validate(data: Mapping[str, Any], only: str | None = None) -> Problem:
+def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
     """Return the problem of a file's tables; `only` names a task to run instead of the file's own.
 
-    Raises `ProblemErrors` with every error found.
+    `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error found.
     """
     errors = _Errors()
     _report_unknown(data, TOP, "", errors)
     title, source = _text(data, "title", errors), _text(data, "source", errors)
     ids = _ids(data.get("id", []), errors)
-    if data.get("convention", "standard") != "standard":
-        message = f'"{shown(str(data["convention"]), 40)}" is not a convention this version knows'
-        errors.note(message, "convention", 'write convention = "standard"')
+    convention = _convention(data, folder, errors)
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
     dt = _period(data, symbols, errors)
     plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
-    specification = _specification(data, (*asked, *wanted), errors)
+    specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = _table(data, "expect", errors)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect)
+        return Problem(title, source, ids, wanted, plant, specification, expect, convention)
     if plant is not None and wanted:
         with errors:
-            Problem(title, source, ids, wanted, plant, specification, expect).solve()
+            Problem(title, source, ids, wanted, plant, specification, expect, convention).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
-    raise errors.together()
+    raise errors.together(convention)
 
 
 def _came(value: object) -> str:
@@ -257,11 +269,43 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
     return None
 
 
-def _specification(data: Mapping[str, Any], wanted: Collection[Task], errors: _Errors) -> dict[str, Any]:
-    """Return what the tasks can use of the specification."""
-    table = _table(data, "specification", errors)
-    kinds = _kinds(wanted)
-    _report_unknown(table, kinds, "specification", errors)
+def _convention(data: Mapping[str, Any], folder: Path | None, errors: _Errors) -> Convention:
+    """Return the convention the file is written in, the standard one where it names none that exists."""
+    name = data.get("convention", STANDARD.name)
+    if not isinstance(name, str) or isinstance(name, Decimal):
+        errors.note(f"a name is expected, but {_came(name)} came", "convention", 'write convention = "standard"')
+        return STANDARD
+    try:
+        return convention_named(name.removesuffix(".toml"), folder)
+    except UsageError as error:
+        errors.note(error.message, "convention", error.repair)
+    except ProblemErrors as wrong:
+        errors.found += wrong.errors
+    return STANDARD
+
+
+def _specification(
+    data: Mapping[str, Any],
+    wanted: Collection[Task],
+    convention: Convention,
+    symbols: Symbols,
+    errors: _Errors,
+) -> dict[str, Any]:
+    """Return what the tasks can use of the specification, in standard letters and signs."""
+    table, kinds = _table(data, "specification", errors), _kinds(wanted)
+    named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
+    _report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
+    gains: dict[str, Any] = {}
+    for own, (name, sign) in named.items():
+        if own in table:
+            with errors:
+                where = f"specification.{own}"
+                known = symbols.naming(table.get("parameters"), "specification.parameters")
+                gains[name] = table[own] if sign > 0 else -read_matrix(table[own], known, where)
+            if own != name and name in table and name not in named:
+                message = f"{name} and {own} are the same gain in the convention {convention.name}"
+                errors.note(message, f"specification.{name}", "keep one of them")
+    table = {**{name: value for name, value in table.items() if name not in named}, **gains}
     found: dict[str, Any] = {}
     for name in [name for name in table if name in kinds]:
         if kinds[name] == "Name" and (not isinstance(table[name], str) or isinstance(table[name], Decimal)):

@@ -31,12 +31,14 @@ from symobs.formula import (
     Shown,
     Sum,
     Together,
+    Turned,
     letters,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from symobs.convention import Convention
     from symobs.derivation import Sentence, Step
     from symobs.formula import Fact, Formula
     from symobs.render.blocks import Inline
@@ -47,14 +49,17 @@ def letters_used(steps: Iterable[Step]) -> frozenset[str]:
     return frozenset().union(*(letters(formula) for step in steps for formula in _formulas(step)))
 
 
-def stated_conventions(used: frozenset[str], words: dict[str, str]) -> tuple[tuple[Inline, ...], ...]:
+def stated_conventions(
+    used: frozenset[str], convention: Convention, words: dict[str, str]
+) -> tuple[tuple[Inline, ...], ...]:
     """Return the conventions that concern the letters used, each as a few words and a formula."""
+    turned = Turned(convention.turned)
     conventions: list[tuple[Inline, ...]] = []
     if "K" in used:
         estimated = "L" in used or "x_hat" in used
-        conventions.append((_control_law("x_hat" if estimated else "x"),))
+        conventions.append((turned.relation(_control_law("x_hat" if estimated else "x")),))
     if "L" in used:
-        conventions.append((f"{words['observer_matrix']} ", _OBSERVER_MATRIX))
+        conventions.append((f"{words['observer_matrix']} ", turned.formula(_OBSERVER_MATRIX)))
         conventions.append((f"{words['error']} ", _ERROR))
     return tuple(conventions)
 

@@ -9,7 +9,6 @@ from xml.sax.saxutils import escape
 from symobs.exact import Scalar
 from symobs.flow import without_sign
 from symobs.formula import Literal, Quotient, Relation, Together
-from symobs.notation import letter_text
 from symobs.phrases import PHRASES
 from symobs.render.arrangement import Arrangement, Metrics, arranged
 from symobs.render.glyphs import Level
@@ -62,7 +61,7 @@ class _Letters(TextPrinter):
     def letter(self, name: str, mark: str) -> TextBox:
         """A letter; a dot goes above an accent that is there."""
         if mark == "dot":
-            return text_box(letter_text(name, self.variable) + _DOT, Level.POWER)
+            return text_box(self.letter_text(name) + _DOT, Level.POWER)
         return super().letter(name, mark)
 
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from symobs.convention import STANDARD, Convention
 from symobs.exact.functions import PI, symbols_named
 from symobs.face import to_json
-from symobs.method import Case, Document, Result, output_format
+from symobs.method import Case, Result, output_format
+from symobs.viewed import Viewed
+
+if TYPE_CHECKING:
+    from symobs.method import Document
 
 SCHEMA = "symobs/1"
 
@@ -21,13 +26,14 @@ class Json:
 
     def render(self, document: Document) -> str:
         """Return the document as indented JSON."""
-        results = [result_object(result) for result in document.results]
+        results = [result_object(result, document.convention) for result in document.results]
         whole = {"schema": SCHEMA, "title": document.title, "results": results}
         return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
-def result_object(result: Result) -> dict[str, Any]:
-    """Return the object of one result: what every task has, then the task's own fields."""
+def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
+    """Return the object of one result: what every task has, the task's own fields, and these in a convention."""
+    in_convention = {name: to_json(value) for name, value in Viewed(result, convention).own.items()}
     answers = {name: to_json(value) for name, value in result.fields.items()}
     return {
         "task": result.task,
@@ -39,7 +45,7 @@ def result_object(result: Result) -> dict[str, Any]:
         "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
         "symbols": _symbols(result),
         **answers,
-        "in_convention": {"name": "standard", **answers},
+        "in_convention": {"name": convention.name, **in_convention},
     }
 
 

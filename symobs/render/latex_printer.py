@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.formula import Formula, Relation
-from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_latex, symbol_latex
+from symobs.notation import OPERATORS, symbol_latex
 from symobs.render import widths
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
@@ -94,8 +94,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def letter(self, name: str, mark: str) -> LatexBox:
         r"""A letter; `\dot x`, `x_k`, `x_{k+1}`."""
-        known = name in LETTERS
-        source = letter_latex(name, self.variable) if known else symbol_latex(name, self.symbols.get(name))
+        source = self.letter_latex(name)
         if mark == "dot":
             stem, below, index = source.partition("_")  # the dot stands on the letter, not on its index
             source = (rf"\dot {stem}" if re.fullmatch(r"\w", stem) else rf"\dot{{{stem}}}") + below + index
@@ -186,7 +185,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def applied(self, function: str, argument: LatexBox) -> LatexBox:
         """A function's name and its argument."""
-        name = FUNCTIONS[function][0] if function in FUNCTIONS else rf"\operatorname{{{function.replace('_', ' ')}}}"
+        name = self.function_latex(function)
         source = f"{name} {argument.source}" if swallows(name, argument.source) else name + argument.source
         width = widths.source_width(name) + argument.width + 0.2
         return LatexBox(width, Level.PRODUCT, source, argument.height)

@@ -49,9 +49,11 @@ from symobs.render.prose import filled, joined
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.convention import Convention
     from symobs.derivation import Step
     from symobs.formula import Formula, Relation
     from symobs.method import Document
+    from symobs.notation import LetterForm
     from symobs.region.routh import RouthTable
     from symobs.render.printer import Printer
 
@@ -68,11 +70,15 @@ LABELS: dict[str, str] = {
 }
 
 
+#: Letters that a page has only where it speaks of a reduced-order observer.
+_OF_REDUCED_ORDER = frozenset({"F_z", "G_z", "H_z", "M_z", "A_12"})
+
+
 def narrate(document: Document) -> tuple[Block, ...]:
     """Return the blocks of a document; a derivation with a false line raises before a word is written."""
     for derivation in document.derivations:
         derivation.check()
-    page = _Page()
+    page = _Page(document.convention)
     page.blocks.append(_title(document))
     together, apart = _statements(document)
     page.tell_given(together)
@@ -142,18 +148,31 @@ def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
 
 
 def printer_for(document: Document, kind: type[P]) -> P:
-    """Return a printer of some format for a document's mathematics: its variable, its symbols, its kind of time."""
+    """Return a printer of some format for a document's mathematics: variable, symbols, letters, kind of time."""
     if not document.derivations:
         return kind()
     first = document.derivations[0]
     symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
-    return kind(first.variable, symbols, discrete=first.discrete)
+    printer = kind(first.variable, symbols, discrete=first.discrete)
+    printer.letters = {**printer.letters, **_letters(document)}
+    return printer
+
+
+def _letters(document: Document) -> Mapping[str, LetterForm]:
+    """Return the forms of the letters that are not written as usual."""
+    if document.convention.is_standard:
+        return {}
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(_OF_REDUCED_ORDER))
 
 
 class _Page:
     """The blocks written so far, and what the next ones depend on."""
 
-    def __init__(self, *, given: Mapping[Formula, Relation] | None = None, numbered: bool = True) -> None:
+    def __init__(
+        self, convention: Convention, *, given: Mapping[Formula, Relation] | None = None, numbered: bool = True
+    ) -> None:
+        self.convention = convention
         self.blocks: list[Block] = []
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
@@ -211,9 +230,9 @@ class _Page:
                 self.say(sentence)
                 self.show((equation, solution))
             case Conclude(sentence=Sentence() as sentence, verified=True):
-                self.blocks.append(Verified(filled(sentence)))
+                self.blocks.append(Verified(filled(sentence, self.convention)))
             case Note(sentence=sentence, caution=True):
-                self.blocks.append(Caution(LABELS["caution"], filled(sentence)))
+                self.blocks.append(Caution(LABELS["caution"], filled(sentence, self.convention)))
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.say(sentence)
             case Diagram(name=name, labels=labels, sentence=sentence):
@@ -246,7 +265,7 @@ class _Page:
     def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
         self.numbers[-1] += 1
         number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
-        self.blocks.append(Heading(number, filled(title)))
+        self.blocks.append(Heading(number, filled(title, self.convention)))
         self.numbers.append(0)
         for step in steps:
             if isinstance(step, Section) or step not in self.told:
@@ -263,7 +282,7 @@ class _Page:
 
     def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
-        inner = _Page(given=self.given, numbered=False)
+        inner = _Page(self.convention, given=self.given, numbered=False)
         inner.say(sentence)
         inner.tell(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
@@ -275,7 +294,7 @@ class _Page:
         """Add a sentence, to the paragraph before it where there is one."""
         if sentence is None:
             return
-        inlines = filled(sentence)
+        inlines = filled(sentence, self.convention)
         goes_on = sentence.key not in OPENS
         if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
             self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
@@ -321,7 +340,7 @@ def _is_condition(step: Given) -> bool:
 
 def _title(document: Document) -> Title:
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    conventions = stated_conventions(letters_used(steps), LABELS)
+    conventions = stated_conventions(letters_used(steps), document.convention, LABELS)
     if not conventions:
         return Title(document.title, _as_sentence(document.source), ())
     listed: list[Inline] = [f"{LABELS['conventions']} "]

@@ -34,7 +34,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import TIMED, is_of_time, shows_time
+from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
 from symobs.render.glyphs import B, Glyphs, Level
 from symobs.render.scalars import is_leaf, spelled, spelled_matrix
 
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact.functions import Function
+    from symobs.notation import LetterForm
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
@@ -58,6 +59,7 @@ class Printer(Glyphs[B]):
         """Print polynomials in `variable`; `symbols` are the declared forms of parameters."""
         self.variable = variable
         self.symbols = dict(symbols or {})
+        self.letters: Mapping[str, LetterForm] = LETTERS
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
 
@@ -68,6 +70,23 @@ class Printer(Glyphs[B]):
     @abstractmethod
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
         """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+
+    # -- letters --------------------------------------------------------------------------------------------------
+
+    def letter_latex(self, name: str) -> str:
+        """Return the LaTeX of a letter, its variable put in, or of a parameter."""
+        form = self.letters.get(name)
+        return form.latex.replace("{v}", self.variable) if form else symbol_latex(name, self.symbols.get(name))
+
+    def letter_text(self, name: str) -> str:
+        """Return a letter as a terminal shows it, its variable put in, or a parameter."""
+        form = self.letters.get(name)
+        return form.text.replace("{v}", self.variable) if form else symbol_text(name)
+
+    def function_latex(self, name: str) -> str:
+        """Return the LaTeX of a function's name."""
+        known = self.letters[name].latex if name in self.letters else FUNCTIONS.get(name, ("",))[0]
+        return known or rf"\operatorname{{{name.replace('_', ' ')}}}"
 
     # -- the walk -------------------------------------------------------------------------------------------------
 

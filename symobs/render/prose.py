@@ -10,6 +10,7 @@ import re
 import string
 from typing import TYPE_CHECKING
 
+from symobs.convention import STANDARD, Convention
 from symobs.exact import Scalar
 from symobs.formula import (
     Exactly,
@@ -24,23 +25,33 @@ from symobs.formula import (
     Sum,
     Together,
     Transpose,
+    Turned,
 )
+from symobs.notation import LETTERS
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.derivation import Sentence
     from symobs.formula import Fact, Formula
     from symobs.render.blocks import Inline, Inlines
 
 
-def filled(sentence: Sentence) -> Inlines:
-    """Return the phrase of a sentence with its slots filled."""
-    slots = dict(sentence.slots)
+#: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
+_PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
+_OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
+
+
+def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
+    """Return the phrase of a sentence with its slots filled, in the letters and signs of a convention."""
+    slots, turned = dict(sentence.slots), Turned(convention.turned)
+    phrase = PHRASES[sentence.key]
+    if not convention.is_standard:
+        phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
     inlines: list[Inline] = []
-    for text, name, _, _ in string.Formatter().parse(PHRASES[sentence.key]):
-        inlines += _prose(text)
+    for text, name, _, _ in string.Formatter().parse(phrase):
+        inlines += _prose(text, turned, convention.letters)
         if name is not None:
             inlines += _shown(slots[name])
     return joined(inlines)
@@ -75,9 +86,27 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             yield slot
 
 
-def _prose(text: str) -> Iterator[Inline]:
+def _pair(first: str, second: str, convention: Convention) -> str:
+    """Return a pair of matrices in the brackets of a convention, which stand for themselves in a phrase."""
+    opening, closing = (f"{bracket}{bracket}" if bracket in "{}" else bracket for bracket in convention.brackets)
+    members = (second, first) if convention.state_first and first in _OUTPUTS else (first, second)
+    return f"{opening}{', '.join(members)}{closing}"
+
+
+def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
+    """Return the letter alone where a convention writes both sides of an equation alike."""
+    names = [member.name if isinstance(member, Letter) else "" for member in relation.members]
+    written = {letters.get(name, LETTERS[name].text) if name in LETTERS else "" for name in names}
+    return relation.members[-1] if len(written) == 1 and "" not in written else relation
+
+
+def _prose(text: str, turned: Turned, letters: Mapping[str, str]) -> Iterator[Inline]:
     for place, part in enumerate(text.split("$")):
-        yield _named(part) if place % 2 else part
+        if place % 2:
+            named = _named(part)
+            yield _once(turned.relation(named), letters) if isinstance(named, Relation) else turned.formula(named)
+        else:
+            yield part
 
 
 def _named(text: str) -> Formula | Relation:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from symobs.exact.roots import Root
-    from symobs.formula import Roots
+    from symobs.formula import Formula, Roots
     from symobs.render.printer import Printer
 
 
@@ -23,6 +23,11 @@ class RootGlyphs:
     square_root: Callable[[str], str]
     plus_minus: str
     among: Callable[[str, str], str]
+    number: Callable[[int], str] = str
+    minus: str = "-"
+    plus: str = "+"
+    imaginary: str = "i"
+    written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
 
 
 LATEX = RootGlyphs(lambda inside: rf"\sqrt{{{inside}}}", r"\pm ", lambda s, equation: rf"\{{{s}:{equation}\}}")
@@ -59,26 +64,26 @@ def _grouped(values: tuple[Root, ...]) -> Iterator[tuple[Root, bool]]:
 def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs) -> str:  # noqa: FBT001
     if not root.is_closed:
         equation = Relation((Literal(root.factor), Literal(Scalar.of(0))), ("=",))
-        return glyphs.among(printer.inline(Letter("s")), printer.inline(equation))
+        return glyphs.among(glyphs.written(printer, Letter("s")), glyphs.written(printer, equation))
     if root.radicand.is_zero:
-        return printer.inline(Literal(root.centre))
-    centre = "" if root.centre.is_zero else printer.inline(Literal(root.centre))
+        return glyphs.written(printer, Literal(root.centre))
+    centre = "" if root.centre.is_zero else glyphs.written(printer, Literal(root.centre))
     distance = _distance(root, printer, glyphs)
     if paired:
         return f"{centre}{glyphs.plus_minus}{distance}".strip()
-    sign = "-" if root.sign < 0 else "+" * bool(centre)
+    sign = glyphs.minus if root.sign < 0 else glyphs.plus * bool(centre)
     return f"{centre}{sign}{distance}"
 
 
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
     """√radicand, its square factors before the root, i behind it."""
     if not root.radicand.is_constant:
-        return glyphs.square_root(printer.inline(Literal(root.radicand)))
+        return glyphs.square_root(glyphs.written(printer, Literal(root.radicand)))
     outside, inside, imaginary = root.surd()
-    under = "" if inside == 1 else glyphs.square_root(str(inside))
-    unit = under + "i" * imaginary
+    under = "" if inside == 1 else glyphs.square_root(glyphs.number(int(inside)))
+    unit = under + glyphs.imaginary * imaginary
     if outside.denominator == 1:
-        return f"{outside.numerator}" * (outside != 1 or not unit) + unit
+        return glyphs.number(outside.numerator) * (outside != 1 or not unit) + unit
     above = Scalar.of(outside.numerator)
-    front = printer.inline(Literal(above / outside.denominator))
+    front = glyphs.written(printer, Literal(above / outside.denominator))
     return front + unit

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from symobs.render.blocks import Inlines, TableBlock
     from symobs.render.latex_printer import LatexPrinter
+    from symobs.render.mathml_printer import MathmlPrinter
     from symobs.render.text_printer import TextPrinter
 
     Words = Callable[[Inlines], str]
@@ -34,12 +35,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
 
     A table that is too wide even with names is set small, without remarks.
     """
-
-    def room(remarks: Sequence[Inlines]) -> float:
-        widest = max(_latex_width(remark, printer) for remark in remarks)
-        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
-
-    found = fitted(block, printer, room, widths.COLUMN_GAP, printer.width)
+    found = fitted(block, printer, room_for(printer), widths.COLUMN_GAP, printer.width)
     rows = [[opened(entry) for entry in row] for row in found.rows]
     columns, has_remarks = len(rows[0]), found.fits and any(found.remarks)
     lines: list[str] = []
@@ -54,7 +50,17 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     return f"{table}\n{words(block.where)}\n{printer.display(found.told)}" if found.told else table
 
 
-def _latex_width(inlines: Inlines, printer: LatexPrinter) -> float:
+def room_for(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
+    """Return what a choice of remarks leaves for the entries."""
+
+    def room(remarks: Sequence[Inlines]) -> float:
+        widest = max(_em_width(remark, printer) for remark in remarks)
+        return printer.width - _HEADS - (widest + _BEFORE_REMARK if widest else 0.0)
+
+    return room
+
+
+def _em_width(inlines: Inlines, printer: LatexPrinter | MathmlPrinter) -> float:
     formulas = [part for part in inlines if not isinstance(part, str | Relation | Roots)]
     letters = sum(len(part) for part in inlines if isinstance(part, str))
     return _LETTER * letters + sum(printer.typeset(formula).width for formula in formulas)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import unicodedata
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.formula import Formula, Relation
-from symobs.notation import FUNCTIONS, LETTERS, OPERATORS, letter_text, symbol_text
+from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
 from symobs.render.printer import Printer
@@ -60,7 +61,9 @@ class TextPrinter(Printer[TextBox]):
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics on one line."""
         if not self.flat:
-            return TextPrinter(self.variable, self.symbols, discrete=self.discrete, flat=True).inline(item)
+            flat = copy(self)
+            flat.flat, flat.known = True, {}
+            return flat.inline(item)
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).line
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = "") -> str:
@@ -81,8 +84,7 @@ class TextPrinter(Printer[TextBox]):
 
     def letter(self, name: str, mark: str) -> TextBox:
         """A letter; ẋ, xₖ, xₖ₊₁."""
-        known = name in LETTERS
-        text = letter_text(name, self.variable) if known else symbol_text(name)
+        text = self.letter_text(name)
         if mark == "dot":
             dotted = unicodedata.normalize("NFC", f"{text}\u0307")
             return text_box(dotted if len(dotted) == 1 else f"d{text}/dt", Level.POWER)
@@ -161,7 +163,8 @@ class TextPrinter(Printer[TextBox]):
 
     def applied(self, function: str, argument: TextBox) -> TextBox:
         """A function's name and its argument."""
-        name = FUNCTIONS.get(function, (function, function.replace("_", " ")))[1]
+        known = self.letters[function].text if function in self.letters else FUNCTIONS.get(function, ("", ""))[1]
+        name = known or function.replace("_", " ")
         if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
             argument = self.grouped(argument)
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "

@@ -1,0 +1,64 @@
+"""The conventions as a user looks them up: a table of laws, observers and letters, or the file of one."""
+
+from __future__ import annotations
+
+from symobs.convention import PROFILES, STANDARD, Convention, convention_named, conventions
+from symobs.notation import LETTERS
+
+_HEAD = ("name", "control law", "observer matrix", "observable pair")
+_OF_STANDARD = """\
+# The standard convention. Write a file like this one for another.
+name = "standard"
+title = "the standard convention of the field"
+feedback = "u = -K x_hat"
+observer = "A - L C"
+pair = "(C, A)"
+
+[letters]  # standard letter = what is written in its place
+
+[letters_of_reduced_order]  # the same, on pages with a reduced-order observer
+"""
+
+
+def listed() -> str:
+    """Return a table of all conventions, and below it what each writes in place of the standard letters."""
+    known = conventions()
+    rows = [
+        _HEAD,
+        *((name, _shown(found.law), _shown(found.observer_matrix), found.pair) for name, found in known.items()),
+    ]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(_HEAD))]
+    lines = ["   ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    lines.insert(1, "   ".join("─" * width for width in widths))
+    for name, found in known.items():
+        lines += ["", f"{name}: {found.title}", *_letters(found)]
+    lines += ["", "The error is x − x̂ and the compensator F(s) stands in negative feedback, in all of them."]
+    lines += [
+        "`symobs conventions NAME` prints the file of one, from which to make your own: NAME.toml beside the problem."
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _shown(typed: str) -> str:
+    """Return a law as pages write it."""
+    return typed.replace("x_hat", "x̂").replace("-", "−")
+
+
+def _letters(found: Convention) -> list[str]:
+    """Return the lines on the letters that are not written as in the standard convention."""
+    lines: list[str] = []
+    for letters, reduced in ((found.letters, False), (found.reduced, True)):
+        forms, where = found.forms(reduced=reduced), " (with a reduced-order observer)" if reduced else ""
+        for letter in letters:
+            usual, own = (form.text.replace("{v}", "s") for form in (LETTERS[letter], forms[letter]))
+            stays = " stays" if own == usual else f" for {usual}"
+            lines.append(f"    {own}{stays}, {LETTERS[letter].spoken}{where}")
+    return lines
+
+
+def file_of(name: str) -> str:
+    """Return the TOML of a convention.  Raises `UsageError` naming those that exist."""
+    if name == STANDARD.name:
+        return _OF_STANDARD
+    convention_named(name)
+    return (PROFILES / f"{name}.toml").read_text(encoding="utf-8")

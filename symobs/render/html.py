@@ -1,0 +1,205 @@
+"""HTML: the format `html` (one page that needs nothing from outside) and `html_fragment` (to be put into another page).
+
+Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style.
+"""
+
+from __future__ import annotations
+
+import re
+from copy import copy
+from html import escape
+from itertools import count
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.formula import Roots
+from symobs.method import output_format
+from symobs.render import widths
+from symobs.render.blocks import (
+    CaseBlock,
+    Caution,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+    opened,
+)
+from symobs.render.diagrams import sketch
+from symobs.render.mathml_elements import MINUS, PLUS
+from symobs.render.mathml_printer import MathmlPrinter
+from symobs.render.narrator import narrate, printer_for
+from symobs.render.roots import RootGlyphs, listed
+from symobs.render.table_web import html_table
+from symobs.render.text_printer import TextPrinter
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.method import Document
+    from symobs.render.blocks import Block, Inline, Inlines
+
+_FOLDER = Path(__file__).parent
+_INSET = 2.0  # em, as in the style
+_SKETCH = 78  # columns
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
+_OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
+_ROOTS = RootGlyphs(
+    square_root=lambda inside: f"<msqrt>{inside}</msqrt>",
+    plus_minus="<mo>±</mo>",
+    among=lambda s, equation: f"<mo>{{</mo>{s}<mo>:</mo>{equation}<mo>}}</mo>",
+    number=lambda number: f"<mn>{number}</mn>",
+    minus=f"<mo>{MINUS}</mo>",
+    plus=f"<mo>{PLUS}</mo>",
+    imaginary="<mi>i</mi>",
+    written=lambda printer, item: printer.running_box(item).source,
+)
+
+
+@output_format
+class Html:
+    """A page of its own."""
+
+    name: ClassVar[str] = "html"
+    suffix: ClassVar[str] = ".html"
+
+    def render(self, document: Document) -> str:
+        """Return the document as a page."""
+        title, _ = opened(blocks := narrate(document))
+        return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
+
+
+@output_format
+class HtmlFragment:
+    """The body alone with its style, which touches nothing outside."""
+
+    name: ClassVar[str] = "html_fragment"
+    suffix: ClassVar[str] = ".html"
+
+    def render(self, document: Document) -> str:
+        """Return the body."""
+        body = HtmlWriter(printer_for(document, MathmlPrinter), level=2).body(narrate(document))
+        return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
+
+
+def page(title: str, body: str) -> str:
+    """Return a whole page around a body, which is HTML already."""
+    skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
+    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body)
+
+
+def style() -> str:
+    """Return the style of what stands inside `class="symobs"`."""
+    return (_FOLDER / "html_body.css").read_text(encoding="utf-8")
+
+
+def plain(text: str) -> str:
+    """Return text from outside as HTML that shows it, its quotation marks curled as LaTeX curls them.
+
+    Characters that would steer the reader's screen, and those that no page may contain, are left out.
+    """
+    line = _CONTROL.sub("", re.sub(r"\s+", " ", text))
+    curled = _OPENING_QUOTE.sub("“", line).replace('"', "”").replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
+    return escape(curled)
+
+
+class HtmlWriter:
+    """Writes blocks as HTML: the text around the mathematics, which the printer writes."""
+
+    def __init__(self, printer: MathmlPrinter, *, prefix: str = "", level: int = 1, inset: float = 0.0) -> None:
+        """Write mathematics with `printer`, on lines shorter by `inset` em.
+
+        A title is a heading of `level`, and `prefix` begins every id: parts of one page are told apart by it.
+        """
+        self.printer = copy(printer)
+        self.printer.width = printer.width - inset
+        self.prefix = prefix
+        self.level = level
+        self.unnumbered = count(1)
+
+    def body(self, blocks: Sequence[Block]) -> str:
+        """Return all blocks."""
+        return "\n".join(filter(None, (self.block(block) for block in blocks)))
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        match block:
+            case Title(text, source, conventions):
+                return self._title(plain(text).strip(), f"{plain(source)} {self.sentence(conventions)}".strip())
+            case Heading(number, inlines):
+                return self._heading(number, self.sentence(inlines))
+            case Paragraph(inlines):
+                return f"<p>{self.sentence(inlines)}</p>"
+            case Display(relations, boxed, closing):
+                return self._display(self.printer.display(relations, boxed=boxed, end=closing))
+            case Verified(inlines):
+                return f'<p class="verified">{self.sentence(inlines)}</p>'
+            case Caution(label, inlines, warns):
+                kind = "caution" if warns else "note"
+                return f'<p class="{kind}"><strong>{plain(label)}</strong> {self.sentence(inlines)}</p>'
+            case Drawing():
+                return diagram(block, self._text_printer())
+            case TableBlock():
+                table, told = html_table(block, self.printer, self.sentence)
+                below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(told)}" if told else ""
+                return f'<div class="table">{table}</div>{below}'
+            case PictureBlock():
+                return self._picture(block)
+            case CaseBlock(label, blocks):
+                inside = HtmlWriter(self.printer, prefix=f"{self.prefix}case-", level=self.level + 1, inset=_INSET)
+                inside.unnumbered = self.unnumbered
+                label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
+                return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text: words escaped, mathematics as MathML."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return plain(part)
+        if isinstance(part, Roots):
+            return ", ".join(f"<math>{root}</math>" for root in listed(part, self.printer, _ROOTS))
+        return self.printer.inline(part)
+
+    def _title(self, text: str, below: str) -> str:
+        heading = f"<h{self.level}>{text}</h{self.level}>" if text else ""
+        return "\n".join(filter(None, (heading, f'<p class="source">{below}</p>' if below else "")))
+
+    def _heading(self, number: str, words: str) -> str:
+        """A heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
+        depth = min(6, self.level + max(1, number.count(".")))
+        place = number.rstrip(".").replace(".", "-") or f"part-{next(self.unnumbered)}"
+        return f'<h{depth} id="{self.prefix}s-{place}">{f"{number} {words}".strip().removesuffix(".")}</h{depth}>'
+
+    def _display(self, mathematics: str) -> str:
+        return f'<div class="display">{mathematics}</div>'
+
+    def _picture(self, block: PictureBlock) -> str:
+        from symobs.render.plots_caption import below  # noqa: PLC0415 - only pages with pictures
+        from symobs.render.plots_svg import svg, svg_scene  # noqa: PLC0415
+
+        printer = self._text_printer()
+        scene = svg_scene(block.picture, printer)
+        words = below(block.caption, scene)
+        spoken = "".join(
+            part if isinstance(part, str) else printer.inline(part) for part in words if not isinstance(part, Roots)
+        )
+        return f"<figure>\n{svg(scene, printer, spoken)}\n<figcaption>{self.sentence(words)}</figcaption>\n</figure>"
+
+    def _text_printer(self) -> TextPrinter:
+        """The printer of the words inside pictures."""
+        printer = self.printer
+        return TextPrinter(
+            printer.variable, printer.symbols, discrete=printer.discrete, width=int(2 * widths.TEXT_WIDTH)
+        )
+
+
+def diagram(drawing: Drawing, printer: TextPrinter) -> str:
+    """Return a block diagram."""
+    drawn = escape(sketch(drawing, printer, _SKETCH))
+    return f'<pre role="img" aria-label="Block diagram">\n{drawn}\n</pre>'
