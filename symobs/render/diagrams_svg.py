@@ -94,7 +94,10 @@ def metrics_of(printer: TextPrinter) -> Metrics:
 
 
 def _letters(printer: TextPrinter) -> TextPrinter:
-    return _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
+    """Return a printer of the same letters."""
+    letters = _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
+    letters.letters = printer.letters
+    return letters
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:
