@@ -1,4 +1,4 @@
-"""What is said beside a block diagram."""
+"""What is said beside a block diagram, and beside courses over time."""
 
 from __future__ import annotations
 
@@ -13,5 +13,7 @@ PHRASES: dict[str, str] = {
     "drawn_tracking": "As a block diagram, with the generator of the reference on the left:",
     "drawn_feedforward_minimal": "As a block diagram, with $M_z$ the matrix that puts the estimate together:",
     "drawn_tracking_minimal": "As a block diagram, with the generator of the reference on the left and $M_z$ the matrix that puts the estimate together:",
+    "plot_error": "The error decays as drawn here.",
+    "plot_estimate": "State and estimate meet on their way to rest.",
     "drawn_minimal_order": "As a block diagram, with $M_z$ the matrix that puts the estimate together:",
 }
