@@ -18,12 +18,13 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
 from symobs.error_bounds import Bound, Bounds
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, is_rounding
 from symobs.exact.functions import symbols_named
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     At,
+    Decimals,
     Environment,
     Exact,
     Formula,
@@ -165,6 +166,8 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
     if operator == "~":  # the rows span the same space
         several = (left, right, arithmetic.block([[left], [right]]))
         return len({arithmetic.apply("rank", matrix) for matrix in several}) == 1
+    if operator == "≈":
+        return _is_rounding(left, right)
     if operator == "!=":
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
@@ -180,6 +183,14 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
             "<=": ("negative", "nonpositive", "zero"),
         }[operator]
     )
+
+
+def _is_rounding(exact: Any, shown: Any) -> bool:
+    """Tell whether every entry is rounded to the decimals shown."""
+    if not isinstance(exact, Matrix):
+        return is_rounding(as_scalar(exact), as_scalar(shown))
+    pairs = zip(exact.entries, shown.entries, strict=True)
+    return bool(exact.shape == shown.shape) and all(is_rounding(entry, near) for entry, near in pairs)
 
 
 def as_scalar(value: Any) -> Scalar:
@@ -264,7 +275,7 @@ def _leaves(formula: Formula, environment: Environment, seen: set[str]) -> Itera
                         yield from _leaves(other, environment, seen)
         case Letter(name) if name != "s":
             yield environment.values[name]
-        case Literal(value):
+        case Literal(value) | Decimals(value):
             yield value
         case _:
             if isinstance(formula, Apply) and formula.function.endswith("_at"):

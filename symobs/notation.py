@@ -170,6 +170,7 @@ LETTERS: dict[str, LetterForm] = {
     "K_0": LetterForm("K_0", "K₀", "gain by which the plant is shifted"),
     **{f"A_{side}0": LetterForm(rf"A_{{\mathrm {side}0}}", f"A_{side}₀", "shifted state matrix") for side in "co"},
     "x_1": LetterForm("x_1", "x₁", "measured states"),
+    **{f"x_hat_{k}": LetterForm(rf"\hat x_{k}", f"x̂{'₀₁₂'[k]}", "component of the estimate") for k in (1, 2)},
     "x_2": LetterForm("x_2", "x₂", "states that are not measured"),
     "x_2_hat": LetterForm(r"\hat x_2", "x̂₂", "estimate of the states that are not measured"),
     "e_2": LetterForm("e_2", "e₂", "error of the reduced-order observer"),
@@ -230,6 +231,7 @@ OPERATORS: dict[str, tuple[str, str]] = {
     "<=": (r"\le", "≤"),
     ">=": (r"\ge", "≥"),
     "~": (r"\sim", "~"),
+    "≈": (r"\approx", "≈"),
 }
 
 GREEK = [
@@ -330,12 +332,16 @@ THEOREMS: dict[str, Theorem] = {
         "matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"
     ),
     "observability_rank": Theorem("rank test for observability", "S0, Theorem 4.2"),
+    "controllability_rank": Theorem("rank test for controllability", "S0, Theorem 2.2, dual to Theorem 4.2"),
     "pbh": Theorem("test of Popov, Belevitch and Hautus", "S0, chapter 4"),
     "detectability": Theorem("detectability", "S0, section 4.4"),
     "lyapunov": Theorem("detectability in the sense of Lyapunov", "S3, footnote 1"),
     "duality": Theorem("duality", "S0, Theorem 4.1"),
     "duality_reversed": Theorem("duality through −Aᵀ", "S4"),
     "observer_poles": Theorem("pole assignment for observers", "S0, Theorem 4.4"),
+    "state_feedback_poles": Theorem(
+        "pole assignment for state feedback", "W. M. Wonham, IEEE Trans. Autom. Control 12 (1967), 660-665"
+    ),
     "canonical_form": Theorem("placement through canonical form", "S0, Example 4.1"),
     "decomposition": Theorem("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
     "row_reduction": Theorem("row-reduced echelon method", "S3, (7)-(10)"),
@@ -349,6 +355,8 @@ THEOREMS: dict[str, Theorem] = {
     "error": Theorem("error equation", "S0, (4.19)"),
     "reduced_order": Theorem("reduced-order observer", "S0, (4.37)-(4.41)"),
     "reduced_pair": Theorem("observability of the unmeasured part", "S0, Lemma 4.1"),
+    "first_attempt": Theorem("the reduced observer that no gain corrects", "S2"),
+    "similarity": Theorem("from estimate to error", "S1, slide at 28:08"),
     "existence": Theorem("existence of an asymptotic observer", "S4"),
     "tracking": Theorem("tracking of a reference", "S2"),
     "feedforward": Theorem("feedforward for unit gain at rest", "S3, section G and (12)"),

@@ -20,9 +20,10 @@ from symobs.derivation import (
     Step,
     Tabulate,
 )
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, rounded
 from symobs.exact.functions import identities, known, roots_in
 from symobs.formula import (
+    Decimals,
     Derivative,
     Environment,
     Exactly,
@@ -169,6 +170,13 @@ class Page:
         """Return a value written out."""
         return self.term(formula_of(value))
 
+    def decimals(self, value: Scalar | Matrix) -> tuple[str, Term] | tuple[()]:
+        """Return what shows a value in decimals at the end of a chain; nothing where they would not help a reader."""
+        near = rounded(value)
+        if near is None:
+            return ()
+        return "=" if near == value else "≈", self.term(Decimals(near))
+
     def identity(self, order: int) -> Term:
         """Return I."""
         return self.term(Identity(order))
@@ -208,22 +216,29 @@ class Page:
     def define(
         self,
         name: str,
-        *members: Member,
+        *members: Member | str,
         say: str = "",
         answer: bool = False,
         silent: bool = False,
         closing: bool = True,
         **slots: Slot,
     ) -> Term:
-        """Introduce a letter by a formula; its value is shown last unless `closing` is False."""
-        chain = [self.value(m) if not isinstance(m, Term) else m for m in members]
-        value = chain[-1].value
-        if closing and not isinstance(chain[-1].formula, Literal):
-            chain.append(chain[-1].shown)
+        """Introduce a letter by a formula; its value is shown last unless `closing` is False, decimals behind it."""
+        chain = [self.value(m) if not isinstance(m, (Term, str)) else m for m in members]
+        exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
+        value = exact[-1].value
+        if closing and len(exact) == len(chain) and not isinstance(exact[-1].formula, Literal):
+            chain.append(exact[-1].shown)
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
         self.environment = self.environment.having(values={name: value})
         return self[name]
+
+    def in_decimals(self, name: str) -> None:
+        """Show a letter's value in decimals, where they help a reader."""
+        shown = self.decimals(self[name].value)
+        if shown:
+            self.equal(relation(self[name], *shown), say="in_decimals")
 
     def define_transposed(self, name: str, *members: Term, say: str, **slots: Slot) -> Term:
         """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""

@@ -36,6 +36,7 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Exactly,
     Identity,
@@ -279,7 +280,7 @@ class World:
                 return self.scalar(item)
             case Matrix():
                 return [[self.scalar(entry) for entry in row] for row in item.rows]
-            case Literal(value):
+            case Literal(value) | Decimals(value):
                 return self.value(value)
             case Letter("s"):
                 return self.number(self.variable)
@@ -532,7 +533,7 @@ class World:
         if relation.operators == ("!=",):
             yield "condition", self.difference(relation)
             return
-        assert set(relation.operators) == {"="}, "an introduction is an equation"
+        assert relation.operators[0] == "=", "an introduction is an equation"
         self.introduce(relation)
         free = relation.members[0] == Letter("N")  # any basis will do, for which the facts that follow are true
         yield "basis" if free else "means", self.value(relation.members[0])
@@ -546,6 +547,9 @@ class World:
                     for index, operator in enumerate(operators):
                         if operator == "~":  # the rows span the same space
                             yield "=", Fraction(not same_rows(values[index], values[index + 1]))
+                            continue
+                        if operator == "≈":
+                            yield "=", Fraction(not is_rounded(values[index], values[index + 1]))
                             continue
                         content = zeroed(plus(values[index], times(Fraction(-1), values[index + 1])))
                         yield (
@@ -588,6 +592,22 @@ def _symbols(member: Formula) -> frozenset[str]:
 
 def _at(row: Sequence[Fraction], place: int) -> Fraction:
     return row[place] if place < len(row) else Fraction(0)
+
+
+def is_rounded(exact: Any, shown: Any) -> bool:
+    """Tell whether every decimal is within half a unit of its last place, and exact where it has none."""
+    if not is_matrix(exact):
+        exact, shown = [[single(exact)]], [[single(shown)]]
+    if [len(row) for row in exact] != [len(row) for row in shown]:
+        return False
+    pairs = [pair for left, right in zip(exact, shown, strict=True) for pair in zip(left, right, strict=True)]
+    for value, near in pairs:
+        unit = Fraction(1)
+        while (near / unit).denominator != 1:
+            unit /= 10
+        if abs(value - near) > (0 if unit == 1 else unit / 2):
+            return False
+    return True
 
 
 def same_rows(left: Rows, right: Rows) -> bool:

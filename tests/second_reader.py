@@ -25,6 +25,7 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Exactly,
     Identity,
@@ -465,7 +466,7 @@ class Reader:
                 return self.letters[name]
             case Letter(name):
                 return self.value(self.signals[name]) if name in self.signals else {name: sympy.eye(self.sizes[name])}
-            case Literal(value):
+            case Literal(value) | Decimals(value):
                 return self.literal(value)
             case Identity(order):
                 return sympy.eye(order)

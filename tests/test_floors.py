@@ -43,15 +43,18 @@ FLOORS = {
     "page": 6,
     "method": 7,
     "analysis": 8,
+    "sheet": 8,
     "design": 9,
     "render": 9,
     "viewed": 8,
     "expect": 10,
     "output": 11,
     "problem": 11,
-    "cli": 12,
-    "teaching": 12,
-    "__main__": 13,
+    "audit": 12,
+    "audit_command": 13,
+    "cli": 14,
+    "teaching": 14,
+    "__main__": 15,
 }
 # The package itself (`__init__.py`) stands above all floors. It lists the modules in which methods and formats
 # register, and two modules may look at it or load by name: the registry (the only way up) and the command line.

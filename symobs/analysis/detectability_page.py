@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.coordinates import set_anew
-from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_spectrum, stack_of
+from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_hidden, show_spectrum, stack_of
 from symobs.analysis.modes import stable_modes
 from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, stratum_of, undecided
 from symobs.derivation import Case as CaseStep
@@ -144,6 +144,7 @@ def _generic(page: Page, result: HiddenStability) -> None:
     if not hidden_ones:
         page.conclude(f"seen_{result.task}")
         return
+    show_hidden(page, result, "on_kernel")
     _hidden_modes(page, result, hidden_ones)
 
 

@@ -12,6 +12,7 @@ from symobs.analysis.matrix_exponential import (
     tell_question,
 )
 from symobs.analysis.pages import given, hidden, hidden_polynomial
+from symobs.conditions import vanishing_factors
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
 from symobs.formula import Exactly, Literal, Quotient
@@ -82,6 +83,8 @@ def _tell_lyapunov(result: Gramian, page: Page) -> None:
     letter = page["P_l"]
     equation = relation(_transposed(A) @ letter + letter @ A, -_square(C))
     page.equal(relation(letter, P), say="lyapunov", equation=equation)
+    if vanishing_factors([P.common_denominator()], result.plant.symbols.signs):
+        page.remark("lyapunov_denominator")
 
 
 def tell_gramian(result: Gramian, page: Page) -> None:

@@ -11,7 +11,7 @@ from symobs.conditions import never_zero
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
 from symobs.exact.quasi import determinant, table_of
-from symobs.formula import Literal, Shown, Together
+from symobs.formula import Literal, Shown
 from symobs.formula.calculus import since_start
 from symobs.formula.term import block
 from symobs.page import relation
@@ -38,7 +38,7 @@ def tell_initial_state(result: InitialState, page: Page) -> None:
     if answer["input"] is not None:
         u = page.set("u_t", answer["input"])
         data.append(relation(u, _entry(answer["input"])))
-    page.conclude("measured", data=Together(tuple(data)))
+    page.equal(*data, say="measured")
     free = _tell_forced(result, page)
     if answer["x0"] is None:
         _tell_refusal(result, page, free)

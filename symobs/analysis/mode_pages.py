@@ -75,12 +75,18 @@ def fixed_modes(page: Page, result: ModeResult) -> None:
     page.set("N", test.answer["kernel"])
     page.set("X", test.answer["restricted"])
     page.conclude_silently(*hidden(page, result.kind == "observability"))
+    show_hidden(page, result, "fixed_modes")
+
+
+def show_hidden(page: Page, result: ModeResult, words: str) -> None:
+    """Show N and X, which are established, and what makes the eigenvalues of X the fixed modes."""
+    test = result.test
     A = page["A"] if result.kind == "observability" else page["A"].T
     page.equal(
         relation(page["N"], test.answer["kernel"]),
         relation(A @ page["N"], page["N"] @ page["X"]),
         relation(page["X"], test.answer["restricted"]),
-        say=f"fixed_modes_{result.kind}",
+        say=f"{words}_{result.kind}",
     )
 
 

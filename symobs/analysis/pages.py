@@ -10,8 +10,8 @@ from symobs.certificate import verify
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
-from symobs.exact import Factored, Matrix, Scalar, factored, root_of_pole, roots_of, unit_rows
-from symobs.formula import Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
+from symobs.exact import Factored, Matrix, Scalar, factored, places, root_of_pole, roots_of, unit_rows
+from symobs.formula import Decimals, Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
 from symobs.formula.term import block
 from symobs.page import Page, predicate, relation, sentence
 from symobs.stability import as_inequality, stability
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 WRITTEN_UP_TO = 200
 #: More sets of states are not named in one sentence.
 NAMED_SETS = 6
+#: More decimals of the data are not told as fractions.
+_DECIMALS = 4
 
 
 def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
@@ -41,28 +43,45 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             page.remark("realised")
         page.set("A", m.A)
         relations = []
-        rate = page.value(m.A) @ page["x"]
+        rate = _as_given(page, m.A) @ page["x"]
         if m.has_input:
             page.set("B", m.B)
-            rate = rate + page.value(m.B) @ page["u"]
+            rate = rate + _as_given(page, m.B) @ page["u"]
         relations.append(relation(page["x"].derivative, rate))
         page.environment = page.environment.having(dynamics={"x": rate.formula})
         if m.has_output:
             page.set("C", m.C)
-            output = page.value(m.C) @ page["x"]
+            output = _as_given(page, m.C) @ page["x"]
             if m.has_feedthrough:
                 page.set("D", m.D)
-                output = output + page.value(m.D) @ page["u"]
+                output = output + _as_given(page, m.D) @ page["u"]
             relations.append(relation(page["y"], output))
             page.environment = page.environment.having(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page)
         if plant.is_from_floats:
             page.remark("from_floats")
+        _say_decimals(page)
         state_signs(page)
         for name, wish in desired:
             if wish is not None:
                 _asked(page, name, wish)
+
+
+def _as_given(page: Page, matrix: Matrix) -> Term:
+    """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
+    if page.plant.is_in_decimals and all(places(entry) is not None for entry in matrix.entries):
+        return page.term(Decimals(matrix))
+    return page.value(matrix)
+
+
+def _say_decimals(page: Page) -> None:
+    """Say which fractions the decimals of the data are, where they are few."""
+    m, plant = page.plant.matrices, page.plant
+    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if places(entry)]
+    sizes = dict.fromkeys(-entry if entry.fraction() < 0 else entry for entry in entries)
+    if plant.is_in_decimals and 0 < len(sizes) <= _DECIMALS:
+        page.remark("exact_decimals", numbers=Together(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
 def _hold_to_letters(page: Page) -> None:
@@ -263,7 +282,7 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.set(letters[1], result.answer["restricted"])
     polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
     page.conclude(
-        f"modes_{kind}",
+        f"mode{'s' * (len(result.kernel_vectors) > 1)}_{kind}",
         *hidden(page, kind == "observability", letters),
         modes=Roots(
             hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,

@@ -20,9 +20,10 @@ from symobs.design.observer import page_style, write_observer
 from symobs.design.responses import plot_estimate
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
-from symobs.formula import Exactly, Literal, Quotient, Roots
+from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
+from symobs.phrases import PHRASES
 from symobs.specification import DesiredPolynomial
 from symobs.stability import as_inequality, monic, no_stable_compensator, stability
 
@@ -40,6 +41,10 @@ LARGE = 60
 MATRIX = 60
 #: Conditions with more terms than this are left to the JSON.
 _READABLE_TERMS = 40
+#: Where products of the gains have room beside what they are worth.
+_SMALL_ORDER = 2
+#: Loops with more terms are not written out before they are simplified.
+_LOOP_TERMS = 16
 
 
 def write_compensator(page: Page, design: CompensatorDesign) -> None:
@@ -82,13 +87,20 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
 def _state_space(page: Page, design: CompensatorDesign) -> None:
     """U = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
-    A, B, C, K, L = (page[name] for name in "ABCKL")
-    page.signal("u", -K @ page["x_hat"], say="separation")
+    A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
+    page.signal("u", -K @ x_hat, say="separation")
     closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
-    page.equal(relation(page["x_hat"].derivative, closed @ page["x_hat"] + L @ page["y"]), say="observer_closed")
-    page.define("A_c", closed, shown, say="compensator_matrix")
+    page.equal(relation(x_hat.derivative, closed @ x_hat + L @ page["y"]), say="observer_closed")
+    small = page.plant.order == _SMALL_ORDER and not m.has_feedthrough
+    apart = [A.shown - B.shown @ K.shown - L.shown @ C.shown] if small else []
+    page.define("A_c", closed, *apart, shown, say="compensator_matrix")
+    if closed.value.size <= MATRIX:
+        written = page["A_c"].shown @ x_hat + L.shown @ page["y"]
+        page.equal(
+            relation(x_hat.derivative, written), relation(page["u"], -K.shown @ x_hat), say="compensator_written"
+        )
     draw_compensator(page)
 
 
@@ -137,7 +149,9 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         return
     if found in {"yes", "no"}:
         word = "stable" if found == "yes" else "unstable"
-        page.conclude(f"{stem}_{word}", proper, predicate(word, page["F"]), **slots)
+        facts, reason = (proper, predicate(word, page["F"])), _reason(page, design, word)
+        key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
+        page.conclude(key, *facts, **slots, **(reason if key.endswith("_low") else {}))
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
@@ -147,6 +161,19 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
     inequalities = [as_inequality(value, plant.symbols.signs) for value in positive]
     where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
     page.conclude(f"{stem}_stable_if", proper, where=Exactly(predicate("stable", page["F"]), where), **slots)
+
+
+def _reason(page: Page, design: OutputFeedback, word: str) -> dict[str, Slot]:
+    """Return the polynomial whose coefficients tell by their signs alone: of order 1 or 2, in continuous time."""
+    F, plant = design.answer["F"], page.plant
+    if plant.is_discrete or plant.order > _SMALL_ORDER or not isinstance(F, Scalar) or not page.knows("A_c"):
+        return {}
+    own = (page.s @ page.identity(page["A_c"].value.shape[0]) - page["A_c"]).apply("det")
+    coefficients = own.scalar.coefficients(plant.variable)
+    if own.scalar != monic(F.denominator, plant.variable) or not all(c.is_constant for c in coefficients):
+        return {}
+    positive = all(c.fraction() > 0 for c in coefficients)
+    return {"polynomial": Shown(own.formula, Literal(own.scalar))} if positive == (word == "stable") else {}
 
 
 def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
@@ -188,17 +215,25 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     factors = page.term(formula_of_factored(form))
-    page.define("G_cl", definition, expanded, factors, say="return_path", answer=True, closing=False)
+    few = form.value.size + design.answer["F"].size <= _LOOP_TERMS
+    if few:
+        inserted = page.value(1) + plant_form @ page.value(design.answer["F"])
+        below = factored_form(page, inserted.scalar.denominator)
+        together = page.value(inserted.scalar.numerator) / below
+        page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
+    page.define(
+        "G_cl", definition, expanded, factors, say="loop_after" if few else "return_path", answer=True, closing=False
+    )
     draw_loop(page, plant_form, page.value(design.answer["F"]))
-    unity = page.term(formula_of_factored(design.unity_loop))
-    around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
-    page.define("G_r", around, unity, say="unity_feedback", closing=False)
-    draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
     polynomial = design.loop_polynomial.value
     if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):
         page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
     else:
         page.conclude("loop_polynomial")
+    unity = page.term(formula_of_factored(design.unity_loop))
+    around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
+    page.define("G_r", around, unity, say="unity_feedback", closing=False)
+    draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
 
 
 def return_path_of_several(page: Page, design: OutputFeedback) -> None:

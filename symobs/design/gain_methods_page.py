@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form
@@ -9,8 +10,8 @@ from symobs.design.gain import fresh_names
 from symobs.design.matching import matching
 from symobs.design.names import taken_names
 from symobs.design.row_reduction import Reduction, gain_of, row_reduction
-from symobs.exact import Matrix, Scalar, companion
-from symobs.formula import Literal, Shown
+from symobs.exact import Matrix, Scalar, companion, roots_of
+from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Longer row-reduced forms are not written out, nor more vectors than there are letters for.
 _READABLE, _VECTORS = 150, 9
+#: A gain that rounding changes by more than this share of an entry is worth a warning.
+_HARM = Fraction(1, 100)
 
 
 def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -83,17 +86,42 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
+    _open_eigenvalues(page, side)
     page.remark(f"null_vectors_{side.kind}")
     for number, part in enumerate(found, 1):
         _reduce(page, side, part, number)
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
     f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
-    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())))
-    gain = f @ psi.inverse
+    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
+    gain, shown = f @ psi.inverse, f.shown @ psi.shown.inverse
+    unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
-        page.define_transposed("L", gain, say="row_reduced_observer")
+        page.define_transposed("L", gain, shown, say=f"row_reduced{unique}_observer")
     else:
-        page.define("K", gain, say="row_reduced_state_feedback", answer=True)
+        page.define("K", gain, shown, say=f"row_reduced{unique}_state_feedback", answer=True)
+    _rounded_too_early(page, gain.value)
+
+
+def _open_eigenvalues(page: Page, side: Side) -> None:
+    """Say where the eigenvalues are without the gain, where they can be written down."""
+    own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
+    factors = own.scalar.factors()[1]
+    if own.scalar.names <= {page.plant.variable} and all(f.degree(page.plant.variable) <= 2 for f, _ in factors):
+        page.remark(
+            f"open_eigenvalues_{side.kind}", roots=Roots(own.formula, roots_of(own.scalar, page.plant.variable))
+        )
+
+
+def _rounded_too_early(page: Page, gain: Matrix) -> None:
+    """Show what becomes of the gain when the columns of Ψ are rounded before it is inverted, where that does harm."""
+    near = page.decimals(page["Psi"].value)
+    if not near or near[1].value.determinant().is_zero:
+        return
+    spoiled = page["f_psi"].shown @ near[1].inverse
+    shown = page.decimals(spoiled.value)
+    pairs = zip(spoiled.value.entries, gain.entries, strict=True)
+    if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
+        page.equal(relation(spoiled, *shown), say="rounded_too_early")
 
 
 def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
@@ -106,7 +134,8 @@ def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
         page.equal(chain, say=f"{words}_reduced", pole=_named(page, part))
     if part.size == 1:
         _relations(page, part, number)
-    xi = page.define(f"xi_{number}", part.vector, say="" if part.size == 1 else "vectors_chosen")
+    near = page.decimals(part.vector)
+    xi = page.define(f"xi_{number}", part.vector, *near, say="" if part.size == 1 else "vectors_chosen")
     zero = Matrix.zeros(part.order * part.size, 1)
     matrix = part.matrix.select(range(part.matrix.shape[0]), range(part.vector.shape[0]))
     right = zero if part.before is None else Matrix.column([-entry for entry in part.before.T.entries])

@@ -22,7 +22,7 @@ from symobs.design.gain import GainDesign, fresh_names
 from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import taken_names
-from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, roots_of
+from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
 from symobs.page import Page, predicate, relation
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: A coefficient of φ with more terms than this gets a letter of its own on the page.
 _PLAIN_TERMS = 4
+#: The degree of the factor of a conjugate pair.
+_PAIR = 2
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,7 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         else:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
+    page.in_decimals(side.gain)
     _verified(page, design, side)
     for case in design.case_tree:
         _case(page, case, side)
@@ -311,9 +314,19 @@ def _verified(page: Page, design: GainDesign, side: Side) -> None:
     members = [error_determinant(page, side), page.value(polynomial)]
     if not desired.is_expanded and polynomial == desired.polynomial:
         members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
-    page.verified("as_required", check=relation(*members))
+    say_as_required(page, desired, *members)
     if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
         say_stability(page, error_determinant(page, side))
+
+
+def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
+    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves."""
+    pairs = any(factor.degree(desired.variable) == _PAIR for factor in desired.factors)
+    if not pairs or not desired.poles or not desired.is_numeric:
+        page.verified("as_required", check=relation(*members))
+        return
+    roots = Roots(members[0].formula, tuple(root_of_pole(pole, desired.variable) for pole in desired.poles))
+    page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
 def _case(page: Page, case: Case, side: Side) -> None:

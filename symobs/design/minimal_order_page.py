@@ -18,9 +18,10 @@ from symobs.design.compensator_page import (
     return_path_of_several,
     say_stability,
 )
+from symobs.design.components import combination
 from symobs.design.gain_pages import FEEDBACK, error_determinant, name_entries, write_gain
 from symobs.design.observer import page_style
-from symobs.design.reduced_order_page import combination, observer_state, write_observer_of_rest
+from symobs.design.reduced_order_page import observer_state, write_observer_of_rest
 from symobs.design.responses import plot_estimate
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Literal, Quotient
@@ -70,6 +71,9 @@ def write_control_law(page: Page, design: MinimalOrderCompensator, *, large: boo
     partitioned_gain(page)
     K_1, K_2 = page["K_1"], page["K_2"]
     page.signal("u", -K_1 @ page["x_1"] - K_2 @ page["x_2_hat"], say="minimal_control")
+    if K_1.value.shape == K_2.value.shape == (1, 1) and not plant.matrices.has_feedthrough:
+        pairs = [(-K_1.value, page["y"]), (-K_2.value, page["x_2_hat"])]
+        page.equal(relation(page["u"], *_numbers(page, pairs, large=False)))
     page.conclude_silently(relation(page["u"], -page["K"] @ page["x_hat"]))
     page.define("K_y", K_1 + K_2 @ page["L"], say="output_gain")
     K_y, K_2, u, y, z = (page[name] for name in ("K_y", "K_2", "u", "y", observer_state(page)))

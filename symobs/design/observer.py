@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
+from symobs.design.components import write_components
 from symobs.design.drawings import draw_collected, draw_copy
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
@@ -126,18 +127,24 @@ def write_observer(page: Page, *, drawn: bool = False) -> None:
         draw_copy(page)
     page.signal("e", page["x"] - page["x_hat"], silent=True)
     closed = A - L @ C
+    rate = A @ page["x"] + page["B"] @ page["u"] if m.has_input else A @ page["x"]
+    if m.has_feedthrough:
+        page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
     page.equal(
-        relation(page["e"].derivative, closed @ page["e"], closed.shown @ page["e"]),
+        relation(page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.shown @ page["e"]),
         say="error_equation",
         error=relation(page["e"], page["x"] - page["x_hat"]),
     )
-    collected = closed.shown @ page["x_hat"]
+    collected, driven = closed.shown @ page["x_hat"], None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected = collected + driven.shown @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L.shown @ page["y"]), say="observer_collected", answer=True
+        relation(page["x_hat"].derivative, collected + L.shown @ page["y"]),
+        say="observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected",
+        answer=True,
     )
+    write_components(page, driven)
 
 
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.observability import Observability
 from symobs.analysis.pages import formula_of_factored, given, rank_cases, square_test
 from symobs.conditions import vanishing_factors
+from symobs.design.components import combination, summed
 from symobs.design.drawings import draw_minimal_order
 from symobs.design.gain import fresh_names
-from symobs.design.gain_pages import OBSERVER, define_test_matrix
+from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
 from symobs.design.names import taken_names
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.design.responses import plot_error
@@ -17,10 +18,14 @@ from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
+from symobs.stability import stability
 
 if TYPE_CHECKING:
     from symobs.design.reduced_order_observer import ReducedOrderObserver
     from symobs.formula import Relation
+
+#: Plants of a larger order have their blocks listed one by one.
+_LISTED_FROM = 2
 
 
 def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
@@ -99,14 +104,22 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     if driven:
         first.append((page["B_1"], u))
         second.append((page["B_2"], u))
-    known = page["y"] - page["D"] @ u if page.plant.matrices.has_feedthrough else page["y"]
-    key = "parts_with_feedthrough" if page.plant.matrices.has_feedthrough else "parts"
+    feedthrough = page.plant.matrices.has_feedthrough
+    known = page["y"] - page["D"] @ u if feedthrough else page["y"]
+    said: dict[str, Any] = {
+        "measured": relation(x_1, page["C"] @ page["x"], known),
+        "unmeasured": relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+    }
+    key = "parts_with_feedthrough" if feedthrough else "parts"
+    if trivial and page.plant.order > _LISTED_FROM:
+        names = [f"A_{i}{j}" for i in "12" for j in "12"] + (["B_1", "B_2"] if driven else [])
+        page.equal(*(relation(page[name], page[name].shown) for name in names), say=f"{key}_blocks", **said)
+        key, said = "two_parts", {}
     page.equal(
         relation(x_1.derivative, summed(first), combination(page, first)),
         relation(x_2.derivative, summed(second), combination(page, second)),
         say=key,
-        measured=relation(x_1, page["C"] @ page["x"], known),
-        unmeasured=relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+        **said,
     )
     _mere_copy(page)
     if design.inner.fixed_polynomial.is_one:
@@ -142,6 +155,10 @@ def _mere_copy(page: Page) -> None:
     if page.plant.matrices.has_input:
         copy = copy + page["B_2"] @ page["u"]
     page.remark("mere_copy", left=relation(x_2.derivative - copy, page["A_22"] @ (x_2 - x_2_hat)))
+    own = (page.s @ page.identity(page["A_22"].value.shape[0]) - page["A_22"]).apply("det")
+    plant = page.plant
+    if stability(own.scalar, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "no":
+        page.remark("mere_copy_fails", predicate("unstable", own))
 
 
 def _error_matrix(page: Page) -> Term:
@@ -176,8 +193,9 @@ def _gain(page: Page, design: ReducedOrderObserver) -> None:
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)
+    page.in_decimals("L")
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
-    page.verified("as_required", check=relation(*members))
+    say_as_required(page, desired, *members)
 
 
 def observer_state(page: Page) -> str:
@@ -200,14 +218,11 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
         say="next_output" if page.plant.is_discrete else "derivative_of_output",
         state=relation(z, page["x_2_hat"] - L @ x_1),
     )
-    page.set("F_z", design.answer["F"])
-    page.set("H_z", design.answer["H"])
+    _matrices(page, design)
     pairs = [(page["F_z"], z)]
     if design.answer["G"] is not None:
-        page.set("G_z", design.answer["G"])
         pairs.append((page["G_z"], u))
     pairs.append((page["H_z"], page["y"]))
-    page.conclude_silently(relation(page["F_z"], closed))
     page.equal(relation(z.derivative, summed(pairs), combination(page, pairs)), say="reduced_final", answer=True)
     output = page["y"] - page["D"] @ u if m.has_feedthrough else page["y"]
     stacked = block([[output], [z]])
@@ -217,6 +232,9 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     page.define("M_z", page["T"].inverse @ lift, silent=True)
     page.signal("x_hat", page["M_z"] @ stacked, silent=True)
     estimate = block([[x_1], [page["x_2_hat"]]])
+    single = order == outputs == 1 and not m.has_feedthrough
+    numbers = [combination(page, [(page.value(Matrix.identity(1)), z), (L, page["y"])])] if single else []
+    page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say="rest_estimated")
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
         relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
@@ -225,6 +243,20 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     )
     unseen = block([[corner @ page["e_2"]], [page["e_2"]]])
     page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
+
+
+def _matrices(page: Page, design: ReducedOrderObserver) -> None:
+    """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
+    L, m = page["L"], page.plant.matrices
+    page.define("F_z", _error_matrix(page), say="reduced_matrices")
+    if m.has_input and not m.has_feedthrough:
+        page.define("G_z", page["B_2"] - L @ page["B_1"])
+    page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"])
+    if m.has_input and m.has_feedthrough:
+        page.define("G_z", page["B_2"] - L @ page["B_1"] - page["H_z"] @ page["D"])
+    page.conclude_silently(
+        *(relation(page[f"{name}_z"], design.answer[name]) for name in "FGH" if design.answer[name] is not None)
+    )
 
 
 def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
@@ -242,30 +274,3 @@ def _impossible(page: Page, design: ReducedOrderObserver) -> None:
     fixed, facts = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
     page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)
-
-
-def summed(pairs: list[tuple[Term, Term]]) -> Term:
-    """Return Σ matrix · signal, as letters."""
-    total = pairs[0][0] @ pairs[0][1]
-    for matrix, signal in pairs[1:]:
-        total = total + matrix @ signal
-    return total
-
-
-def combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
-    """Return the sum with numbers: what is zero is left out, and a 1×1 matrix is a number."""
-    total: Term | None = None
-    for matrix, signal in pairs:
-        value = matrix.value
-        if value.is_zero:
-            continue
-        single = value[0, 0] if value.shape == (1, 1) else None
-        negative = single is not None and single.is_constant and single.fraction() < 0
-        if single is not None:
-            size = -single if negative else single
-            part = signal if size.is_one else page.value(size) * signal
-        else:
-            part = page.value(value) @ signal
-        part = -part if negative and total is None else part
-        total = part if total is None else total - part if negative else total + part
-    return summed(pairs) if total is None else total

@@ -6,6 +6,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.calculus import antiderivative, exponential_of_integral
 from symobs.exact.complex import Complex
+from symobs.exact.decimals import is_rounding, places, rounded, written
 from symobs.exact.elimination import echelon, independent_rows, kernel, modulo, rank, reduced_echelon, unit_rows
 from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
@@ -46,8 +47,10 @@ __all__ = [
     "from_coefficients",
     "hankel_of",
     "independent_rows",
+    "is_rounding",
     "kernel",
     "modulo",
+    "places",
     "pole_and_zero_polynomial",
     "product_of",
     "rank",
@@ -56,8 +59,10 @@ __all__ = [
     "root_of_pole",
     "roots_are",
     "roots_of",
+    "rounded",
     "stable_roots",
     "transfer",
     "transfer_matrix",
     "unit_rows",
+    "written",
 ]

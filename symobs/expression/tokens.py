@@ -41,7 +41,7 @@ _NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
-_OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT")
+_OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 
 
 def sharing(scope: Scope, values: Iterable[object]) -> Scope:
@@ -61,6 +61,9 @@ class Tokeniser:
 
     Invariant: `tokens` says what the text read so far means, `open` holds the brackets still to be closed.
     """
+
+    #: What a token looks like.
+    pattern = _TOKEN
 
     def __init__(self, source: Source, scope: Scope) -> None:
         """Take the text, and the names it may use."""
@@ -85,7 +88,7 @@ class Tokeniser:
         """
         position = 0
         while position < len(self.text):
-            match = _TOKEN.match(self.text, position)
+            match = self.pattern.match(self.text, position)
             if match is None:
                 message, repair = _unreadable(self.text[position])
                 raise self.source.error(message, position, repair)

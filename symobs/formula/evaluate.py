@@ -17,6 +17,7 @@ from symobs.formula.nodes import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Formula,
     Identity,
@@ -239,7 +240,7 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             if name in environment.signals:
                 return _signal(name, environment, arithmetic)
             return arithmetic.leaf(environment.value(name))
-        case Literal(value):
+        case Literal(value) | Decimals(value):
             return arithmetic.leaf(value)
         case Identity(order):
             return arithmetic.leaf(Matrix.identity(order))

@@ -1,6 +1,6 @@
 """The formula tree: what a line of a derivation says, as its author wrote it.
 
-Fourteen kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
+Fifteen kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
 environment (`evaluate`), and is printed only by a format.
 """
 
@@ -26,6 +26,13 @@ class Letter:
 @dataclass(frozen=True, slots=True)
 class Literal:
     """An exact value written out."""
+
+    value: Scalar | Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Decimals:
+    """Decimals written out, as digits and not as fractions: exact where they follow `=`, rounded where they follow `≈`."""
 
     value: Scalar | Matrix
 
@@ -127,6 +134,7 @@ class Integral:
 Formula: TypeAlias = (
     Letter
     | Literal
+    | Decimals
     | Identity
     | Sum
     | Negative
@@ -146,7 +154,8 @@ Formula: TypeAlias = (
 class Relation:
     """members[0] operators[0] members[1] …: a chain of equations and comparisons, each link a claim.
 
-    Operators are `=`, `!=`, `<`, `>`, `<=`, `>=`, and `~` between matrices whose rows span the same space.
+    Operators are `=`, `!=`, `<`, `>`, `<=`, `>=`, `~` between matrices whose rows span the same space, and
+    `≈` before decimals that are rounded.
     """
 
     members: tuple[Formula, ...]

@@ -8,6 +8,7 @@ from symobs.formula.nodes import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Formula,
     Identity,
@@ -50,7 +51,7 @@ def plain(formula: Formula, variable: str) -> str:
             return variable
         case Letter(name):
             return f"{name}({variable})" if name in _FUNCTIONS_OF_THE_VARIABLE else name
-        case Literal(value):
+        case Literal(value) | Decimals(value):
             return _literal(value)
         case Identity():
             return "I"

@@ -13,6 +13,7 @@ from symobs.exact import Matrix
 from symobs.formula.nodes import (
     At,
     Block,
+    Decimals,
     Derivative,
     Formula,
     Integral,
@@ -121,6 +122,8 @@ def negated(formula: Formula) -> Formula:
             return operand
         case Literal(value):
             return Literal(-value)
+        case Decimals(value):
+            return Decimals(-value)
         case Sum((first, Negative(second))):
             return Sum((second, negated(first) if isinstance(first, Negative) else Negative(first)))
         case Sum(terms):

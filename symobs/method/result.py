@@ -22,6 +22,7 @@ from symobs.page import Page
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
 
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
@@ -192,9 +193,12 @@ class Result(Faces):
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), "conditions", "cases", *self.fields]
 
-    def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
-        """Return the result in a format: latex, fragment, text, json, pdf, …; in a convention, by name or TOML file."""
-        return render(Document("", "", (self,), convention_named(convention)), format_name)
+    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
+        """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
+
+        `detail` says how much of the derivation is told: full, outline or answer.
+        """
+        return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
 
     def __repr__(self) -> str:
         shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
@@ -208,12 +212,15 @@ def _denominators(values: Iterable[Any]) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, results, and the convention in which they are told."""
+    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
 
     title: str
     source: str
     results: tuple[Result, ...]
     convention: Convention = STANDARD
+    text: str = ""
+    detail: str = field(default="full", kw_only=True)
+    templates: Path | None = field(default=None, kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

@@ -24,6 +24,7 @@ from symobs.phrases import (
     pictures,
     pole_advice,
     polynomials,
+    questions,
     rank,
     reduced_order,
     regions,
@@ -55,6 +56,7 @@ _MODULES = (
     regions,
     pictures,
     diagrams,
+    questions,
 )
 
 
@@ -83,6 +85,13 @@ NAMING = frozenset(key for module in _MODULES for key in getattr(module, "NAMING
 
 #: Phrases that begin a new paragraph wherever they stand.
 OPENS = frozenset(key for module in _MODULES for key in getattr(module, "OPENS", ()))
+
+
+#: Phrases that only explain, and refer to nothing but what was just shown: a shorter page leaves them out.
+EXPLAINS = frozenset(key for module in _MODULES for key in getattr(module, "EXPLAINS", ()))
+
+#: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
+SPELLS_OUT = frozenset(key for module in _MODULES for key in getattr(module, "SPELLS_OUT", ()))
 
 
 def slots_of(key: str) -> frozenset[str]:

@@ -10,18 +10,26 @@ _DEFECTIVE = (
 PHRASES: dict[str, str] = {
     "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
     "error_equation": "Whatever the input, the error {error} then obeys",
+    "feedthrough_cancels": "The output error does not contain the input, since the feedthrough cancels in it:",
     "observer_collected": "Collected, the observer reads",
+    "observer_collected_with_feedthrough": "Collected, with $B - L D$ in place of $B$ so that the feedthrough does cancel, the observer reads",
+    "in_components": "Component by component these are the equations",
+    "right_estimate_stays": "An estimate that is right stays right: {consistent}.",
     "existence_ansatz": "Let a linear system be driven by what is known, with matrices still to be determined:",
     "existence_error": "Then {error} obeys",
     "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",
     "existence_left": "and of the error there remains",
     "existence_observer": "With $H_x = L$ the observer is",
-    "separation": "By the separation principle the control law uses the estimate in place of the state:",
-    "observer_closed": "Put into the observer, it leaves a system that is driven by $y$ alone,",
+    "separation": "By the separation principle§ the control law uses the estimate in place of the state:",
+    "observer_closed": "Put into the observer, it leaves a system of the order of the plant that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
+    "compensator_written": "Written out, the compensator is",
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
+    "compensator_stable_low": "It is strictly proper, and stable by itself because all coefficients of {polynomial} are positive.",
     "compensator_unstable": "It is strictly proper. By itself it is not stable, although the loop is.",
+    "compensator_unstable_low": "It is strictly proper. By itself it is not stable, since not all coefficients of {polynomial} are positive, although "
+    "the loop is.",
     "compensator_proper": "It is strictly proper.",
     "compensator_stable_if": "It is strictly proper, and by itself stable exactly where {where}.",
     "control_in_error": "In terms of the error,",
@@ -31,7 +39,10 @@ PHRASES: dict[str, str] = {
     "unity_feedback": "With $F$ before the plant and unity feedback the reference acts on the output through another numerator,",
     "similar_loops": "The two matrices are similar through {turned}.",
     "plant_transfer": "As a transfer function the plant is",
-    "return_path": "With $F$ in the return path,",
+    "return_path": "With $F$ in the return path, where the minus sign of the control law stands at the summing junction, the loop is",
+    "return_difference": "With $F$ in the return path, where the minus sign of the control law stands at the summing junction, the loop has the "
+    "return difference",
+    "loop_after": "and therefore the transfer function",
     "no_stable_compensator": "At a zero of $P$ in the right half-plane its characteristic polynomial is negative. No stable compensator can stabilise such a plant.",
     "with_coefficients": "where",
     "named_entries": "From here on we write its entries as",
@@ -48,6 +59,8 @@ OPENS = ("observer_equation", "existence_observer")
 ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_stable": ("strictly_proper", "stable"),
     "compensator_unstable": ("strictly_proper", "unstable"),
+    "compensator_stable_low": ("strictly_proper", "stable"),
+    "compensator_unstable_low": ("strictly_proper", "unstable"),
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
     "no_stable_compensator": ("no_stable_compensator",),
@@ -60,4 +73,11 @@ RESTS_ON: dict[str, str] = {
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
+    "similar_loops": "similarity",
+    "compensator_stable_low": "hurwitz",
+    "compensator_unstable_low": "hurwitz",
 }
+
+SPELLS_OUT = ("named_entries", "with_coefficients")
+
+EXPLAINS = ("similar_loops",)

@@ -32,3 +32,8 @@ RESTS_ON: dict[str, str] = {
     "last_column_observable": "canonical_form",
     "reached_and_hidden": "decomposition",
 }
+
+EXPLAINS = (
+    "last_column_observable",
+    "zero_pattern",
+)

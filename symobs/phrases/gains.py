@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "assignable_observer": "By the pole assignment theorem the poles of $A - L C$ can therefore be placed at will.",
-    "assignable_state_feedback": "By the pole assignment theorem the poles of $A - B K$ can therefore be placed at will.",
+    "assignable_observer": "By the pole assignment theorem§ the poles of $A - L C$ can therefore be placed at will.",
+    "assignable_state_feedback": "By the pole assignment theorem§ the poles of $A - B K$ can therefore be placed at will.",
     "asks_observer": "The observer poles ask for",
     "asks_state_feedback": "The control poles ask for",
     "coefficients": "with the coefficients",
     "already_canonical": "The pair ($A$, $B$) is already in controllable canonical form, with {chi}, so the gain is the difference of "
     "coefficients, constant first.",
-    "open_observer": "We place them for the dual pair ($Aᵀ$, $Cᵀ$), whose controllability matrix is $Oᵀ$ and whose characteristic polynomial is",
+    "open_observer": "We place them for the dual pair ($Aᵀ$, $Cᵀ$)§, whose controllability matrix is $Oᵀ$ and whose characteristic polynomial is",
     "open_state_feedback": "The characteristic polynomial of $A$ is",
-    "canonical_observer": "The dual pair is brought to controllable canonical form by",
-    "canonical_state_feedback": "The pair is brought to controllable canonical form by",
+    "canonical_observer": "The dual pair is brought to controllable canonical form§ by",
+    "canonical_state_feedback": "The pair is brought to controllable canonical form§ by",
     "row_observer": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
     "row_state_feedback": "There the gain is the row of differences of coefficients, constant first. Carried back it is",
     "unknown_gain": "The gain is taken with unknown entries,",
@@ -25,9 +25,11 @@ PHRASES: dict[str, str] = {
     "companion_vector_state_feedback": "The last row of the inverse of the controllability matrix is",
     "companion_rows": "With its images as rows,",
     "companion_reached": "the pair is brought to companion form:",
-    "null_vectors_observer": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of the transpose of $A - L C$ "
+    "open_eigenvalues_observer": "Without the gain the error would have the eigenvalues {roots} of $A$.",
+    "open_eigenvalues_state_feedback": "Without the gain the plant has the eigenvalues {roots}.",
+    "null_vectors_observer": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of the transpose of $A - L C$ "
     "when the gain takes it to the lower part.",
-    "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted: its upper part becomes an eigenvector of $A - B K$ when the gain "
+    "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of $A - B K$ when the gain "
     "takes it to the lower part.",
     "pole_reduced": "For the pole {pole} the matrix and its row-reduced echelon form are",
     "pair_reduced": "For the conjugate pair that belongs to the factor {pole} the real matrix and its row-reduced echelon form are",
@@ -38,13 +40,21 @@ PHRASES: dict[str, str] = {
     "free_chosen": "What is free is chosen:",
     "vectors_chosen": "With a choice of what is free, and the upper parts before the lower ones, this gives",
     "upper_parts": "The upper parts of these vectors, and the lower ones, are the columns of",
+    "with_determinant": "with the determinant",
     "row_reduced_observer": "The gain takes each upper part to its lower part:",
     "row_reduced_state_feedback": "The gain takes each upper part to its lower part:",
-    "last_column": "Ackermann's formula takes the last column of the inverse of the observability matrix,",
-    "last_row": "Ackermann's formula takes the last row of the inverse of the controllability matrix,",
+    "row_reduced_unique_observer": "The gain takes each upper part to its lower part. There is one output, so no other gain places these poles, "
+    "and what was chosen for the free components cancels:",
+    "row_reduced_unique_state_feedback": "The gain takes each upper part to its lower part. There is one input, so no other gain places these "
+    "poles, and what was chosen for the free components cancels:",
+    "in_decimals": "In decimals this is",
+    "rounded_too_early": "The fractions are kept to the end with reason. Had the columns been rounded first, the product of $f_psi$ with the inverse would have been",
+    "last_column": "Ackermann's formula§ takes the last column of the inverse of the observability matrix,",
+    "last_row": "Ackermann's formula§ takes the last row of the inverse of the controllability matrix,",
     "ackermann_observer": "and puts $A$ into the polynomial asked for:",
     "ackermann_state_feedback": "and puts $A$ into the polynomial asked for:",
     "as_required": "{check}, as required.",
+    "roots_as_required": "{check}, with the roots {roots}, as required.",
     "fixed_but_wanted_observer": "No gain moves the unobservable modes {roots}, but they are among the poles asked for.",
     "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable modes {roots}, but they are among the poles asked for.",
     "one_gain_observer": "A gain that places the others is",
@@ -86,9 +96,11 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 RESTS_ON: dict[str, str] = {
-    "upper_parts": "row_reduction",
+    "null_vectors_observer": "row_reduction",
+    "null_vectors_state_feedback": "row_reduction",
     "companion_rows": "companion_form",
     "assignable_observer": "observer_poles",
+    "assignable_state_feedback": "state_feedback_poles",
     "open_observer": "duality",
     "canonical_observer": "canonical_form",
     "canonical_state_feedback": "canonical_form",
@@ -96,3 +108,17 @@ RESTS_ON: dict[str, str] = {
     "last_column": "ackermann",
     "last_row": "ackermann",
 }
+
+EXPLAINS = (
+    "assignable_observer",
+    "assignable_state_feedback",
+    "already_canonical",
+    "null_vectors_observer",
+    "null_vectors_state_feedback",
+    "row_observer",
+    "row_state_feedback",
+    "row_reduced_observer",
+    "row_reduced_state_feedback",
+)
+
+SPELLS_OUT = ("coefficients",)

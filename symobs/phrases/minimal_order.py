@@ -6,7 +6,7 @@ _DIRECT = "It has a direct term, {direct}, because the measured states act at on
 
 PHRASES: dict[str, str] = {
     "partitioned_gain": "Measured and estimated states are fed back by",
-    "minimal_control": "By the separation principle the control law uses the measured states as they are and the estimate of the others:",
+    "minimal_control": "By the separation principle§ the control law uses the measured states as they are and the estimate of the others:",
     "output_gain": "With",
     "minimal_control_in_y": "it reads, in terms of the output and of the observer's state,",
     "well_posed_assumed": "This determines $u$ where {condition}.",

@@ -20,6 +20,8 @@ PHRASES: dict[str, str] = {
     "pbh_general": "With parameters these are the ranks in general. Where exactly they hold is told without eigenvalues.",
     "fixed_modes_observability": "The unobservable modes, which no observer gain can move, are those of $A$ on the kernel:",
     "fixed_modes_controllability": "The uncontrollable modes, which no feedback gain can move, are those of $Aᵀ$ on the left kernel:",
+    "on_kernel_observability": "On the kernel, whose basis are the columns of $N$, the matrix $A$ acts as $X$:",
+    "on_kernel_controllability": "On the left kernel, whose basis are the columns of $N$, the matrix $Aᵀ$ acts as $X$:",
     "no_fixed_modes_observability": "There are no unobservable modes.",
     "no_fixed_modes_controllability": "There are no uncontrollable modes.",
     "asks_detectability_continuous": "The pair ($C$, $A$) is detectable exactly if the matrix of $A - lambda I$ over $C$ has full rank at every eigenvalue with "
@@ -74,3 +76,14 @@ RESTS_ON: dict[str, str] = {
     "means_stabilizability": "detectability",
     "means_lyapunov": "lyapunov",
 }
+
+EXPLAINS = (
+    "asks_detectability_continuous",
+    "asks_stabilizability_continuous",
+    "asks_detectability_discrete",
+    "asks_stabilizability_discrete",
+    "means_detectability",
+    "means_stabilizability",
+    "pbh_asks_observability",
+    "pbh_asks_controllability",
+)

@@ -10,12 +10,12 @@ PHRASES: dict[str, str] = {
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
     "its_poles": "The poles are {roots}.",
     "its_zeros": "The zeros are {roots}.",
-    "stable_continuous": "All its roots lie in the open left half plane: it is stable.",
-    "stable_discrete": "All its roots lie inside the unit circle: it is stable.",
-    "unstable_continuous": "Not all its roots lie in the open left half plane: it is not stable.",
-    "unstable_discrete": "Not all its roots lie inside the unit circle: it is not stable.",
-    "stable_if_continuous": "All its roots lie in the open left half plane exactly where {where}.",
-    "stable_if_discrete": "All its roots lie inside the unit circle exactly where {where}.",
+    "stable_continuous": "All roots lie in the open left half plane: the polynomial is stable.",
+    "stable_discrete": "All roots lie inside the unit circle: the polynomial is stable.",
+    "unstable_continuous": "Not all roots lie in the open left half plane: the polynomial is not stable.",
+    "unstable_discrete": "Not all roots lie inside the unit circle: the polynomial is not stable.",
+    "stable_if_continuous": "All roots of this polynomial lie in the open left half plane exactly where {where}.",
+    "stable_if_discrete": "All roots of this polynomial lie inside the unit circle exactly where {where}.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

@@ -26,14 +26,16 @@ PHRASES: dict[str, str] = {
     "undecided_rank": "Where the rank is lower than in general is not decided here: the minors are too long to be written down.",
     "undecided_case": "What is true where {when} vanishes is not decided here.",
     "undecided_together": "What is true where {when} and {other} vanish together is not decided here.",
-    "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero. From here on we assume {condition}.",
-    "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero. From here on we assume {condition}.",
+    "provided_observability": "The pair ($C$, $A$) is observable exactly where this is not zero§. From here on we assume {condition}.",
+    "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero§. From here on we assume {condition}.",
     "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
     "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
     "kernel_observability": "A state in this direction is never seen at the output:",
     "kernel_controllability": "The input never moves the state along this direction:",
     "modes_observability": "The unobservable modes are {modes}.",
     "modes_controllability": "The uncontrollable modes are {modes}.",
+    "mode_observability": "The unobservable mode is {modes}.",
+    "mode_controllability": "The uncontrollable mode is {modes}.",
 }
 
 NAMING = ("undecided_case", "undecided_together", "undecided_many")
@@ -44,7 +46,9 @@ RESTS_ON: dict[str, str] = {
     "generic_rank_observability": "observability_rank",
     "provided_observability": "observability_rank",
     "no_observability": "observability_rank",
-    "yes_controllability": "duality",
-    "provided_controllability": "duality",
-    "no_controllability": "duality",
+    "yes_controllability": "controllability_rank",
+    "full_rank_controllability": "controllability_rank",
+    "generic_rank_controllability": "controllability_rank",
+    "provided_controllability": "controllability_rank",
+    "no_controllability": "controllability_rank",
 }

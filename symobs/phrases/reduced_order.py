@@ -7,11 +7,16 @@ PHRASES: dict[str, str] = {
     "measured_first": "the measured states come first:",
     "coordinates_assumed": "These are coordinates where {condition}; elsewhere other rows must complete $C$.",
     "parts": "Only {unmeasured} has to be estimated, since {measured} is measured. The plant falls into two parts,",
+    "parts_blocks": "Only {unmeasured} has to be estimated, since {measured} is measured. Accordingly the matrices fall into the blocks",
+    "parts_with_feedthrough_blocks": "Only {unmeasured} has to be estimated, since {measured} is known. Accordingly the matrices fall into the "
+    "blocks",
+    "two_parts": "and the plant into two parts,",
     "parts_with_feedthrough": "Only {unmeasured} has to be estimated, since {measured} is known. The plant falls into two parts,",
-    "first_part_measures": "But everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
-    "($A_12$, $A_22$) is observable because ($C$, $A$) is: {rank}.",
-    "mere_copy": "Correcting the estimate by the output error would do nothing: it takes $x_1$ from the measurement, so there is no such error, "
-    "and a mere copy of the second part goes wrong by {left}.",
+    "first_part_measures": "Yet everything in the first part except $x_2$ is known, so it is a measurement of $x_2$ through $A_12$. The pair "
+    "($A_12$, $A_22$) is observable because ($C$, $A$) is§: {rank}.",
+    "mere_copy": "A copy of the plant, corrected by its output error, is of no use here§: it takes $x_1$ from the measurement, so its output "
+    "error is zero whatever the gain is, and the rest of the copy goes wrong by {left}.",
+    "mere_copy_fails": "That does not even die out, since $A_22$ is not stable.",
     "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
     "reduced_error": "Whatever the input, the error {error} then obeys",
     "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",
@@ -24,7 +29,9 @@ PHRASES: dict[str, str] = {
     "but {state} is kept as the state:",
     "next_output": "The right-hand side of the observer contains the next output. It disappears if not the estimate itself but {state} is kept "
     "as the state:",
-    "reduced_final": "With numbers, and with the output in place of $x_1$, the observer is",
+    "reduced_matrices": "With the output in place of $x_1$ its matrices are",
+    "reduced_final": "and the observer is",
+    "rest_estimated": "The estimate is found again from the definition of its state,",
     "assembled": "and the whole state is estimated by",
     "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the modes "
     "{modes}, and they are not among the poles asked for: there is no such observer.",
@@ -39,6 +46,9 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 OPENS = ("reduced_observer", "derivative_of_output", "next_output", "parts", "parts_with_feedthrough")
 
 RESTS_ON: dict[str, str] = {
+    "mere_copy": "first_attempt",
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",
 }
+
+EXPLAINS = ("first_part_measures", "mere_copy")

@@ -91,3 +91,15 @@ def root_in_words(index: int, count: int) -> str:
     if count == 1:
         return "the only real root"
     return f"the {_ORDINALS[index] if index < len(_ORDINALS) else f'{index + 1}th'} real root from the left"
+
+
+EXPLAINS = (
+    "left_half_plane",
+    "unit_disc",
+    "crossing",
+    "crossing_one",
+    "crossing_infinite",
+    "crossing_discrete",
+    "cells_decide",
+    "points_decide",
+)

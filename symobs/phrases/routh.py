@@ -54,3 +54,11 @@ def changes_sign(count: int) -> str:
     if count == 0:
         return "does not change sign"
     return f"changes sign {('once', 'twice')[count - 1] if count < 3 else f'{_number(count)} times'}"
+
+
+EXPLAINS = (
+    "routh_criterion_positive",
+    "routh_divides",
+    "routh_epsilon",
+    "routh_zero_row",
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "matrix_exponential": "Matrix exponential.",
     "exponential_modes": "The characteristic polynomial decides which functions of time occur:",
-    "exponential_sum": "Each of its roots brings its functions, with constant matrices that the derivatives at $t=0$ determine:",
+    "exponential_sum": "Each root brings its functions, with constant matrices that the derivatives at $t=0$ determine:",
     "exponential_here": "Here",
     "root_named": "where {root}.",
     "exponential_rate": "The check is the equation that defines it,",
@@ -23,7 +23,8 @@ PHRASES: dict[str, str] = {
     "gramian_integral": "Its products, integrated over the horizon, are the Gramian:",
     "gramian_determinant": "Its determinant is",
     "lyapunov": "Lyapunov's equation {equation} has the solution",
-    "gramian_by_lyapunov": "Since the derivative of $Phiᵀ P_l Phi$ is $- Phiᵀ Cᵀ C Phi$, the Gramian is the same expression for every "
+    "lyapunov_denominator": "Where its denominator vanishes there is no such solution, and the integral is taken directly.",
+    "gramian_by_lyapunov": "Since the derivative of $exp_Atᵀ P_l exp_At$ is $- exp_Atᵀ Cᵀ C exp_At$, the Gramian is the same expression for every "
     "sign of the discriminant:",
     "gramian_in_case": "Entry by entry,",
     "gramian_infinite": "The integral over all time exists, since what the output sees decays. It solves Lyapunov's equation "
@@ -44,12 +45,12 @@ PHRASES: dict[str, str] = {
     "kernel_unseen": "the output vanishes at all times, so this state and 0 cannot be told apart:",
     "kernel_of_gramian": "and with it the product with the Gramian and with the finite sum,",
     "initial_state": "Initial state.",
-    "measured": "The data are {data}.",
+    "measured": "The data are",
     "output_free": "Without input, $y = Y x_0$.",
     "output_forced": "The input alone, from rest, moves the state along",
     "output_solution": "which solves {equation} from 0. Then $y = Y x_0$ and what the input adds, and the input's part is moved "
     "to the left:",
-    "moments": "Multiplied by $Phiᵀ Cᵀ$ and integrated over the interval, this becomes $W x_0 = r_0$ with the Gramian",
+    "moments": "Multiplied by $exp_Atᵀ Cᵀ$ and integrated over the interval, this becomes $W x_0 = r_0$ with the Gramian",
     "moments_right": "and the right side",
     "initial_found": "The Gramian is invertible, so the initial state is the one solution,",
     "initial_checked": "{moments}, and the output that starts there is the one that was measured: {output}.",
@@ -97,3 +98,8 @@ RESTS_ON: dict[str, str] = {
 }
 
 NAMING = ("no_closed_form",)
+
+EXPLAINS = (
+    "exponential_sum",
+    "gramian_integral",
+)

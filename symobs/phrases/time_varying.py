@@ -84,3 +84,11 @@ RESTS_ON: dict[str, str] = {
 }
 
 NAMING = ("transition_open_integral",)
+
+EXPLAINS = (
+    "stack_matrix",
+    "gramian",
+    "transition_commuting",
+    "transition_exponential",
+    "stack_drops",
+)

@@ -18,6 +18,7 @@ PHRASES: dict[str, str] = {
     "tracking": "Tracking.",
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
+    "exact_decimals": "The decimals are exact: {numbers}.",
     "without_serifs": "Set without serifs, {parameter} is a parameter of the data, not the matrix or signal of that letter.",
     "declared": "Throughout, {signs}.",
     "desired_pole": "The pole asked for is {poles}.",

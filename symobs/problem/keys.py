@@ -14,6 +14,7 @@ TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
     "id": {"description": "ids of the problem", "type": ["array", "string"], "items": {"type": "string"}},
     "source": {"description": "where the problem comes from", "type": "string"},
+    "text": {"description": "the problem in words, printed under the title", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
     "convention": {
@@ -25,6 +26,20 @@ TOP: dict[str, dict[str, Any]] = {
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
+    "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
+}
+#: What one entry of [[printed]] may say.
+PRINTED: dict[str, dict[str, Any]] = {
+    "where": {"description": "the place in the source", "type": "string"},
+    "erratum": {"description": "the id of the erratum, where it is a known one", "type": "string"},
+    "convention": {"description": "the convention of its letters, where it is not the file's", "type": "string"},
+    "relation": {"description": 'an equation: "A + M C = [-3 1; -2 0]"', "type": "string"},
+    "let": {
+        "description": "letters of this entry alone, and what they stand for",
+        "type": "object",
+        "additionalProperties": {"type": "string"},
+    },
+    "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
 }
 PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
 
@@ -60,6 +75,15 @@ def schema() -> dict[str, Any]:
             "additionalProperties": False,
         },
         "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
+        "printed": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": PRINTED,
+                "additionalProperties": False,
+                "oneOf": [{"required": ["relation"]}, {"required": ["expect"]}],
+            },
+        },
     }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

@@ -15,7 +15,7 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, TOP
+from symobs.problem.keys import PLANT, PRINTED, TOP
 from symobs.problem.tables import Decimal
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
@@ -29,6 +29,7 @@ _MAX_SYMBOLS = 400
 _MAX_TEXT = 2000
 _MAX_UNKNOWN = 20
 _MAX_CELLS = 1000
+_MAX_PRINTED = 200
 
 #: In place of a table of symbols: every well-formed name is a real symbol, as on the command line without a file.
 OPEN = object()
@@ -46,6 +47,8 @@ class Problem:
     specification: Mapping[str, Any]
     expect: Mapping[str, Any] = field(default_factory=dict)
     convention: Convention = STANDARD
+    text: str = ""
+    printed: tuple[Mapping[str, Any], ...] = ()
 
     def solve(self, report: Callable[[str], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins.  All errors of all tasks are raised together."""
@@ -69,7 +72,7 @@ class Problem:
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""
-        return Document(self.title, self.source, results, convention or self.convention)
+        return Document(self.title, self.source, results, convention or self.convention, self.text)
 
 
 class _Errors:
@@ -111,7 +114,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     """
     errors = _Errors()
     _report_unknown(data, TOP, "", errors)
-    title, source = _text(data, "title", errors), _text(data, "source", errors)
+    title, source, text = (_text(data, name, errors) for name in ("title", "source", "text"))
     ids = _ids(data.get("id", []), errors)
     convention = _convention(data, folder, errors)
     asked = _tasks(data, errors, required=only is None)
@@ -121,8 +124,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = _table(data, "expect", errors)
+    printed = _printed(data.get("printed", []), errors)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect, convention)
+        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed)
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention).solve()
@@ -190,6 +194,34 @@ def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
             where = f"id[{i}]" if isinstance(value, list) else "id"
             errors.note(f"a text is expected, but {_came(entry)} came", where, 'write id = ["S0-Ex4.2"]')
     return tuple(str(entry) for entry in entries)
+
+
+def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
+    """Return what a source prints, of the right shape; its equations are read by the audit alone."""
+    entries = value if isinstance(value, list) else [value]
+    if len(entries) > _MAX_PRINTED:
+        errors.note(f"{len(entries)} entries, more than {_MAX_PRINTED}", "printed", "print less in one file")
+    for i, entry in enumerate(entries[:_MAX_PRINTED]):
+        where = f"printed[{i}]"
+        if not isinstance(entry, Mapping):
+            errors.note(f"a table is expected, but {_came(entry)} came", where, "write [[printed]] and its keys below")
+            continue
+        _report_unknown(entry, PRINTED, where, errors)
+        texts = {f"{where}.{key}": entry[key] for key in entry if PRINTED.get(key, {}).get("type") == "string"}
+        for key in [key for key in ("let", "expect") if key in entry]:
+            meanings = _table(entry, key, errors) if isinstance(entry[key], Mapping) else None
+            if meanings is None:
+                errors.note(f"a table is expected, but {_came(entry[key])} came", f"{where}.{key}", "write { … }")
+            elif key == "let":
+                texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
+        for place, text in texts.items():
+            if not isinstance(text, str) or isinstance(text, Decimal):
+                errors.note(f"a text is expected, but {_came(text)} came", place, "write it in quotes")
+            elif len(text) > _MAX_TEXT:
+                errors.note(f"the text has more than {_MAX_TEXT} characters", place, "shorten it")
+        if ("relation" in entry) == ("expect" in entry):
+            errors.note("one of relation and expect is expected", where, 'write relation = "L = [19; 81]"')
+    return tuple(entry for entry in entries if isinstance(entry, Mapping))
 
 
 def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple[Task, ...]:

@@ -36,6 +36,7 @@ _TYPOGRAPHY = {
     "–": "--",
     "—": "---",
     "…": r"\dots{}",
+    "\N{NO-BREAK SPACE}": "~",
 }
 _GREEK = {
     "α": "alpha",
@@ -110,7 +111,7 @@ LETTERS = frozenset(
     "ŃńŅņŇňŌōŎŏŐőŒœŔŕŖŗŘřŚśŜŝŞşŠšŢţŤťŨũŪūŬŭŮůŰűŴŵŶŷŸŹźŻżŽžȘșȚț"
 )
 
-_WHITE = re.compile(r"\s+")
+_WHITE = re.compile(r"[^\S\u00a0]+")
 _CLUSTER = re.compile("(.)([\u0300-\u036f]*)", re.DOTALL)
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 _RUN_TOGETHER = {"--", "''", "``", "?`", "!`"}  # TeX makes one character of each

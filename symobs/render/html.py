@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from copy import copy
+from dataclasses import replace
 from html import escape
 from itertools import count
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
+from symobs.phrases import PHRASES
 from symobs.render import widths
 from symobs.render.blocks import (
     CaseBlock,
@@ -42,7 +44,10 @@ if TYPE_CHECKING:
 
     from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
+    from symobs.sheet import Sheet
 
+#: Stands for the place of a part on a sheet until it is known; no text contains it.
+_SOMEWHERE = "\0"
 _FOLDER = Path(__file__).parent
 _INSET = 2.0  # em, as in the style
 _SKETCH = 78  # columns
@@ -72,6 +77,24 @@ class Html:
         title, _ = opened(blocks := narrate(document))
         return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
 
+    def part(self, document: Document) -> str:
+        """Return a question or a solution below its title; where it will stand is not known yet."""
+        title, blocks = opened(narrate(document))
+        writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=_SOMEWHERE, level=3)
+        return writer.body((replace(title, text=""), *blocks))
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as one page, its contents linked to questions and solutions."""
+        pieces = [f"<h1>{plain(sheet.title)}</h1>"] if sheet.title else []
+        pieces += [_contents(sheet)] if sheet.is_long else []
+        for name, parts in sheet.chapters():
+            pieces.append(f'<h2 id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
+            for entry, part in parts:
+                place = f"{name}-{entry.number}"
+                pieces.append(f'<h3 id="{place}">{entry.number}. {plain(entry.title)}</h3>')
+                pieces.append(part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>")
+        return page(sheet.title, "\n".join(pieces))
+
 
 @output_format
 class HtmlFragment:
@@ -84,6 +107,18 @@ class HtmlFragment:
         """Return the body."""
         body = HtmlWriter(printer_for(document, MathmlPrinter), level=2).body(narrate(document))
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
+
+
+def _contents(sheet: Sheet) -> str:
+    """Return the table of contents: every problem once, with a link to each of its parts."""
+    names = [name for name, _ in sheet.chapters()]
+    rows = []
+    for entry in sheet.entries:
+        links = [f'<a href="#{name}-{entry.number}">{PHRASES[f"sheet_{name}"].lower()}</a>' for name in names[1:]]
+        first = f'<a href="#{names[0]}-{entry.number}">{plain(entry.title)}</a>'
+        rows.append(f"<li>{first}{''.join(f' ({link})' for link in links)}</li>")
+    listed = "\n".join(rows)
+    return f"<nav>\n<h2>{PHRASES['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
 def page(title: str, body: str) -> str:

@@ -13,6 +13,7 @@ from symobs.viewed import Viewed
 
 if TYPE_CHECKING:
     from symobs.method import Document
+    from symobs.sheet import Sheet
 
 SCHEMA = "symobs/1"
 
@@ -28,6 +29,27 @@ class Json:
         """Return the document as indented JSON."""
         results = [result_object(result, document.convention) for result in document.results]
         whole = {"schema": SCHEMA, "title": document.title, "results": results}
+        return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+
+    def part(self, document: Document) -> Any:
+        """Return the objects of a solution's results, or a question as text."""
+        if document.results:
+            return [result_object(result, document.convention) for result in document.results]
+        from symobs.render.text import Text  # noqa: PLC0415 - only for questions
+
+        return Text().part(document)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as indented JSON, one object a problem."""
+        problems = []
+        for entry in sheet.entries:
+            problem = {"file": entry.file, "title": entry.title}
+            if sheet.has_questions:
+                problem["question"] = entry.question
+            if sheet.has_solutions:
+                problem["results"] = entry.solution
+            problems.append(problem | ({"failure": entry.failure} if entry.failure else {}))
+        whole = {"schema": SCHEMA, "title": sheet.title, "problems": problems}
         return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 

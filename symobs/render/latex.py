@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from copy import copy
 from itertools import pairwise, zip_longest
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
+from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
     from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
+    from symobs.sheet import Sheet
 
 _INSET = 1.5  # em, as in the templates
 
@@ -46,10 +48,19 @@ class LatexArticle:
 
     name: ClassVar[str] = "latex"
     suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "article.tex"
 
     def render(self, document: Document) -> str:
         """Return the document's LaTeX."""
-        return typeset(document, "article.tex")
+        return typeset(document, self.template, folder=document.templates)
+
+    def part(self, document: Document) -> dict[str, object]:
+        """Return what a template says of a question or a solution."""
+        return values_of(document)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet's LaTeX."""
+        return typeset_sheet(sheet, "sheet.tex")
 
 
 @output_format
@@ -58,24 +69,54 @@ class LatexFragment:
 
     name: ClassVar[str] = "fragment"
     suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "fragment.tex"
 
     def render(self, document: Document) -> str:
         """Return the LaTeX of the body."""
-        return typeset(document, "fragment.tex")
+        return typeset(document, self.template, folder=document.templates)
 
 
 def typeset(document: Document, template: str, *, folder: Path | None = None) -> str:
     """Return a document in a template; the user's own templates lie in `folder`."""
+    return fill(template, values_of(document), folder=folder)
+
+
+def values_of(document: Document) -> dict[str, object]:
+    """Return what a template says of a document."""
     title, blocks = opened(narrate(document))
     writer = LatexWriter(printer_for(document, LatexPrinter))
-    values = {
+    return {
         "title": escape(title.text).strip(),
         "source": escape(title.source).strip(),
         "conventions": writer.sentence(title.conventions),
         "body": writer.body(blocks),
-        "drawings": any(isinstance(block, Drawing | PictureBlock) for block in every(blocks)),
+        "drawings": has_drawings(blocks),
     }
-    return fill(template, values, folder=folder)
+
+
+def has_drawings(blocks: Sequence[Block]) -> bool:
+    """Whether a page needs TikZ."""
+    return any(isinstance(block, Drawing | PictureBlock) for block in every(blocks))
+
+
+def typeset_sheet(sheet: Sheet, template: str) -> str:
+    """Return a sheet in a template; a problem's values are those of its part, its number, and what failed."""
+    chapters: list[dict[str, Any]] = []
+    for name, parts in sheet.chapters():
+        problems: list[dict[str, Any]] = [
+            {"title": escape(entry.title), "source": "", "conventions": "", "body": "", **(part or {})}
+            | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
+            for entry, part in parts
+        ]
+        chapters.append({"name": name, "title": PHRASES[f"sheet_{name}"], "problems": problems})
+    values = {
+        "title": escape(sheet.title).strip(),
+        "chapters": chapters,
+        "contents": PHRASES["sheet_contents"] if sheet.is_long else "",
+        "words": {"problem": PHRASES["sheet_problem"]},
+        "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
+    }
+    return fill(template, values, folder=sheet.templates)
 
 
 class LatexWriter:
@@ -139,4 +180,5 @@ def _gap(before: Block, after: Block) -> str:
     """Return what stands between two blocks; TeX begins a new paragraph at an empty line."""
     if isinstance(before, Heading) and isinstance(after, Paragraph):
         return " "
-    return "\n\n" if isinstance(after, Heading | CaseBlock) else "\n"
+    begins = isinstance(after, Heading | CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
+    return "\n\n" if begins else "\n"

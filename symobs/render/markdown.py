@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import re
 from copy import copy
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
+from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
@@ -25,6 +27,7 @@ from symobs.render.blocks import (
     TableBlock,
     Title,
     Verified,
+    opened,
 )
 from symobs.render.diagrams import sketch
 from symobs.render.latex_printer import LatexPrinter
@@ -41,6 +44,7 @@ if TYPE_CHECKING:
     from symobs.formula import Relation
     from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
+    from symobs.sheet import Sheet
 
 _SKETCH = 78  # columns
 _SOURCE = re.compile(r"\\(?:\\(?:\[\d+pt\])?|[A-Za-z]+ ?|.)|[<>|]", re.DOTALL)
@@ -71,6 +75,20 @@ class Markdown:
     def render(self, document: Document) -> str:
         """Return the document as Markdown."""
         return MarkdownWriter(printer_for(document, LatexPrinter)).body(narrate(document)) + "\n"
+
+    def part(self, document: Document) -> str:
+        """Return a question or a solution below its title."""
+        title, blocks = opened(narrate(document))
+        return MarkdownWriter(printer_for(document, LatexPrinter), level=3).body((replace(title, text=""), *blocks))
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as Markdown; forges make a table of contents of its headings by themselves."""
+        pieces = [f"# {plain(sheet.title).strip()}"] if sheet.title.strip() else []
+        for name, parts in sheet.chapters():
+            pieces.append(f"## {PHRASES[f'sheet_{name}']}")
+            for entry, part in parts:
+                pieces += [f"### {entry.number}. {plain(entry.title).strip()}", part or paragraph(plain(entry.failure))]
+        return "\n\n".join(pieces) + "\n"
 
 
 def portable(latex: str) -> str:

@@ -7,6 +7,7 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.derivation import (
@@ -44,7 +45,8 @@ from symobs.render.blocks import (
     Verified,
 )
 from symobs.render.conventions import letters_used, stated_conventions
-from symobs.render.prose import filled, joined
+from symobs.render.detail import at_detail
+from symobs.render.prose import filled, joined, with_reference
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,6 +60,9 @@ if TYPE_CHECKING:
     from symobs.render.printer import Printer
 
 P = TypeVar("P", bound="Printer[Any]")
+
+#: The sections of a question.
+_UNNUMBERED = {"task", "tasks"}
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
@@ -78,43 +83,48 @@ def narrate(document: Document) -> tuple[Block, ...]:
     """Return the blocks of a document; a derivation with a false line raises before a word is written."""
     for derivation in document.derivations:
         derivation.check()
-    page = _Page(document.convention)
+    parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
+    numbers = numbered(parts)
+    page = _Page(document.convention, numbers=numbers)
     page.blocks.append(_title(document))
-    together, apart = _statements(document)
+    page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
+    together, apart = _statements(parts)
     page.tell_given(together)
-    for index, derivation in enumerate(document.derivations):
+    for index, steps in enumerate(parts):
         if index in apart:
             page.told.clear()
             page.tell_given(apart[index])
-        for step in derivation.steps:
+        for step in steps:
             if not _is_statement(step):
                 page.tell_step(step)
-        page.told |= _inside(derivation.steps)
-    page.blocks += _sources(document)
+        page.told |= _inside(steps)
+    page.blocks += _sources(numbers)
     return _punctuated(page.blocks)
 
 
-def _sources(document: Document) -> list[Block]:
-    """Return the closing paragraph: the theorems that the sentences appeal to, each with its source."""
+def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
+    """Return the theorems that the sentences appeal to, numbered in the order of the page."""
     keys = dict.fromkeys(
-        RESTS_ON[sentence.key]
-        for derivation in document.derivations
-        for sentence in _sentences(derivation.steps)
-        if sentence.key in RESTS_ON
+        RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
     )
-    if not keys:
+    return {key: number for number, key in enumerate(keys, 1)}
+
+
+def _sources(numbers: Mapping[str, int]) -> list[Block]:
+    """Return the closing paragraph: each theorem under its number, with its source."""
+    if not numbers:
         return []
-    listed = "; ".join(f"{THEOREMS[key].name}: {THEOREMS[key].source}" for key in keys)
-    return [Caution(LABELS["sources"], (f"{listed[0].upper()}{listed[1:]}.",), warns=False)]
+    listed = "; ".join(f"[{number}] {THEOREMS[key].name}: {THEOREMS[key].source}" for key, number in numbers.items())
+    return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
 
 
-def _statements(document: Document) -> tuple[list[Step], dict[int, list[Step]]]:
+def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
     """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
     seen: dict[Formula, Relation] = {}
     together: list[Step] = []
     apart: dict[int, list[Step]] = {}
-    for index, derivation in enumerate(document.derivations):
-        statement = [step for step in derivation.steps if _is_statement(step)]
+    for index, steps in enumerate(parts):
+        statement = [step for step in steps if _is_statement(step)]
         relations = [relation for step in statement for relation in _given_relations(step)]
         if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
             apart[index] = statement
@@ -170,10 +180,16 @@ class _Page:
     """The blocks written so far, and what the next ones depend on."""
 
     def __init__(
-        self, convention: Convention, *, given: Mapping[Formula, Relation] | None = None, numbered: bool = True
+        self,
+        convention: Convention,
+        *,
+        given: Mapping[Formula, Relation] | None = None,
+        numbered: bool = True,
+        numbers: Mapping[str, int] | None = None,
     ) -> None:
         self.convention = convention
         self.blocks: list[Block] = []
+        self.theorems = dict(numbers or {})
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.told: set[Step] = set()
@@ -263,8 +279,9 @@ class _Page:
                 self.tell_section(title, steps)
 
     def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
-        self.numbers[-1] += 1
-        number = ".".join(str(part) for part in self.numbers) + "." if self.numbered else ""
+        is_numbered = self.numbered and title.key not in _UNNUMBERED
+        self.numbers[-1] += is_numbered
+        number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         self.blocks.append(Heading(number, filled(title, self.convention)))
         self.numbers.append(0)
         for step in steps:
@@ -282,7 +299,7 @@ class _Page:
 
     def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
-        inner = _Page(self.convention, given=self.given, numbered=False)
+        inner = _Page(self.convention, given=self.given, numbered=False, numbers=self.theorems)
         inner.say(sentence)
         inner.tell(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
@@ -294,7 +311,7 @@ class _Page:
         """Add a sentence, to the paragraph before it where there is one."""
         if sentence is None:
             return
-        inlines = filled(sentence, self.convention)
+        inlines = with_reference(filled(sentence, self.convention), self.theorems.get(RESTS_ON.get(sentence.key, "")))
         goes_on = sentence.key not in OPENS
         if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
             self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
@@ -360,7 +377,7 @@ def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
     A comma where the sentence goes on in small letters after it, else a full stop.
     """
     punctuated: list[Block] = []
-    for block, following in zip(blocks, [*blocks[1:], None], strict=True):
+    for block, following in zip_longest(blocks, blocks[1:]):
         if isinstance(block, Display) and not block.boxed:
             goes_on = isinstance(following, Paragraph) and _starts_small(following.inlines)
             punctuated.append(replace(block, closing="," if goes_on else "."))

@@ -17,14 +17,17 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.errors import TypesettingError
 from symobs.method import output_format
-from symobs.render.latex import typeset
+from symobs.render.latex import typeset, typeset_sheet, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.method import Document
+    from symobs.sheet import Sheet
 
 TIME_LIMIT = 60.0  # seconds
+#: Characters of LaTeX a second that TeX, run three times on a slow and busy machine, surely gets through.
+SLOWEST = 2000.0
 _INSTALL = (
     "install TeX; on Debian or Ubuntu: apt-get install texlive-latex-recommended texlive-pictures latexmk "
     "(or write LaTeX with --format latex)"
@@ -48,10 +51,21 @@ class Pdf:
 
     name: ClassVar[str] = "pdf"
     suffix: ClassVar[str] = ".pdf"
+    template: ClassVar[str] = "article.tex"
 
     def render(self, document: Document) -> bytes:
         """Return the bytes of the PDF."""
-        return compiled(typeset(document, "article.tex"))
+        return compiled(typeset(document, self.template, folder=document.templates))
+
+    def part(self, document: Document) -> dict[str, object]:
+        """Return what a template says of a question or a solution."""
+        _commands()  # without TeX there is no need to go on
+        return values_of(document)
+
+    def sheet(self, sheet: Sheet) -> bytes:
+        """Return the bytes of the sheet's PDF."""
+        source = typeset_sheet(sheet, "sheet.tex")
+        return compiled(source, time_limit=max(TIME_LIMIT, len(source) / SLOWEST))
 
 
 def compiled(source: str, *, time_limit: float = TIME_LIMIT) -> bytes:

@@ -10,7 +10,7 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar
+from symobs.exact import EIGENVALUE, Matrix, Scalar, written
 from symobs.exact.functions import known
 from symobs.exact.real import RealRoot
 from symobs.exact.root_sum import RootSum
@@ -18,6 +18,7 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Formula,
     Identity,
@@ -46,7 +47,25 @@ if TYPE_CHECKING:
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
-    {"x", "x_hat", "e", "u", "y", "y_hat", "x_1", "x_2", "x_2_hat", "e_2", "z_o", "w_o", "v_r", "x_d", "e_d"}
+    {
+        "x",
+        "x_hat",
+        "e",
+        "u",
+        "y",
+        "y_hat",
+        "x_1",
+        "x_2",
+        "x_2_hat",
+        "e_2",
+        "x_hat_1",
+        "x_hat_2",
+        "z_o",
+        "w_o",
+        "v_r",
+        "x_d",
+        "e_d",
+    }
 )
 
 
@@ -120,6 +139,10 @@ class Printer(Glyphs[B]):
             case Literal(Matrix() as value):
                 written = spelled_matrix(value, self.variable)
                 return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
+            case Decimals(Scalar() as value):
+                return self.decimals(value)
+            case Decimals(Matrix() as value):
+                return self.matrix([[self.decimals(entry) for entry in row] for row in value.rows])
             case Identity():
                 return self.identity()
             case Sum() | Negative():
@@ -156,6 +179,12 @@ class Printer(Glyphs[B]):
                 box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
             self.known[value] = box
         return box
+
+    def decimals(self, value: Scalar) -> B:
+        """A number with its digits after the point."""
+        box = self.digits(written(value))
+        is_negative = value.fraction() < 0
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
 
     def function_of_time(self, function: Function) -> B:
         """e^{−t}, sin ωt, √3; a root that has a letter of its own is written by it."""

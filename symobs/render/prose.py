@@ -38,6 +38,9 @@ if TYPE_CHECKING:
     from symobs.render.blocks import Inline, Inlines
 
 
+#: Where in a phrase the number of what it rests on stands, if not at its end.
+MARK = "§"
+
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
@@ -55,6 +58,20 @@ def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
         if name is not None:
             inlines += _shown(slots[name])
     return joined(inlines)
+
+
+def with_reference(inlines: Inlines, number: int | None) -> Inlines:
+    """Return a sentence with the number of what it rests on: where its phrase says so, else before its last mark."""
+    if any(isinstance(part, str) and MARK in part for part in inlines):
+        shown = "" if number is None else f"\N{NO-BREAK SPACE}[{number}]"
+        return tuple(part.replace(MARK, shown) if isinstance(part, str) else part for part in inlines)
+    if number is None:
+        return inlines
+    *rest, last = inlines
+    if not isinstance(last, str):
+        return joined((*inlines, f"\N{NO-BREAK SPACE}[{number}]"))
+    words = last.rstrip(".:,")
+    return joined((*rest, f"{words}\N{NO-BREAK SPACE}[{number}]{last[len(words) :]}"))
 
 
 def joined(inlines: Iterable[Inline]) -> Inlines:

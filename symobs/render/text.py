@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import unicodedata
 from copy import copy
+from dataclasses import replace
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.method import output_format
+from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
@@ -20,6 +22,7 @@ from symobs.render.blocks import (
     TableBlock,
     Title,
     Verified,
+    opened,
 )
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
 
     from symobs.method import Document
     from symobs.render.blocks import Block, Inline, Inlines
+    from symobs.sheet import Sheet
 
 WIDTH = 80
 INDENT = "    "
@@ -51,6 +55,23 @@ class Text:
     def render(self, document: Document) -> str:
         """Return the document as plain text."""
         return TextWriter(printer_for(document, TextPrinter), WIDTH).body(narrate(document)) + "\n"
+
+    def part(self, document: Document) -> str:
+        """Return a question or a solution below its title."""
+        title, blocks = opened(narrate(document))
+        writer = TextWriter(printer_for(document, TextPrinter), WIDTH)
+        below = writer.block(replace(title, text=""))
+        return "\n\n".join(part for part in (below, writer.body(blocks)) if part)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as plain text."""
+        pieces = [underlined(wrapped(printable(sheet.title), WIDTH), "=", WIDTH)] if sheet.title else []
+        for name, parts in sheet.chapters():
+            pieces.append(underlined(PHRASES[f"sheet_{name}"], "=", WIDTH))
+            for entry, part in parts:
+                heading = f"{PHRASES['sheet_problem']} {entry.number}. {printable(entry.title)}"
+                pieces += [underlined(wrapped(heading, WIDTH), "=", WIDTH), part or entry.failure]
+        return "\n\n".join(pieces) + "\n"
 
 
 class TextWriter:
@@ -114,7 +135,21 @@ class TextWriter:
         if isinstance(part, Roots):
             return ", ".join(root.replace(" ", _NO_BREAK) for root in listed(part, self.printer, TEXT))
         written = self.printer.inline(part)
-        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else written
+        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else _kept_inside(written)
+
+
+def _kept_inside(written: str) -> str:
+    """Return a formula that breaks outside its parentheses and brackets only, unless one of them is itself too long."""
+    depth, start, kept = 0, 0, list(written)
+    for place, character in enumerate(written):
+        if character in "([":
+            start = start if depth else place
+            depth += 1
+        elif character in ")]":
+            depth -= 1
+            if not depth and text_width(written[start:place]) <= _KEPT_TOGETHER:
+                kept[start:place] = written[start:place].replace(" ", _NO_BREAK)
+    return "".join(kept)
 
 
 def printable(text: str) -> str:

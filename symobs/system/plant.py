@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial, parse_scalar
-from symobs.system.reading import read_matrix, read_scalar
+from symobs.system.reading import has_decimals, read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
 
@@ -62,6 +62,7 @@ class StateSpace:
         self.origin = transfer_function
         self.polynomial: Scalar | None = None
         self.is_from_floats = False
+        self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         if any("t" in part.names for part in parts.values() if part is not None):
@@ -243,7 +244,7 @@ class StateSpace:
         m = self.matrices
         told = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=symbols)
         told.matrices, told.time, told.origin = m, self.time, self.origin
-        told.is_from_floats = self.is_from_floats
+        told.is_from_floats, told.is_in_decimals = self.is_from_floats, self.is_in_decimals
         return told
 
     def with_symbols(self, symbols: Symbols) -> StateSpace:

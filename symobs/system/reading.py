@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,6 +10,15 @@ from symobs.errors import InexactInput, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.system.symbols import Symbols, is_sympy, sympy_symbols
+
+_DECIMAL = re.compile(r"\d\.\d")
+
+
+def has_decimals(value: object) -> bool:
+    """Tell whether a number is written with a point somewhere in a text or in nested lists of texts."""
+    if isinstance(value, (list, tuple)):
+        return any(has_decimals(entry) for entry in value)
+    return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False
 
 
 def read_matrix(value: object, symbols: Symbols, where: str) -> Matrix:

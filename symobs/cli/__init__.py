@@ -6,42 +6,39 @@ Standard output carries the result only; messages go to standard error.
 from __future__ import annotations
 
 import gc
-import inspect
-import re
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
+from symobs.audit_command import command as audit_command
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
-PLANT_OPTIONS = {
-    "A": 'state matrix, "[0 1; 0 -1]"',
-    "B": "input matrix",
-    "C": "output matrix",
-    "D": "feedthrough; 0 if left out",
-    "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
-    "dt": "0: continuous (default); true, or the period: discrete",
-}
 _MOST_LINES = 100
+#: Commands in modules of their own, imported when they are called, and what each does.
+_LATE = {"sheet": "Put several problem files on one sheet: all questions first, then all solutions."}
 
 
 class Tasks(click.Group):
-    """The commands that stand in this file, and one for every registered task."""
+    """The commands that stand in this file, `sheet`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return all names."""
-        return [*super().list_commands(ctx), *_summaries()]
+        return [*sorted([*super().list_commands(ctx), *_LATE]), *_summaries()]
 
     def format_commands(self, _: click.Context, formatter: click.HelpFormatter) -> None:
         """Write what every command does; those on tasks are read from the sources, which costs no kernel."""
-        own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()}
-        for title, listed in (("Commands", own), ("Tasks, each a command of its own", _summaries())):
+        own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()} | _LATE
+        for title, listed in (
+            ("Commands", dict(sorted(own.items()))),
+            ("Tasks, each a command of its own", _summaries()),
+        ):
             with formatter.section(title):
                 formatter.write_dl(list(listed.items()))
 
@@ -50,10 +47,18 @@ class Tasks(click.Group):
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
+        if cmd_name in _LATE:
+            from symobs.cli.sheet import sheet  # noqa: PLC0415 - only sheets pay for it
+
+            return sheet
         from symobs.method import task_named  # noqa: PLC0415
 
         task = task_named(cmd_name.replace("-", "_"))
-        return None if task is None else _task_command(task)
+        if task is None:
+            return None
+        from symobs.cli.task import task_command  # noqa: PLC0415 - it reads the task's signature
+
+        return task_command(task)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -95,6 +100,8 @@ def cli() -> None:
 
 FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
 TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
+DETAIL_HELP = "How much of the derivation is told: full (default), outline or answer."
+TEMPLATES_HELP = "Use your own LaTeX templates: see `symobs templates`."
 CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
 
@@ -104,6 +111,8 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
 @click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
 @click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
+@click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
+@click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
 @click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
 def solve(
@@ -113,6 +122,8 @@ def solve(
     target: str | None,
     plot: str | None,
     convention_name: str | None,
+    detail: str,
+    templates: str | None,
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
     from symobs.method import tasks  # noqa: PLC0415
@@ -124,7 +135,8 @@ def solve(
     _check_plot(plot, target)
     convention = _convention(convention_name)
     found = validate(parse(_read(file), file), task_name, Path(file).parent)
-    _run(found, chosen, target, plot, convention, some=task_name is not None)
+    page = _page(detail, templates, chosen)
+    _run(found, chosen, target, plot, convention, some=task_name is not None, **page)
 
 
 def _convention(name: str | None) -> Any:
@@ -134,6 +146,23 @@ def _convention(name: str | None) -> Any:
     from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
 
     return convention_named(name)
+
+
+def _page(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
+    """Return how the page is to be told and set; raises `UsageError` for what does not exist."""
+    from symobs.render.detail import detail_named  # noqa: PLC0415 - it imports the steps
+
+    if templates is None:
+        return {"detail": detail_named(detail)}
+    from symobs.method import format_named, formats  # noqa: PLC0415
+    from symobs.render.templates import check_folder  # noqa: PLC0415 - only with --templates
+
+    if not hasattr(format_named(format_name), "template"):
+        having = ", ".join(sorted(found.name for found in formats().values() if hasattr(found, "template")))
+        message = f"the format {format_name} has no LaTeX template"
+        raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
+    check_folder(Path(templates))
+    return {"detail": detail_named(detail), "templates": Path(templates)}
 
 
 def _check_plot(path: str | None, target: str | None) -> None:
@@ -147,11 +176,19 @@ def _check_plot(path: str | None, target: str | None) -> None:
 
 
 def _run(
-    found: Any, format_name: str, target: str | None, plot: str | None, convention: Any, *, some: bool = False
+    found: Any,
+    format_name: str,
+    target: str | None,
+    plot: str | None,
+    convention: Any,
+    *,
+    some: bool = False,
+    **page: Any,
 ) -> None:
     """Solve a problem, write the document and the picture, and leave with the contract's exit code.
 
-    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.
+    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
+    is put into the document.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.method import render  # noqa: PLC0415
@@ -160,7 +197,7 @@ def _run(
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if some else found.expect
     unmet = mismatches(viewed, expect)
-    write(render(found.document(results, convention), format_name), target)
+    write(render(replace(found.document(results, convention), **page), format_name), target)
     if plot is not None:
         from symobs.render.plot_files import picture_file  # noqa: PLC0415
 
@@ -235,68 +272,6 @@ def _read(file: str) -> str:
         raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
 
 
-# -- one command a task ---------------------------------------------------------------------------------------------
-
-
-def _task_command(task: Any) -> click.Command:
-    """Return the command of a task: the plant's options, then the task's keywords."""
-    from symobs.specification import KINDS  # noqa: PLC0415
-
-    def option(group: str, name: str, described: str) -> click.Option:
-        return click.Option(
-            [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described
-        )
-
-    parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
-    parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
-    signs = "For example omega=positive; repeat it. With it, no other names exist."
-    parameters += [
-        click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
-        click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
-        click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
-        click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
-        click.Option(["--convention", "convention_name"], metavar="NAME", help=CONVENTION_HELP),
-    ]
-    first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
-    return click.Command(
-        task.name,
-        params=parameters,
-        callback=lambda **options: _run_task(task, options),
-        help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
-        short_help=task.summary,
-    )
-
-
-def _run_task(task: Any, options: dict[str, Any]) -> None:
-    """Put the options into a problem's tables and run it; undeclared names are real symbols."""
-    from symobs.problem import OPEN, validate  # noqa: PLC0415
-
-    def given(group: str) -> dict[str, Any]:
-        chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
-        return {name.removeprefix(group): value for name, value in chosen.items()}
-
-    chosen = _format_of(options["format_name"], options["target"])
-    _check_plot(options["plot"], options["target"])
-    plant = given("plant_")
-    if plant.get("dt", "").lower() == "true":
-        plant["dt"] = True
-    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
-    data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
-    convention = _convention(options["convention_name"])
-    try:
-        _run(validate(data), chosen, options["target"], options["plot"], convention)
-    except SymobsError as raised:
-        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
-            error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
-            error.where = re.sub(r"^symbols\.", "--symbol ", error.where)
-        raise
-
-
-def _declaration(entry: str) -> tuple[str, str]:
-    name, separator, sign = entry.partition("=")
-    return name.strip(), sign.strip() if separator else "real"
-
-
 # -- lists ----------------------------------------------------------------------------------------------------------
 
 
@@ -367,6 +342,7 @@ def _templates() -> list[Path]:
 
 #: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
 _COLLECTED_AFTER = 50_000
+cli.add_command(audit_command(_read, _say))
 
 
 def main() -> NoReturn:

@@ -1,0 +1,79 @@
+"""What an audit found, as text, Markdown or JSON."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from symobs.audit.findings import Audited, Finding
+
+
+def report(audited: Mapping[str, Audited], format_name: str) -> str:
+    """Return the findings of several files (path → what was found), in the order given."""
+    return REPORTS[format_name](audited)
+
+
+def summary(audited: Mapping[str, Audited]) -> str:
+    """Return one sentence: how many printed equations there are, and how many are wrong."""
+    checked = sum(each.checked for each in audited.values())
+    wrong = sum(len(each.findings) for each in audited.values())
+    equations = "equation" if checked == 1 else "equations"
+    if not wrong:
+        return f"{checked} printed {equations}, nothing wrong."
+    return f"{checked} printed {equations}, {wrong} wrong."
+
+
+def _heading(finding: Finding) -> str:
+    return " ".join(filter(None, (finding.where, f"({finding.erratum})" if finding.erratum else ""))) or "an entry"
+
+
+def _text(audited: Mapping[str, Audited]) -> str:
+    lines: list[str] = []
+    for path, each in audited.items():
+        if each.findings:
+            lines += [f"{path}: {each.title}" if each.title else path]
+        for finding in each.findings:
+            lines += [f"  {_heading(finding)}", f"    printed   {finding.printed}"]
+            lines += [f"    right     {finding.right}"] if finding.right else []
+            lines += [f"    because   {finding.reason}"] if finding.reason else []
+            lines += [""]
+    return "\n".join([*lines, summary(audited), ""])
+
+
+def _markdown(audited: Mapping[str, Audited]) -> str:
+    def escaped(text: str) -> str:
+        return text.replace("|", r"\|")
+
+    def code(text: str) -> str:
+        return f"`{escaped(text)}`" if text else ""
+
+    lines = ["| where | erratum | printed | right | reason |", "|---|---|---|---|---|"]
+    for path, each in audited.items():
+        for found in each.findings:
+            place = f"{found.where}, {path}" if found.where else path
+            cells = (escaped(place), found.erratum, code(found.printed), code(found.right), escaped(found.reason))
+            lines.append(f"| {' | '.join(cells)} |")
+    table = [*lines, ""] if len(lines) > 2 else []
+    return "\n".join([*table, summary(audited), ""])
+
+
+def _json(audited: Mapping[str, Audited]) -> str:
+    files = [
+        {
+            "file": path,
+            "title": each.title,
+            "checked": each.checked,
+            "findings": [
+                {"where": f.where, "erratum": f.erratum, "printed": f.printed, "right": f.right, "reason": f.reason}
+                for f in each.findings
+            ],
+        }
+        for path, each in audited.items()
+    ]
+    return json.dumps({"schema": "symobs-audit/1", "files": files}, indent=2, ensure_ascii=False) + "\n"
+
+
+REPORTS: Mapping[str, Callable[[Mapping[str, Audited]], str]] = {"text": _text, "markdown": _markdown, "json": _json}

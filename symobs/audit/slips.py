@@ -1,0 +1,277 @@
+"""The slips of a formula: which one small change of what is printed makes it true.
+
+Kinds are tried from the simplest on, and the first that finds something decides.  A change counts only if the equation
+is then true, and only if it is the only one of its kind, or the only one that stays with the same letter.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from itertools import combinations, islice
+from typing import TYPE_CHECKING, Protocol
+
+from symobs.audit.grammar import Node, every, letters_of, with_part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator
+
+_MOST_TRIED = 1_000
+#: So many parts of equations are evaluated for one kind of slip: of a long equation fewer changes are tried.
+_MOST_PARTS = 30_000
+_MOST_ROWS = 6
+_INDEX = re.compile(r"_?[0-9]+$|_d$")
+_INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
+
+
+@dataclass(frozen=True, slots=True)
+class Slip:
+    """A changed side, what was changed, and whether the same letter still stands there."""
+
+    side: Node
+    reason: str
+    near: bool = True
+
+
+class Alphabet(Protocol):
+    """What a slip may know of the letters of an equation."""
+
+    def offered(self, name: str, *, primed: bool) -> Collection[str]:
+        """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
+
+    def is_signal(self, name: str) -> bool:
+        """Whether a letter is a signal."""
+
+    def rounded(self, block: Node) -> str | None:
+        """Return the letter whose value a bracket of decimals is, rounded."""
+
+
+def found_slip(
+    left: Node, right: Node, true: Callable[[Node, Node], bool], alphabet: Alphabet
+) -> tuple[Node, Node, str] | None:
+    """Return both sides as they should stand and the reason, None where no single slip explains what is printed."""
+    kinds: list[Callable[[Node], Iterator[Slip]]] = [
+        lambda side: _digits(side, alphabet),
+        _exchanged,
+        _whole,
+        _stacked,
+        _dropped,
+        lambda side: _primes(side, alphabet),
+        _inverses,
+        _signs,
+        lambda side: (slip for slip in _letters(side, alphabet) if slip.near),
+        _indices,
+        lambda side: _letters(side, alphabet),
+        lambda side: _letters(side, alphabet, primed=True),
+    ]
+    for kind in kinds:
+        decided = _decided(left, right, true, kind)
+        if decided is not None:
+            return decided[0]
+    return _throughout(left, right, true, alphabet)
+
+
+def _throughout(
+    left: Node, right: Node, true: Callable[[Node, Node], bool], alphabet: Alphabet
+) -> tuple[Node, Node, str] | None:
+    """Return the equation with one letter in place of another wherever it stands, where only one does."""
+    both = Node("row", (left, right))
+    twice = [name for name in letters_of(both) if sum(part.text == name for part in every(both)) > 1]
+    fitting = []
+    for old in twice:
+        for new in alphabet.offered(old, primed=False):
+            if new not in {*letters_of(both)}:
+                changed = _renamed(both, old, new)
+                if true(*changed.parts):
+                    fitting.append((*changed.parts, f"{_printed_for(old, new)} throughout"))
+    return fitting[0] if len(fitting) == 1 else None  # type: ignore[return-value]
+
+
+def _renamed(node: Node, old: str, new: str) -> Node:
+    if node.kind == "letter" and node.text == old:
+        return replace(node, text=new)
+    return replace(node, parts=tuple(_renamed(part, old, new) for part in node.parts))
+
+
+def _decided(
+    left: Node, right: Node, true: Callable[[Node, Node], bool], kind: Callable[[Node], Iterator[Slip]]
+) -> tuple[tuple[Node, Node, str] | None] | None:
+    """Return the one slip of a kind, in a pair; None where the kind has none; a pair of None where it has several."""
+    most = min(_MOST_TRIED, _MOST_PARTS // sum(1 for side in (left, right) for _ in every(side)))
+    candidates = [
+        *((slip, (left, slip.side)) for slip in islice(kind(right), most)),
+        *((slip, (slip.side, right)) for slip in islice(kind(left), most) if left.kind != "letter"),
+    ]
+    fitting: dict[str, tuple[Slip, tuple[Node, Node]]] = {}
+    for slip, pair in candidates:
+        text = f"{pair[0]} = {pair[1]}"
+        if text not in fitting and pair[0] != pair[1] and true(*pair):
+            fitting[text] = (slip, pair)
+    if not fitting:
+        return None
+    near = [entry for entry in fitting.values() if entry[0].near] or list(fitting.values())
+    if len(near) > 1:
+        return (None,)
+    slip, pair = near[0]
+    return ((*pair, slip.reason),)
+
+
+def _printed_for(printed: Node | str, right: Node | str) -> str:
+    return f"{printed} is printed for {right}"
+
+
+def _everywhere(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterator[Slip]:
+    """Yield the tree with one of its parts changed."""
+    yield from change(node)
+    for i, part in enumerate(node.parts):
+        for slip in _everywhere(part, change):
+            yield replace(slip, side=with_part(node, i, slip.side))
+
+
+def _exchanged(side: Node) -> Iterator[Slip]:
+    """Two entries of a bracket are exchanged."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        if node.kind != "block":
+            return
+        cells = [(i, j) for i, row in enumerate(node.parts) for j in range(len(row.parts))]
+        for (a, b), (c, d) in combinations(cells[:12], 2):
+            first, second = node.parts[a].parts[b], node.parts[c].parts[d]
+            if not letters_of(first) or not letters_of(second):
+                continue
+            once = with_part(node, a, with_part(node.parts[a], b, second))
+            twice = with_part(once, c, with_part(once.parts[c], d, first))
+            yield Slip(twice, f"{first} and {second} are exchanged")
+
+    return _everywhere(side, change)
+
+
+def _whole(side: Node) -> Iterator[Slip]:
+    """A whole side is printed without its transpose."""
+    if side.kind == "call":
+        yield Slip(Node("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
+
+
+def _stacked(side: Node) -> Iterator[Slip]:
+    """Blocks stand below instead of beside one another, or the reverse."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
+            rows = zip(*(row.parts for row in node.parts), strict=True)
+            turned = Node("block", tuple(Node("row", tuple(row)) for row in rows))
+            yield Slip(turned, _printed_for(node, turned))
+
+    return _everywhere(side, change)
+
+
+def _dropped(side: Node) -> Iterator[Slip]:
+    """Rows of a stack are too many."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
+            return
+        for count in range(1, len(node.parts)):
+            for gone in combinations(range(len(node.parts)), count):
+                kept = tuple(row for i, row in enumerate(node.parts) if i not in gone)
+                rows = " and ".join(str(Node("block", (node.parts[i],)))[1:-1] for i in gone)
+                are = "rows {} are" if count > 1 else "row {} is"
+                yield Slip(Node("block", kept), f"the {are.format(rows)} too many")
+
+    return _everywhere(side, change)
+
+
+def _digits(side: Node, alphabet: Alphabet) -> Iterator[Slip]:
+    """A matrix is rounded before it is used."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        name = alphabet.rounded(node) if node.kind == "block" else None
+        if name is not None:
+            exact = f"the digits printed for {name} are too few: only its exact value gives this"
+            yield Slip(Node("letter", text=name), exact)
+
+    return _everywhere(side, change)
+
+
+def _primes(side: Node, alphabet: Alphabet) -> Iterator[Slip]:
+    """A transpose or a dot is printed that should not be, or is missing."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        if node.kind == "primed":
+            yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
+            inner = node.parts[0]
+            if inner.kind == "letter" and alphabet.is_signal(inner.text):
+                yield Slip(Node("primed", (node,)), _printed_for(node, Node("primed", (node,))))
+        elif node.kind == "letter":
+            primed = Node("primed", (node,))
+            yield Slip(primed, _printed_for(node, primed))
+
+    return _outermost(side, change)
+
+
+def _inverses(side: Node) -> Iterator[Slip]:
+    """An inverse is printed that should not be, or is missing."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        if node.kind == "power" and node.text == "-1":
+            yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
+        elif node.kind == "letter":
+            inverse = Node("power", (node,), text="-1")
+            yield Slip(inverse, _printed_for(node, inverse))
+
+    return _outermost(side, change)
+
+
+def _outermost(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterator[Slip]:
+    """Yield the tree with one of its parts changed; a letter below a prime or an inverse is changed with it."""
+    yield from change(node)
+    for i, part in enumerate(node.parts):
+        if node.kind not in {"primed", "power"} or part.kind not in {"letter", "primed"}:
+            for slip in _outermost(part, change):
+                yield replace(slip, side=with_part(node, i, slip.side))
+
+
+def _signs(side: Node) -> Iterator[Slip]:
+    """The sign of a side, or of one of its terms, is wrong."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        for i, part in enumerate(node.parts if node.kind == "sum" else ()):
+            turned = part.parts[0] if part.kind == "negative" else Node("negative", (part,))
+            inner = part.parts[0] if part.kind == "negative" else part
+            yield Slip(with_part(node, i, turned), f"the sign of {inner} is wrong")
+
+    plain = side.parts[0] if side.kind == "negative" else side
+    if side.kind != "sum":
+        yield Slip(plain if side.kind == "negative" else Node("negative", (side,)), f"the sign of {plain} is wrong")
+    yield from _everywhere(side, change)
+
+
+def _indices(side: Node) -> Iterator[Slip]:
+    """One index is printed for another throughout a side."""
+    found = {match[2] for name in letters_of(side) if (match := _INDEXED.fullmatch(name)) and match[2].isdigit()}
+    for old in sorted(found):
+        for new in map(str, range(1, 7)):
+            if new != old:
+                yield Slip(_reindexed(side, old, new), f"index {old} is printed for {new}")
+
+
+def _reindexed(node: Node, old: str, new: str) -> Node:
+    if node.kind == "letter" and node.text.endswith(f"_{old}"):
+        return replace(node, text=f"{node.text.removesuffix(old)}{new}")
+    return replace(node, parts=tuple(_reindexed(part, old, new) for part in node.parts))
+
+
+def _letters(side: Node, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
+    """One letter is printed for another, or for the transpose or the derivative of another."""
+
+    def change(node: Node) -> Iterator[Slip]:
+        for name in alphabet.offered(node.text, primed=primed) if node.kind == "letter" else ():
+            plain = Node("letter", text=name)
+            right = Node("primed", (plain,)) if primed else plain
+            yield Slip(right, _printed_for(node, right), near=_stem(name) == _stem(node.text))
+
+    return _everywhere(side, change)
+
+
+def _stem(name: str) -> str:
+    """Return a letter without its index: K of K_2 and K_d, x_hat of x_hat_1, t of t1."""
+    return _INDEX.sub("", name) or name

@@ -1,0 +1,76 @@
+"""The `[[printed]]` entries of a file: where something is printed, and what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from symobs.audit.grammar import FUNCTIONS, Node, letters_of, read_relation
+from symobs.convention import Convention, conventions
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expression import declared_name
+from symobs.expression.source import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_MOST_LETS = 20
+_FUNCTIONS = {name for name, _ in FUNCTIONS}
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
+
+    place: str
+    where: str
+    erratum: str
+    convention: Convention
+    members: tuple[Node, ...] = ()
+    let: Mapping[str, Node] = field(default_factory=dict)
+    expect: Mapping[str, Any] = field(default_factory=dict)
+
+
+def statements(entries: Sequence[Mapping[str, Any]], convention: Convention) -> list[Statement]:
+    """Return the entries of a file, read; raises `ProblemErrors` with every one that cannot be."""
+    found, errors = [], []
+    for i, entry in enumerate(entries):
+        try:
+            found.append(_statement(entry, f"printed[{i}]", convention))
+        except SymobsError as error:
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return found
+
+
+def _statement(entry: Mapping[str, Any], place: str, convention: Convention) -> Statement:
+    name = entry.get("convention", convention.name)
+    known = {**conventions(), convention.name: convention} if name != convention.name else {name: convention}
+    if name not in known:
+        message = f'"{shown(name, 40)}" is not a convention'
+        raise InputError(message, where=f"{place}.convention", repair=f"use one of {', '.join(known)}")
+    let = _lets(entry.get("let", {}), f"{place}.let")
+    members = read_relation(entry["relation"], f"{place}.relation") if "relation" in entry else ()
+    if "relation" in entry and len(members) < 2:
+        repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
+        raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
+    where, erratum = entry.get("where", ""), entry.get("erratum", "")
+    return Statement(place, where, erratum, known[name], members, let, entry.get("expect", {}))
+
+
+def _lets(table: Mapping[str, Any], where: str) -> dict[str, Node]:
+    """Return what the entry's own letters stand for."""
+    if len(table) > _MOST_LETS:
+        raise InputError(f"more than {_MOST_LETS} letters", where=where, repair="print less at once")
+    found: dict[str, Node] = {}
+    for name, text in table.items():
+        place = f"{where}.{shown(name, 40)}"
+        declared_name(name, place)
+        members = read_relation(text, place)
+        if len(members) != 1:
+            raise InputError("one expression is expected", where=place, repair='leave "=" out')
+        if name in _FUNCTIONS or name in letters_of(*members):
+            raise InputError(f"{name} cannot stand for this", where=place, repair="take another letter")
+        found[name] = members[0]
+    return found

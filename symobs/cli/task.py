@@ -1,0 +1,95 @@
+"""One command for every task, made from its signature: a problem without a file."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from typing import Any
+
+import click
+
+from symobs.cli import (
+    CONVENTION_HELP,
+    DETAIL_HELP,
+    FORMAT_HELP,
+    PLOT_HELP,
+    TARGET_HELP,
+    TEMPLATES_HELP,
+    _check_plot,
+    _convention,
+    _format_of,
+    _page,
+    _run,
+)
+from symobs.errors import ProblemErrors, SymobsError
+from symobs.problem import OPEN, validate
+from symobs.specification import KINDS
+
+PLANT_OPTIONS = {
+    "A": 'state matrix, "[0 1; 0 -1]"',
+    "B": "input matrix",
+    "C": "output matrix",
+    "D": "feedthrough; 0 if left out",
+    "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
+    "dt": "0: continuous (default); true, or the period: discrete",
+}
+
+
+def task_command(task: Any) -> click.Command:
+    """Return the command of a task: the plant's options, then the task's keywords."""
+
+    def option(group: str, name: str, described: str) -> click.Option:
+        return click.Option(
+            [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described
+        )
+
+    parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
+    parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
+    signs = "For example omega=positive; repeat it. With it, no other names exist."
+    parameters += [
+        click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
+        click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
+        click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
+        click.Option(["--detail"], default="full", metavar="NAME", help=DETAIL_HELP),
+        click.Option(["--templates"], metavar="FOLDER", help=TEMPLATES_HELP),
+        click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
+        click.Option(["--convention", "convention_name"], metavar="NAME", help=CONVENTION_HELP),
+    ]
+    first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
+    return click.Command(
+        task.name,
+        params=parameters,
+        callback=lambda **options: _run_task(task, options),
+        help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
+        short_help=task.summary,
+    )
+
+
+def _run_task(task: Any, options: dict[str, Any]) -> None:
+    """Put the options into a problem's tables and run it; undeclared names are real symbols."""
+
+    def given(group: str) -> dict[str, Any]:
+        chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
+        return {name.removeprefix(group): value for name, value in chosen.items()}
+
+    chosen = _format_of(options["format_name"], options["target"])
+    _check_plot(options["plot"], options["target"])
+    page = _page(options["detail"], options["templates"], chosen)
+    plant = given("plant_")
+    if plant.get("dt", "").lower() == "true":
+        plant["dt"] = True
+    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
+    data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
+    convention = _convention(options["convention_name"])
+    try:
+        _run(validate(data), chosen, options["target"], options["plot"], convention, **page)
+    except SymobsError as raised:
+        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
+            error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
+            error.where = re.sub(r"^symbols\.", "--symbol ", error.where)
+        raise
+
+
+def _declaration(entry: str) -> tuple[str, str]:
+    name, separator, sign = entry.partition("=")
+    return name.strip(), sign.strip() if separator else "real"

@@ -1,0 +1,229 @@
+"""What a problem asks, as a page of its own: its data, and a sentence or two for every task.
+
+The sentences stand in `phrases.questions`; which of them are said follows from what the specification contains.  The page
+is a derivation like any other: what it states is checked, and it is told by the same narrator.
+"""
+
+from __future__ import annotations
+
+import string
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from symobs.analysis.horizons import INFINITE, read_horizon
+from symobs.analysis.pages import formula_of_factored, given, state_signs
+from symobs.derivation import Note, Section, translated
+from symobs.exact import Matrix, Scalar, factored, root_of_pole
+from symobs.expression import parse_polynomial
+from symobs.formula import Names, Roots
+from symobs.method import Document
+from symobs.page import Page, relation, sentence
+from symobs.phrases.questions import PHRASES, UNSAID
+from symobs.specification import (
+    desired_polynomial,
+    parse_signal,
+    read_entries,
+    read_interval,
+    read_names,
+    read_poles,
+    read_quantity,
+)
+from symobs.system import read_matrix, read_scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from symobs.derivation import Derivation, Sentence
+    from symobs.formula.term import Term
+    from symobs.method import Task
+    from symobs.page import Slot
+    from symobs.problem.validation import Problem
+    from symobs.system import StateSpace
+
+#: Keywords whose matrices stand among the data, and the letters they have there.
+_DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
+#: Kinds of keyword whose value is a word: the word chooses the sentence.
+_WORDS = {"Name", "Sign"}
+
+
+@dataclass(frozen=True)
+class Question(Document):
+    """What a problem asks: a document without results."""
+
+    page: Derivation | None = None
+
+    @cached_property
+    def derivations(self) -> tuple[Derivation, ...]:
+        """The page that states data and tasks, in the signs of the convention."""
+        return (translated(self.page, self.convention),) if self.page is not None else ()
+
+
+def question_of(problem: Problem) -> Question:
+    """Return the question of a problem; raises `InputError` where its specification cannot be read."""
+    asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
+    page = Page(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
+    page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
+    _state_data(page, asked)
+    with page.section("tasks" if len(asked) > 1 else "task"):
+        for place, (task, values) in enumerate(asked):
+            if len(asked) > 1:
+                page.remark("part", letter=_letter_of(place))
+            for key in sentences_for(task, tokens_of(task, values, problem)):
+                page.steps.append(Note(_filled(page, task, key, values)))
+    return Question(problem.title, problem.source, (), problem.convention, page=page.derivation())
+
+
+def _has(asked: Iterable[tuple[Task, Mapping[str, Any]]], name: str) -> bool:
+    return any(name in values for _, values in asked)
+
+
+def _letter_of(place: int) -> str:
+    letters = string.ascii_lowercase
+    return letters[place] if place < len(letters) else str(place + 1)
+
+
+# -- what is given ----------------------------------------------------------------------------------------------------
+
+
+def _state_data(page: Page, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> None:
+    """State the plant, or the polynomial, and the matrices of the specification."""
+    polynomial = page.plant.polynomial
+    if polynomial is None:
+        given(page)
+    else:
+        with page.section("given"):
+            page.given(relation(page["chi_p"], polynomial))
+            state_signs(page)
+    data = {_DATA[name]: value for _, values in asked for name, value in values.items() if name in _DATA}
+    stated = page.steps[0]
+    if not data or not isinstance(stated, Section):
+        return
+    with page.section("given"):
+        for letter, value in data.items():
+            if letter == "A_ref":
+                page.set(letter, value)
+                page.given(relation(page["x_d"].derivative, page.value(value) @ page["x_d"]))
+            else:
+                page.given(relation(page[letter], value))
+
+
+# -- what is asked ----------------------------------------------------------------------------------------------------
+
+
+def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozenset[str]:
+    """Return what the specification contains for a task, as the keys of the sentences put it."""
+    tokens: set[str] = set()
+    for name, value in values.items():
+        kind = task.keywords[name]
+        if kind in _WORDS:
+            tokens |= {f"{name}={value}"} - {f"method={word}" for word in UNSAID}
+        elif value == INFINITE:
+            tokens.add(f"{name}=inf")
+        elif not (name == "polynomial" and problem.plant.polynomial is not None):
+            tokens.add(name)
+        if kind == "Poles" and value.degree == 1:
+            tokens.add(f"{name}=1")
+    return frozenset(tokens - {"horizon"})
+
+
+def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
+    """Return the keys of the sentences that together say all of this: the one that says most, then the others."""
+    asks = [
+        words for words in map(str.split, PHRASES) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
+    ]
+    best = max(asks, key=lambda words: sum(1 + ("=" in word) for word in words[2:]))
+    left = {name: word for word in sorted(tokens - set(best[2:])) for name in [word.partition("=")[0]]}
+    said = {word.partition("=")[0] for word in best[2:]}
+    further = [left[name] for name in task.keywords if name in left and name not in said]
+    also = [key for word in further for key in (f"also {task.name} {word}", f"also {word}") if key in PHRASES]
+    return [" ".join(best), *dict.fromkeys(key for key in also if PHRASES[key])]
+
+
+def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
+    """Return a sentence with what its slots ask for."""
+    slots: dict[str, Slot] = {}
+    for _, name, _, _ in string.Formatter().parse(PHRASES[key]):
+        if name is None:
+            continue
+        if name in {"start", "end"}:
+            slots[name] = page.value(values["interval"][name == "end"])
+        else:
+            slots[name] = _slot(page, task, name, values[name])
+    return sentence(key, slots)
+
+
+def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
+    """Return a value as it stands in a sentence."""
+    match task.keywords[name]:
+        case "Poles":
+            letter = "phi_c" if name == "control_poles" or task.name == "state_feedback" else "phi_o"
+            phi = page[letter] if page.knows(letter) else page.set(letter, value.polynomial)
+            return Roots(phi.formula, tuple(root_of_pole(pole, page.plant.variable) for pole in value.poles))
+        case "PolynomialText":
+            form: Term = page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
+            return form
+        case "Names":
+            return Names(value)
+        case "Entries":
+            return ", ".join(f"({row + 1}, {column + 1})" for row, column in value)
+    if isinstance(value, Matrix) and value.shape == (1, 1):
+        return page.value(value[0, 0])
+    return page.value(value)
+
+
+# -- reading ----------------------------------------------------------------------------------------------------------
+
+
+def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
+    """Yield what the specification contains for a task, read."""
+    for name, kind in task.keywords.items():
+        if name in problem.specification:
+            yield name, _read(problem.specification[name], kind, name, problem.plant, task.name)
+        elif kind == "Horizon":
+            yield name, read_horizon(problem.plant, None)
+    if task.name == "stability_region" and "parameters" not in problem.specification:
+        parameters = _free_parameters(problem)
+        if parameters:
+            yield "parameters", parameters
+
+
+def _free_parameters(problem: Problem) -> tuple[str, ...]:
+    """Return the parameters that the region is asked for where none are named."""
+    from symobs.analysis.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
+
+    asked = problem.specification
+    gains = {"K": asked.get("K"), "L": asked.get("L")}
+    return read_question(problem.plant, gains, None, asked.get("margin"), asked.get("radius")).parameters
+
+
+def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> Any:
+    """Return a value of the specification as the task reads it."""
+    where = f"specification.{name}"
+    match kind:
+        case "Poles":
+            poles = read_poles(value, plant.symbols, where)
+            return desired_polynomial(plant, value, None, names=(name, name), degree=len(poles))
+        case "PolynomialText":
+            return parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
+        case "GainText" | "MatrixText":
+            return read_matrix(value, plant.symbols.seen(value), where)
+        case "IntervalText":
+            return read_interval(value, plant)
+        case "SignalText" | "TimeFunctions":
+            return parse_signal(value, plant.symbols, where, functions=True)
+        case "Horizon":
+            return read_horizon(plant, value)
+        case "Intensity":
+            is_matrix = isinstance(value, list) or (isinstance(value, str) and value.strip().startswith("["))
+            return (read_matrix if is_matrix else read_scalar)(value, plant.symbols.seen(value), where)
+        case "Entries":
+            shape = (plant.order, plant.outputs) if task == "observer" else (plant.inputs, plant.order)
+            return read_entries(value, name, shape)
+        case "Quantity":
+            return read_quantity(value, plant, name)
+        case "Names":
+            symbols = plant.symbols.naming(value, where)
+            return read_names(value, sorted(symbols.signs), name)
+        case _:
+            return value

@@ -1,0 +1,146 @@
+"""How much of a page is told: the filter on steps that every format shares.
+
+`full` tells everything. `outline` keeps headings, what is defined, tables and pictures, without the running
+explanation. `answer` keeps what is given, conditions, cases, findings, the answers and their checks.  Both leave out only
+what is known to explain; whatever conditions an answer stays, and a sentence that stays keeps what it speaks of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Note, Plot, Section, Solve, Survey, Tabulate
+from symobs.errors import UsageError
+from symobs.formula import Exactly, Predicate, Relation, Together, Transpose, children
+from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symobs.derivation import Sentence, Step
+    from symobs.formula import Formula
+
+DETAILS = ("full", "outline", "answer")
+
+
+def detail_named(name: str) -> str:
+    """Return the name of a level of detail; raises `UsageError` naming those that exist."""
+    if name not in DETAILS:
+        repair = f"use one of {', '.join(DETAILS)}"
+        raise UsageError(f"{name[:40]!r} is not a level of detail", where="detail", repair=repair)
+    return name
+
+
+def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
+    """Return the steps that a page of this detail tells."""
+    if detail_named(detail) == "full":
+        return tuple(steps)
+    kept: list[Step] = []
+    passed: list[Step] = []
+    for step in steps:
+        inner = tuple(_shortened(step, detail))
+        if isinstance(step, Define | Equal | Solve) and not inner:
+            passed = [step] if _begins(step.sentence) else [*passed, step]
+            continue
+        if inner and _speaks_of_before(step):
+            kept += passed
+        kept += inner
+        passed = []
+    return tuple(kept)
+
+
+def _shortened(step: Step, detail: str) -> Iterator[Step]:
+    """Yield what is left of a step: itself, itself without its sentence, its findings, or nothing."""
+    match step:
+        case Section(steps=steps):
+            if inner := at_detail(steps, detail):
+                yield replace(step, steps=inner)
+        case Case(steps=steps):
+            inner = at_detail(steps, detail)
+            yield replace(step, steps=inner) if any(_is_seen(left) for left in inner) else step
+        case Define(silent=True):
+            yield step
+        case Define(answer=True) | Equal(answer=True):
+            answer = step if detail == "outline" else _result_alone(step)
+            yield answer if _introduces(step.sentence) else replace(answer, sentence=None)
+        case Define(sentence=sentence) | Equal(sentence=sentence) if _spells_out(step) or conditions(sentence):
+            yield step
+        case Define() | Diagram() if detail == "outline":
+            yield step if isinstance(step, Diagram) else replace(step, sentence=None)
+        case Tabulate(findings=findings) if detail == "answer":
+            yield from (Note(finding) for finding in findings if finding.key not in EXPLAINS)
+        case Survey(findings=findings):
+            yield replace(step, findings=tuple(finding for finding in findings if finding.key not in EXPLAINS))
+        case Plot() if detail == "outline":
+            yield step
+        case Equal(relations=relations) if any("!=" in relation.operators for relation in relations):
+            yield replace(step, sentence=None)
+        case Define() | Equal() | Solve() | Diagram() | Plot():
+            pass
+        case Conclude(sentence=sentence) | Note(sentence=sentence):
+            if sentence is None or sentence.key not in EXPLAINS:
+                yield step
+        case _:
+            yield step
+
+
+def conditions(sentence: Sentence | None) -> bool:
+    """Whether a sentence may condition an answer: it holds an inequality, or asserts a property."""
+    if sentence is None:
+        return False
+    slots = [slot for _, slot in sentence.slots]
+    return sentence.key in ASSERTS or any(
+        isinstance(slot, Together | Exactly | Predicate)
+        or (isinstance(slot, Relation) and any(operator != "=" for operator in slot.operators))
+        for slot in slots
+    )
+
+
+def _introduces(sentence: Sentence | None) -> bool:
+    """Whether a sentence says what the answer below it is, not how it was found, and needs no sentence before it."""
+    if sentence is None or conditions(sentence):
+        return sentence is not None
+    return _begins(sentence) and sentence.key not in EXPLAINS
+
+
+def _result_alone(step: Define | Equal) -> Define | Equal:
+    """Return an answer without the way to it: a = d for a = b = c = d, and no transposed rows beside the gain."""
+    if isinstance(step, Define):
+        return replace(step, relation=_ends(step.relation))
+    firsts = [relation.members[0] for relation in step.relations]
+    own = [r for r, first in zip(step.relations, firsts, strict=True) if not _is_transposed(first, firsts)]
+    return replace(step, relations=tuple(_ends(relation) for relation in own))
+
+
+def _ends(relation: Relation) -> Relation:
+    if any(operator != "=" for operator in relation.operators):
+        return relation
+    return Relation((relation.members[0], relation.members[-1]), ("=",))
+
+
+def _is_transposed(first: Formula, others: Sequence[Formula]) -> bool:
+    return isinstance(first, Transpose) and children(first)[0] in others
+
+
+def _spells_out(step: Define | Equal) -> bool:
+    """Whether a step says what short names stand for, in which answers are written."""
+    return step.sentence is not None and step.sentence.key in SPELLS_OUT
+
+
+def _is_seen(step: Step) -> bool:
+    """Whether a step leaves anything on the page."""
+    is_bare_fact = isinstance(step, Conclude) and step.sentence is None
+    return not (getattr(step, "silent", False) or is_bare_fact)
+
+
+def _begins(sentence: Sentence | None) -> bool:
+    """Whether a sentence can be read without the one before it."""
+    return sentence is not None and PHRASES[sentence.key][:1].isupper()
+
+
+def _speaks_of_before(step: Step) -> bool:
+    """Whether a step is about what was shown before it: a finding, a condition, or what short names stand for."""
+    if isinstance(step, Define | Equal):
+        return _spells_out(step)
+    return getattr(step, "sentence", None) is not None and not isinstance(step, Case)
