@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.picture import Place
 
 #: Modes that differ in speed by more cannot be seen in one picture; with more courses none can be told from another.
-_SPREAD, _COURSES = 25.0, 6
+_SPREAD, _COURSES = 15.0, 6
 #: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
 _TIMES = 6.0
 _INSTANTS, _PARTS = 400, 10**6
@@ -52,7 +52,7 @@ def _plot(
     from symobs.exact.response import rates, response  # noqa: PLC0415 - only pages with courses pay for it
 
     slowest, fastest = rates(value)
-    if slowest >= 0 or fastest < _SPREAD * slowest:
+    if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)
     instants = [end * k / _INSTANTS for k in range(_INSTANTS + 1)]
