@@ -44,11 +44,11 @@ def blocks(path: Path, detail: str) -> tuple[Block, ...]:
 
 
 def inequalities(page: Iterable[Block]) -> Iterator[Relation]:
-    """Everything on a page that says where something holds; `~` says how rows were combined."""
+    """Everything on a page that says where something holds; `~` and `≈` do not."""
     for block in page:
         found: Iterable[object] = block.relations if isinstance(block, Display) else getattr(block, "inlines", ())
         found = [*found, *(block.label if isinstance(block, CaseBlock) else ())]
-        yield from (part for part in found if isinstance(part, Relation) and not set(part.operators) <= {"=", "~"})
+        yield from (part for part in found if isinstance(part, Relation) and not set(part.operators) <= {"=", "~", "≈"})
 
 
 def answers(page: Iterable[Block]) -> list[Formula]:
@@ -180,10 +180,22 @@ def test_an_answer_stands_alone() -> None:
     assert answer == Define(way, None, answer=True)
 
 
-def test_a_chain_with_another_sign_is_not_shortened() -> None:
-    chain = Relation((A, B, A), ("=", "<"))
+@pytest.mark.parametrize(
+    ("operators", "kept", "left"),
+    [
+        ("=", "AB", "="),
+        ("==", "AC", "="),
+        ("=<", "ABC", "=<"),
+        ("==<", "ACD", "=<"),
+        ("<=", "ABC", "<="),
+        ("==≈", "ACD", "=≈"),
+    ],
+)
+def test_only_equals_are_passed_over(operators: str, kept: str, left: str) -> None:
+    names = "ABCD"[: len(operators) + 1]
+    chain = Relation(tuple(map(Letter, names)), tuple(operators))
     (answer,) = step_of("answer", Define(chain, None, answer=True))
-    assert answer == Define(chain, None, answer=True)
+    assert answer == Define(Relation(tuple(map(Letter, kept)), tuple(left)), None, answer=True)
 
 
 def test_explanations_go() -> None:

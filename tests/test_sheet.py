@@ -88,6 +88,39 @@ def test_every_part_has_symbols_and_time_of_its_own(folder: Path) -> None:
     assert "z^2-w" in second
 
 
+def test_every_part_keeps_the_convention_of_its_file(folder: Path) -> None:
+    plant = '[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\n'
+    own = {"S1": 'M = "[-1; -3]"', "S4": 'H = "[1; 3]"', "standard": 'L = "[1; 3]"'}
+    for name, gain in own.items():
+        text = f'task = "observer"\nconvention = "{name}"\n{plant}{gain}\n'
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    files = [f"{name}.toml" for name in own]
+    run = inside("sheet", *files, "--questions", "--format", "text", folder=folder)
+    assert run.code == 0, run.err
+    first, second, third = re.split("Problem [123]", run.out)[1:]
+    assert "M = ⎡-1⎤" in first
+    assert "A + M C" in first
+    assert "H = ⎡1⎤" in second
+    assert "A - H C" in second
+    assert "L = ⎡1⎤" in third
+    assert "the observer with the gain M" in " ".join(first.split())
+    together = inside("sheet", *files, "--convention", "standard", "--format", "text", folder=folder)
+    assert "M C" not in together.out
+    assert together.out.count("L = ⎡1⎤") >= 3
+
+
+def test_a_web_page_links_its_contents_and_names_every_place_once() -> None:
+    files = [str(path) for path in EXAMPLES[:WITHOUT_CONTENTS]] + [str(SERVO)]
+    page = inside("sheet", *files, "--format", "html", "--title", "All").out
+    ids = re.findall(r'id="([^"]*)"', page)
+    assert len(ids) == len(set(ids))
+    links = re.findall(r'href="#([^"]*)"', page)
+    assert len(links) == 2 * len(files)
+    assert set(links) <= set(ids)
+    assert "\0" not in page
+    assert "http-equiv" in page  # the page that forbids itself everything from outside
+
+
 def test_the_same_sheet_gives_the_same_text() -> None:
     first, second = (inside("sheet", str(SERVO), str(REGION), "--title", "Twice") for _ in range(2))
     assert first == second
@@ -269,7 +302,8 @@ def test_a_sheet_is_typeset_without_a_fault(folder: Path, require_tool: RequireT
     hostile = r"100 % of $x_1^2$ \input{x} & #~ " * 4
     text = f"title = {json.dumps(hostile)}\nsource = {json.dumps(hostile)}\n"
     (folder / "hostile.toml").write_text(text + (folder / "good.toml").read_text().partition("\n")[2], encoding="utf-8")
-    files = ["hostile.toml", "bad.toml", "no.toml", str(SERVO), str(REGION), "good.toml", "good.toml"]
+    gramian = ROOT / "worked_examples" / "third_order_gramian.toml"  # wide: functions of time in a matrix
+    files = ["hostile.toml", "bad.toml", "no.toml", str(SERVO), str(REGION), str(gramian), "good.toml"]
     run = inside("sheet", *files, "--title", hostile, folder=folder)
     faults, pages = typeset(run.out, folder, require_tool("pdflatex"), runs=2)
     assert faults == []

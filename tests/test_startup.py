@@ -83,7 +83,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
     found = after("--version")
     assert found & (HEAVY | KERNEL) == set()
     own = {name for name in found if name.startswith("symobs")}
-    assert own == {"symobs", "symobs.audit_command", "symobs.cli", "symobs.errors", "symobs.output"}
+    assert own == {"symobs", "symobs.cli", "symobs.errors", "symobs.output"}
 
 
 def test_importing_symobs_imports_nothing_else_of_it() -> None:

@@ -15,18 +15,20 @@ from typing import Any, NoReturn
 
 import click
 
-from symobs.audit_command import command as audit_command
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 _MOST_LINES = 100
 #: Commands in modules of their own, imported when they are called, and what each does.
-_LATE = {"sheet": "Put several problem files on one sheet: all questions first, then all solutions."}
+_LATE = {
+    "audit": "Recompute what a source prints, and list what is wrong with the reason.",
+    "sheet": "Put several problem files on one sheet: all questions first, then all solutions.",
+}
 
 
 class Tasks(click.Group):
-    """The commands that stand in this file, `sheet`, and one for every registered task."""
+    """The commands that stand in this file, those in `_LATE`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return all names."""
@@ -47,7 +49,11 @@ class Tasks(click.Group):
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
-        if cmd_name in _LATE:
+        if cmd_name == "audit":
+            from symobs.cli.audit import audit_command  # noqa: PLC0415 - only audits pay for it
+
+            return audit_command
+        if cmd_name == "sheet":
             from symobs.cli.sheet import sheet  # noqa: PLC0415 - only sheets pay for it
 
             return sheet
@@ -342,7 +348,6 @@ def _templates() -> list[Path]:
 
 #: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
 _COLLECTED_AFTER = 50_000
-cli.add_command(audit_command(_read, _say))
 
 
 def main() -> NoReturn:

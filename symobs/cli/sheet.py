@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symobs.cli import (
+    CONVENTION_HELP,
     DETAIL_HELP,
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
     TARGET_HELP,
     TEMPLATES_HELP,
+    _convention,
     _format_of,
     _page,
     _read,
@@ -51,6 +53,7 @@ class _Wanted:
     solutions: bool
     detail: str
     templates: Path | None = None
+    convention: Any = None
 
 
 @click.command()
@@ -62,6 +65,7 @@ class _Wanted:
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
 @click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
 @click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
+@click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
 def sheet(
     files: tuple[str, ...],
     target: str | None,
@@ -71,6 +75,7 @@ def sheet(
     solutions: bool,  # noqa: FBT001
     detail: str,
     templates: str | None,
+    convention_name: str | None,
 ) -> None:
     """Put several problem FILEs on one sheet: all questions first, then all solutions.
 
@@ -79,7 +84,8 @@ def sheet(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    wanted = _Wanted(chosen, not solutions, not questions, **_page(detail, templates, chosen.name))
+    told = _page(detail, templates, chosen.name)
+    wanted = _Wanted(chosen, not solutions, not questions, convention=_convention(convention_name), **told)
     _check_target(target)
     texts = _texts(files)
     entries: list[Entry] = []
@@ -178,7 +184,9 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
 
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return what the format will want of a question or a solution."""
-    return wanted.format.part(replace(document, detail=wanted.detail, templates=wanted.templates))
+    convention = wanted.convention or document.convention
+    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
+    return wanted.format.part(told)
 
 
 def _failure(error: Exception) -> tuple[int, list[str]]:

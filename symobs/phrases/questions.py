@@ -10,6 +10,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "sheet_questions": "Questions",
     "sheet_solutions": "Solutions",
+    "sheet_solution": "solution",
     "sheet_contents": "Contents",
     "sheet_problem": "Problem",
     "sheet_failed": "This problem could not be worked out.",

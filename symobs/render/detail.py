@@ -114,9 +114,12 @@ def _result_alone(step: Define | Equal) -> Define | Equal:
 
 
 def _ends(relation: Relation) -> Relation:
-    if any(operator != "=" for operator in relation.operators):
-        return relation
-    return Relation((relation.members[0], relation.members[-1]), ("=",))
+    """Return a chain without what stands between its first member and the last that equals it."""
+    equals = next(
+        (place for place, operator in enumerate(relation.operators) if operator != "="), len(relation.operators)
+    )
+    first, rest = relation.members[0], relation.members[max(1, equals) :]
+    return Relation((first, *rest), relation.operators[max(0, equals - 1) :])
 
 
 def _is_transposed(first: Formula, others: Sequence[Formula]) -> bool:

@@ -31,7 +31,17 @@ _WIDTHLESS = frozenset(
         *("left", "right", "big", "bigl", "bigr", "displaystyle", "textstyle"),
     )
 )
-_COMMANDS = {"iota": 0.36, "det": 1.4, "quad": 1.0, "qquad": 2.0, "psi": 0.69, "Omega": 0.73, "prime": 0.28}
+_FUNCTIONS = {"sin": 1.23, "cos": 1.34, "sinh": 1.79, "cosh": 1.9}  # the space after them is the argument's
+_COMMANDS = {
+    **_FUNCTIONS,
+    "iota": 0.36,
+    "det": 1.4,
+    "quad": 1.0,
+    "qquad": 2.0,
+    "psi": 0.69,
+    "Omega": 0.73,
+    "prime": 0.28,
+}
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[\^_{}]|.", re.DOTALL)
 
 
