@@ -234,13 +234,16 @@ def _progress(found: Any) -> Any:
 
 def _format_of(format_name: str | None, target: str | None) -> str:
     """Return the format asked for, or the one the target's suffix names, or LaTeX."""
-    from symobs.method import format_named, formats  # noqa: PLC0415
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.contents import format_suffixes  # noqa: PLC0415 - a run pays for one format
+    from symobs.method import format_named  # noqa: PLC0415
 
     suffix = Path(target).suffix if target is not None else ""
     if format_name is None and suffix:
-        named = [name for name, found in formats().items() if found.suffix == suffix]
+        known = format_suffixes(symobs.FORMAT_PACKAGE)
+        named = [name for name in known if known[name] == suffix]
         if not named:
-            repair = f"give --format one of {', '.join(sorted(formats()))}"
+            repair = f"give --format one of {', '.join(known)}"
             raise UsageError(f"the suffix {_quoted(suffix)} names no output format", where="-o", repair=repair)
         format_name = "latex" if "latex" in named else named[0]
     return str(format_named(format_name or "latex").name)
