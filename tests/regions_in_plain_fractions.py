@@ -213,7 +213,7 @@ class Seen:
 @lru_cache(maxsize=32)
 def all_faults(
     picture: RegionPicture | LinePicture | PoleMap, polynomial: Scalar, variable: str, discrete: bool
-) -> tuple[str, ...]:  # noqa: FBT001
+) -> tuple[str, ...]:
     """Return what a picture shows that is not so: the same at every random point."""
     return tuple(faults(picture, polynomial, variable, discrete=discrete))
 

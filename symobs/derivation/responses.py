@@ -7,6 +7,7 @@ then one product a step, in fixed point with as many bits as rounding can eat up
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 from math import lcm
 from operator import mul
@@ -52,7 +53,7 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
         return
     matrix = evaluate(subject, environment, Exact(environment))
     values = _stepped(
-        matrix, [part for start in picture.starts for part in start], instants[1] / 2, 2 * len(instants) - 1
+        matrix, tuple(part for start in picture.starts for part in start), instants[1] / 2, 2 * len(instants) - 1
     )
     for course in picture.courses:
         yield from _faults_of_course(course, instants, values, (bottom, top))
@@ -96,7 +97,8 @@ def _faults_of_course(
         yield f"{course.signal}, which leaves the window,"
 
 
-def _stepped(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int) -> list[list[int]]:
+@lru_cache(maxsize=2)
+def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
     """Return the state at `count` instants, in parts of 2 to the power of _BITS.
 
     A step enlarges an error at most by e^‖Mh‖: as many bits are kept in reserve for each, so rounding is not seen.
