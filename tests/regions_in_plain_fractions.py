@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from math import comb
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpz_poly
 
@@ -210,17 +210,16 @@ class Seen:
         return {self.stable(*other) for other in moved}
 
 
+OfPolynomial: TypeAlias = RegionPicture | LinePicture | PoleMap
+
+
 @lru_cache(maxsize=32)
-def all_faults(
-    picture: RegionPicture | LinePicture | PoleMap, polynomial: Scalar, variable: str, discrete: bool
-) -> tuple[str, ...]:
+def all_faults(picture: OfPolynomial, polynomial: Scalar, variable: str, discrete: bool) -> tuple[str, ...]:  # noqa: FBT001
     """Return what a picture shows that is not so: the same at every random point."""
     return tuple(faults(picture, polynomial, variable, discrete=discrete))
 
 
-def faults(
-    picture: RegionPicture | LinePicture | PoleMap, polynomial: Scalar, variable: str, *, discrete: bool
-) -> Iterator[str]:
+def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
     """Yield what a picture shows that is not so."""
     numbers = {name: Fraction(str(value)) for name, value in picture.drawn_for}
     axes = (
