@@ -29,7 +29,8 @@ def draw_collected(page: Page) -> None:
     gains: dict[str, Member] = {"A": page["A"] - page["L"] @ page["C"], "L": page["L"]}
     if page.plant.matrices.has_input:
         gains["B"] = _driven(page)
-    page.diagram("observer_closed", say="drawn_collected", **gains)
+    say = "drawn_collected" if "B" in gains else "drawn_collected_free"
+    page.diagram("observer_closed", say=say, **gains)
 
 
 def draw_compensator(page: Page) -> None:
