@@ -198,7 +198,7 @@ def _mark(mark: Mark, printer: TextPrinter) -> Iterator[str]:
 
 def _sign(sign: SignMark) -> str:
     (x, y), (across, down) = sign.place, sign.towards
-    place = (x - 0.55 * across + 0.5 * abs(down), y - 0.55 * down - 0.5 * abs(across))
+    place = (x - 0.6 * across + 0.66 * abs(down), y - 0.6 * down - 0.6 * abs(across))
     return _written("−" if sign.is_negative else "+", place, size=0.85)
 
 
