@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
 
@@ -14,7 +15,7 @@ from symobs.render.arrangement import Arrangement, Metrics, arranged
 from symobs.render.glyphs import Level
 from symobs.render.scalars import spelled
 from symobs.render.scene import coordinate
-from symobs.render.svg_text import BELOW, FONTS, Piece, spans, width_of
+from symobs.render.svg_text import BELOW, DOT, FONTS, Piece, spans, width_of
 from symobs.render.text_printer import TextBox, TextPrinter, text_box
 
 if TYPE_CHECKING:
@@ -61,7 +62,8 @@ class _Letters(TextPrinter):
     def letter(self, name: str, mark: str) -> TextBox:
         """A letter; a dot goes above an accent that is there."""
         if mark == "dot":
-            return text_box(self.letter_text(name) + _DOT, Level.POWER)
+            text = self.letter_text(name)
+            return text_box(text + (DOT if unicodedata.combining(text[-1]) else _DOT), Level.POWER)
         return super().letter(name, mark)
 
 
