@@ -8,9 +8,9 @@ A figure is written as it looks.  Its grid places the nodes:
                               figure where none does; a label of that name is the signal there
 
 and its routes say which way the wires run: `a > b` straight, `a -| b` first across, then up or down, `a |- b` first up
-or down, then across.  A wire may have a gain too, `a >[U] b`, which is 1 or -1: a sign.  A box without a label is not
-drawn, nor what hangs on it alone: so one figure serves plants with and without feedthrough.  All mathematics comes with
-the labels, their signs too.
+or down, then across.  A wire may have a gain too, `a >[U] b`, which is 1 or -1: a sign.  An optional box without a
+label is not drawn, nor what hangs on it alone: so one figure serves plants with and without feedthrough.  All
+mathematics comes with the labels, their signs too.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ class Figure:
 
     signals     what the points are called where the page does not say otherwise: label → letter
     letters     what stands for a label that is too wide to be drawn: label → letter
+    optional    boxes that may have no label
     response    whether the figure is drawn for transfer functions: then the label `response` is the one from its input
                 to its output, and the signals are names only
     """
@@ -54,6 +55,7 @@ class Figure:
     wires: tuple[Wire, ...]
     signals: tuple[tuple[str, str], ...] = ()
     letters: tuple[tuple[str, str], ...] = ()
+    optional: tuple[str, ...] = ()
     response: bool = False
 
     @cached_property
@@ -75,7 +77,7 @@ class Figure:
 
     def without_missing(self, labels: Labels) -> Figure:
         """Return the figure without boxes that have no label, and without what led to them or from them alone."""
-        gone = {node for node in self.place if is_box(node) and key(node) not in labels}
+        gone = {node for node in self.place if is_box(node) and key(node) in self.optional and key(node) not in labels}
         while True:
             wires = [wire for wire in self.wires if not {wire.begin, wire.end} & gone]
             loose = {node for node in self.place if node not in gone and self._is_loose(node, wires)}
@@ -119,6 +121,7 @@ def _figure(
     *routes: str,
     signals: Mapping[str, str],
     letters: Mapping[str, str] | None = None,
+    optional: tuple[str, ...] = (),
     response: bool = False,
 ) -> Figure:
     rows = [row.split() for row in grid.strip().splitlines()]
@@ -129,7 +132,8 @@ def _figure(
         for begin, way, end in zip(words[::2], words[1::2], words[2::2], strict=False):
             turn, _, gain = way.rstrip("]").partition("[")
             wires.append(Wire(begin, turn, end, gain))
-    return Figure(places, tuple(wires), tuple(signals.items()), tuple((letters or {}).items()), response)
+    named = tuple(signals.items()), tuple((letters or {}).items())
+    return Figure(places, tuple(wires), *named, optional, response)
 
 
 _LOOP_SIGNALS = {"r": "r_in", "u": "u", "y": "y"}
@@ -172,6 +176,7 @@ _FIGURES = {
         "a |- A -| j",
         "b > D > e",
         signals={"u": "u", "y": "y", "x": "x_hat", "w": "y_hat"},
+        optional=("B", "D"),
     ),
     "observer_closed": lambda: _figure(
         """
@@ -183,6 +188,7 @@ _FIGURES = {
         "y > L -| j",
         "a |- A -| j",
         signals={"u": "u", "y": "y", "x": "x_hat"},
+        optional=("B",),
     ),
     "observer_compensator": lambda: _figure(
         """
@@ -225,6 +231,7 @@ _FIGURES = {
         "y' |- Observer",
         "Observer > x > K -| u",
         signals={"v": "v_r", "u": "u", "y": "y", "x": "x_hat"},
+        optional=("F",),
     ),
     "tracking_loop": lambda: _figure(
         """
@@ -253,6 +260,7 @@ _FIGURES = {
         "b |- H -| j",
         "a |- F -| j",
         signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+        optional=("G",),
     ),
 }
 

@@ -87,4 +87,29 @@ class PoleMap:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-Picture: TypeAlias = RegionPicture | LinePicture | PoleMap
+@dataclass(frozen=True, slots=True)
+class Course:
+    """One component of a signal over time; it is `row` times the state that the picture starts from.
+
+    `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
+    """
+
+    signal: str
+    component: int
+    row: tuple[Fraction, ...]
+    points: tuple[Place, ...]
+    dashed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TimeResponse:
+    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`."""
+
+    states: tuple[str, ...]
+    starts: tuple[tuple[Fraction, ...], ...]
+    courses: tuple[Course, ...]
+    window: tuple[Interval, Interval]
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse

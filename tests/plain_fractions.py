@@ -56,8 +56,10 @@ from symobs.formula import (
     Together,
     Transpose,
 )
+from symobs.picture import TimeResponse
 from tests import regions_in_plain_fractions as regions
 from tests import series
+from tests.courses import untrue_courses
 from tests.plain import coefficients_at, multiply, transposed
 
 if TYPE_CHECKING:
@@ -405,6 +407,8 @@ class World:
                     yield from self.facts((fact,))
                 case Survey():
                     yield from self.survey(step)
+                case Plot(TimeResponse() as courses, subject):
+                    yield "=", Fraction(len(list(untrue_courses(courses, self.value(subject)))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))

@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from math import comb
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpz_poly
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from symobs.analysis.stability_region import StabilityRegion
     from symobs.derivation import Sentence
     from symobs.formula import Formula
-    from symobs.picture import Picture, Place
+    from symobs.picture import Place
     from symobs.region.routh import RouthTable
     from tests.plain_fractions import World
 
@@ -210,13 +210,16 @@ class Seen:
         return {self.stable(*other) for other in moved}
 
 
+OfPolynomial: TypeAlias = RegionPicture | LinePicture | PoleMap
+
+
 @lru_cache(maxsize=32)
-def all_faults(picture: Picture, polynomial: Scalar, variable: str, discrete: bool) -> tuple[str, ...]:  # noqa: FBT001
+def all_faults(picture: OfPolynomial, polynomial: Scalar, variable: str, discrete: bool) -> tuple[str, ...]:  # noqa: FBT001
     """Return what a picture shows that is not so: the same at every random point."""
     return tuple(faults(picture, polynomial, variable, discrete=discrete))
 
 
-def faults(picture: Picture, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
+def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
     """Yield what a picture shows that is not so."""
     numbers = {name: Fraction(str(value)) for name, value in picture.drawn_for}
     axes = (

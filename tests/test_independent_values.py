@@ -89,6 +89,8 @@ def known_letters(hand: Hand) -> dict[str, Any]:
             copy = {"x_hat": A - innovation, "x": innovation}
             known["x_hat'"] = copy if B is None else copy | {"u": B}
             known["e"] = {"x": sympy.eye(A.rows), "x_hat": -sympy.eye(A.rows)}
+            known["y_hat"] = {"x_hat": C}
+            known |= {f"x_hat_{k + 1}": {"x_hat": sympy.eye(A.rows)[k, :]} for k in range(A.rows)}
     known["x'"] = rates
     for letter, stem, polynomial in (("phi_c", "alpha_", hand.control), ("phi_o", "beta_", hand.observer)):
         if polynomial is not None:

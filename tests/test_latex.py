@@ -138,7 +138,7 @@ def test_the_fragment_stands_in_a_plain_document(faults: Callable[[str], list[st
     preamble = r"""\documentclass[11pt,a4paper]{article}
 \usepackage{amsmath,amssymb,tikz}
 \usepackage[margin=27mm]{geometry}
-\usetikzlibrary{positioning,arrows.meta}"""
+\usetikzlibrary{arrows.meta}"""
     assert faults(rf"{preamble}\begin{{document}}{fragment}\end{{document}}") == []
 
 

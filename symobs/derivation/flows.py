@@ -124,7 +124,9 @@ class _Flow:
         states = {name for member in members for name in _differentiated(member)}
         around = [self.leaving(wire.begin) for wire in self.figure.into(node)]
         around += [self.label(key(wire.end)) for wire in self.figure.out_of(node)]
-        at_box = {name for signal in around for name in letters(signal)}
+        at_box = {signal.name for signal in around if isinstance(signal, Letter)}
+        if not all(isinstance(signal, Letter) for signal in around):
+            raise ValueError(f"the box {node}, around which not all signals are letters")
         if spoken - states != at_box - states:
             raise ValueError(f"the box {node}, whose equations do not speak of the signals around it")
 

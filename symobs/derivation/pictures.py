@@ -20,7 +20,7 @@ from symobs.exact.enclosure import sign_of_number
 from symobs.exact.real import roots_of_scalar
 from symobs.formula import Exact, evaluate
 from symobs.formula.plain import plain_relation
-from symobs.picture import LinePicture, PoleMap, RegionPicture
+from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.stability import stability
 
 if TYPE_CHECKING:
@@ -56,6 +56,14 @@ def relations_of(picture: Picture) -> tuple[Relation, ...]:
 
 def faults(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> Iterator[str]:
     """Yield what a picture shows that is not so."""
+    if isinstance(picture, TimeResponse):
+        from symobs.derivation.responses import faults_of_response  # noqa: PLC0415 - only pages with one pay for it
+
+        if not discrete:
+            yield from faults_of_response(picture, subject, environment)
+        else:
+            yield "continuous time"
+        return
     numbers = dict(picture.drawn_for)
     for name, value in numbers.items():
         if not value.is_constant or not _SIGNS[environment.signs.get(name, "real")](value.fraction()):

@@ -17,6 +17,7 @@ from symobs.design.gain_pages import (
 )
 from symobs.design.names import taken_names
 from symobs.design.observer import page_style, write_observer
+from symobs.design.responses import plot_estimate
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
@@ -203,6 +204,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     turn = block([[one, zero], [one, -one]])
     page.conclude_silently(relation(turn @ turn, page.identity(2 * order)))
     page.remark("similar_loops", relation(turn @ second @ turn, page["A_cl"]), turned=relation(state, turn @ states))
+    plot_estimate(page, "e", page["A_cl"], Matrix.identity(order))
 
 
 def return_path(page: Page, design: OutputFeedback) -> None:

@@ -29,18 +29,20 @@ def draw_collected(page: Page) -> None:
     gains: dict[str, Member] = {"A": page["A"] - page["L"] @ page["C"], "L": page["L"]}
     if page.plant.matrices.has_input:
         gains["B"] = _driven(page)
-    page.diagram("observer_closed", say="drawn_collected", **gains)
+    say = "drawn_collected" if "B" in gains else "drawn_collected_free"
+    page.diagram("observer_closed", say=say, **gains)
 
 
 def draw_compensator(page: Page) -> None:
-    """Plant, observer and feedback: in full, and with feedthrough the plant as one box."""
+    """Plant, observer and feedback: in full with one input, one output and no feedthrough, else the plant as one box."""
     A, C, K, L = (page[name] for name in "ACKL")
-    if not page.plant.matrices.has_feedthrough:
+    plant = page.plant
+    if plant.inputs == plant.outputs == 1 and not plant.matrices.has_feedthrough:
         page.signal("y_hat", C @ page["x_hat"], silent=True)
         page.diagram("observer_compensator", say="drawn_compensator", A=A, B=page["B"], C=C, K=-K, L=L)
         return
-    plant = _plant(page)
-    page.diagram("observer_controller", say="drawn_compensator", A=A - L @ C, B=_driven(page), K=-K, L=L, Plant=plant)
+    gains = {"A": A - L @ C, "B": _driven(page), "K": -K, "L": L}
+    page.diagram("observer_controller", say="drawn_compensator", Plant=_plant(page), **gains)
 
 
 def draw_loop(page: Page, plant: Member, compensator: Term) -> None:

@@ -22,6 +22,7 @@ from symobs.design.components import combination
 from symobs.design.gain_pages import FEEDBACK, error_determinant, name_entries, write_gain
 from symobs.design.observer import page_style
 from symobs.design.reduced_order_page import observer_state, write_observer_of_rest
+from symobs.design.responses import plot_estimate
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Literal, Quotient
 from symobs.formula.term import Term, block
@@ -196,6 +197,9 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
     page.equal(relation(states.derivative, second @ states, second.shown @ states), say="reduced_coordinates")
+    plot_estimate(
+        page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))
+    )
 
 
 def _plain(page: Page, term: Term) -> Term:

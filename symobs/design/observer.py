@@ -15,6 +15,7 @@ from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
 from symobs.design.matching import matched_gain
 from symobs.design.observer_existence_page import write_ansatz, write_found
+from symobs.design.responses import plot_error
 from symobs.design.row_reduction import gain_of, row_reduction
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
@@ -96,6 +97,7 @@ class ObserverDesign(GainDesign):
                 write_observer(page, drawn=True)
             if self.answer["L"] is not None:
                 draw_collected(page)
+                plot_error(page, "e", page["A"] - page["L"] @ page["C"])
 
 
 def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:

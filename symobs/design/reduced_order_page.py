@@ -13,6 +13,7 @@ from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
 from symobs.design.names import taken_names
 from symobs.design.reduced_order_observer import Partition, partition
+from symobs.design.responses import plot_error
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import Term, block
@@ -33,6 +34,7 @@ def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
     write_observer_of_rest(page, design)
     if design.answer["L"] is not None:
         draw_minimal_order(page)
+        plot_error(page, "e_2", page["A_22"] - page["L"] @ page["A_12"])
 
 
 def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:

@@ -20,5 +20,7 @@ PHRASES: dict[str, str] = {
     "picture_dashed": "Dashed curves divide the plane and are no boundary.",
     "picture_curve": "Curve (1) is {curve}.",
     "picture_curves": "The curves are",
+    "picture_response": "The course from {start}.",
+    "picture_estimates": "Dashed lines are estimates.",
     "picture_drawn_for": "Drawn for {values}.",
 }

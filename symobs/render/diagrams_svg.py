@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
 
@@ -14,7 +15,7 @@ from symobs.render.arrangement import Arrangement, Metrics, arranged
 from symobs.render.glyphs import Level
 from symobs.render.scalars import spelled
 from symobs.render.scene import coordinate
-from symobs.render.svg_text import BELOW, FONTS, Piece, spans, width_of
+from symobs.render.svg_text import BELOW, DOT, FONTS, Piece, spans, width_of
 from symobs.render.text_printer import TextBox, TextPrinter, text_box
 
 if TYPE_CHECKING:
@@ -61,20 +62,15 @@ class _Letters(TextPrinter):
     def letter(self, name: str, mark: str) -> TextBox:
         """A letter; a dot goes above an accent that is there."""
         if mark == "dot":
-            return text_box(self.letter_text(name) + _DOT, Level.POWER)
+            text = self.letter_text(name)
+            return text_box(text + (DOT if unicodedata.combining(text[-1]) else _DOT), Level.POWER)
         return super().letter(name, mark)
 
 
 def svg(drawing: Drawing, printer: TextPrinter) -> str:
     """Return a drawing as an `svg` element to stand in a page."""
-    letters: TextPrinter = _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
-
-    def measure(label: Label) -> Point:
-        rows = _rows(label, letters)
-        return max(row.width for row in rows), sum(row.height for row in rows)
-
-    metrics = Metrics(measure, inside=(0.55, 0.3), smallest=2.0, junction=0.95, gap=(1.9, 1.1), beside=0.3, sign=1.2)
-    arrangement = arranged(drawing, metrics, _WIDTH, discrete=printer.discrete)
+    letters = _letters(printer)
+    arrangement = arranged(drawing, metrics_of(printer), _WIDTH, discrete=printer.discrete)
     left, top = -_MARGIN * _EM, -_MARGIN * _EM
     width, height = (_EM * (part + 2 * _MARGIN) for part in arrangement.size)
     box = " ".join(map(coordinate, (left, top, width, height)))
@@ -86,6 +82,24 @@ def svg(drawing: Drawing, printer: TextPrinter) -> str:
     return "\n".join(
         [head, f"<title>{escape(PHRASES['block_diagram'])}</title>", *_drawn(arrangement, letters), "</svg>"]
     )
+
+
+def metrics_of(printer: TextPrinter) -> Metrics:
+    """Return the measures of a drawing; the reader's fonts are not known."""
+    letters = _letters(printer)
+
+    def measure(label: Label) -> Point:
+        rows = _rows(label, letters)
+        return max(row.width for row in rows), sum(row.height for row in rows)
+
+    return Metrics(measure, inside=(0.55, 0.3), smallest=2.0, junction=0.95, gap=(1.9, 1.1), beside=0.3, sign=1.2)
+
+
+def _letters(printer: TextPrinter) -> TextPrinter:
+    """Return a printer of the same letters."""
+    letters = _Letters(printer.variable, printer.symbols, discrete=printer.discrete, flat=True)
+    letters.letters = printer.letters
+    return letters
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:
@@ -186,7 +200,7 @@ def _mark(mark: Mark, printer: TextPrinter) -> Iterator[str]:
 
 def _sign(sign: SignMark) -> str:
     (x, y), (across, down) = sign.place, sign.towards
-    place = (x - 0.55 * across + 0.5 * abs(down), y - 0.55 * down - 0.5 * abs(across))
+    place = (x - 0.6 * across + 0.66 * abs(down), y - 0.6 * down - 0.6 * abs(across))
     return _written("−" if sign.is_negative else "+", place, size=0.85)
 
 

@@ -32,12 +32,12 @@ _GAPS = (4, 3, 2)
 def sketch(drawing: Drawing, printer: TextPrinter, width: int) -> str:
     """Return a drawing, at most `width` columns wide where that can be."""
     arrangements = (
-        arranged(drawing, _metrics(printer, gap), room, discrete=printer.discrete)
+        arranged(drawing, cells_of(printer, gap), room, discrete=printer.discrete)
         for room in (inf, float(width))
         for gap in _GAPS
     )
     fitting = (arrangement for arrangement in arrangements if arrangement.size[0] <= width)
-    smallest = _metrics(printer, _GAPS[-1])
+    smallest = cells_of(printer, _GAPS[-1])
     chosen = next(fitting, None) or arranged(drawing, smallest, width, discrete=printer.discrete)
     return _Canvas(chosen, printer).text()
 
@@ -48,8 +48,8 @@ def _rows(label: Label, printer: TextPrinter) -> list[str]:
     return [printer.inline(label)]
 
 
-def _metrics(printer: TextPrinter, gap: int) -> Metrics:
-    """Everything is an odd number of cells wide and high, so that it has a cell in the middle."""
+def cells_of(printer: TextPrinter, gap: int) -> Metrics:
+    """Return the measures of a terminal: everything is an odd number of cells wide and high and has a middle cell."""
 
     def measure(label: Label) -> Point:
         rows = _rows(label, printer)

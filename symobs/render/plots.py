@@ -8,7 +8,8 @@ from math import ceil, cos, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.formula import Literal, Relation
-from symobs.picture import LinePicture, PoleMap, RegionPicture
+from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.render import plots_time
 from symobs.render.plots_caption import drawn, part, radius_of, symbol
 from symobs.render.plots_labels import Surroundings, labelled, walk
 from symobs.render.scene import (
@@ -53,6 +54,8 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
             return _line(picture, measure)
         case PoleMap():
             return _poles(picture, measure)
+        case TimeResponse():
+            return _courses(picture, measure)
         case _:
             assert_never(picture)
 
@@ -143,14 +146,12 @@ def _box(sign: Sign) -> Box:
 # -- axes -------------------------------------------------------------------------------------------------------------
 
 
-def _axes(frame: _Frame, names: tuple[Content, Content], measure: Measure) -> tuple[list[Stroke], list[Text]]:
+def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[Text]]:
     """Return axes on the left and below, with ticks and names."""
     width, height = frame.width, frame.height
     strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
-    texts = [
-        Text(names[0], (width + _BEYOND + _LETTER, 0), "west"),
-        Text(names[1], (0, height + _BEYOND + _LETTER - 1), "south"),
-    ]
+    texts = [Text(names[0], (width + _BEYOND + _LETTER, 0), "west")]
+    texts += [Text(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
     for value, label in ticks(*frame.horizontal):
         x, _ = frame.at(value, 0)
         strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
@@ -264,6 +265,25 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
         signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Box(*place, *place))]
     whole = whole_of(strokes, texts, measure)
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
+
+
+# -- courses ----------------------------------------------------------------------------------------------------------
+
+
+def _courses(picture: TimeResponse, measure: Measure) -> Scene:
+    """Signals over time, each with its name beside it."""
+    frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, plots_time.HEIGHT)
+    lines = {course: tuple(frame.lines(course.points)) for course in picture.courses}
+    pale = tuple(_zero_lines(frame))
+    every = tuple(line for parts in lines.values() for line in parts)
+    names = {plots_time.name_of(course): parts for course, parts in lines.items()}
+    labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
+    axes, written = _axes(frame, (symbol("t"),), measure)
+    strokes = [Stroke(line, plots_time.style_of(course)) for course, parts in lines.items() for line in parts]
+    texts = (*written, *labels)
+    zeros = (Stroke(line, "zero") for line in pale)
+    whole = whole_of(axes, texts, measure)
+    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), (), texts, tuple(numbered))
 
 
 def _square_frame(window: tuple[Interval, Interval]) -> _Frame:

@@ -6,10 +6,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.derivation import Sentence
-from symobs.exact import Scalar
-from symobs.formula import Apply, Letter, Literal, Relation, Together
+from symobs.exact import Matrix, Scalar
+from symobs.formula import Apply, At, Letter, Literal, Relation, Together
 from symobs.phrases import PHRASES
-from symobs.picture import LinePicture, PoleMap, RegionPicture
+from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.render.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def caption(picture: Picture) -> Inlines:
     return joined(words)
 
 
-def numbered(equations: Sequence[Relation]) -> Inlines:
+def numbered(equations: Sequence[Formula | Relation]) -> Inlines:
     """Return the list of the equations of curves that carry numbers in the picture."""
     if len(equations) == 1:
         return filled(_say("curve", curve=equations[0]))
@@ -97,6 +97,17 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
             else:
                 edge = number(-(picture.margin or 0))
                 yield _say("half_plane", where=Relation((part("Re"), edge), ("<",)))
+        case TimeResponse(states=states, starts=starts):
+            begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
+            yield _say("response", start=Together(begun))
+            if any(course.dashed for course in picture.courses):
+                yield _say("estimates")
+
+
+def _beginning(name: str, start: Sequence[Fraction]) -> Relation:
+    values = Matrix.of([[part] for part in start])
+    value = values[0, 0] if len(start) == 1 else values
+    return Relation((At(Letter(name), "t", Scalar.of(0)), Literal(value)), ("=",))
 
 
 def radius_of(picture: PoleMap) -> Fraction:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import hypot
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs.render.scene import Box, Text, segment_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.formula import Relation
+    from symobs.formula import Formula, Relation
     from symobs.render.scene import Content, Measure, Point
 
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
@@ -21,6 +21,8 @@ _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
 
+#: What is written at a curve: its equation, or what it is the course of.
+Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 
@@ -35,15 +37,13 @@ class Surroundings:
     shades: Lines
 
 
-def labelled(
-    curves: Mapping[Relation, Lines], around: Surroundings, measure: Measure
-) -> tuple[list[Text], list[Relation]]:
+def labelled(curves: Mapping[Name, Lines], around: Surroundings, measure: Measure) -> tuple[list[Text], list[Name]]:
     """Return the equations beside their curves, and those that found no place: these stand there as numbers.
 
     The longest is placed first, and numbers last.  A number may stand over a sample if need be, or over anything.
     """
     written: list[Text] = []
-    left: list[Relation] = []
+    left: list[Name] = []
     for equation in sorted(curves, key=lambda equation: -measure(equation)[0]):
         text = _best(equation, curves[equation], _beside(around, written, measure), measure)
         if text is None:

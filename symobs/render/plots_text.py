@@ -6,10 +6,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.formula import Formula, Literal
-from symobs.picture import LinePicture, PoleMap, RegionPicture
+from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.render.plots import ticks
 from symobs.render.plots_caption import part, radius_of, symbol
 from symobs.render.plots_labels import contains
+from symobs.render.plots_time import CHARACTERS, name_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -29,6 +30,8 @@ def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
             return _line(picture, printer, min(_LINE, width - 4))
         case PoleMap():
             return _poles(picture, printer)
+        case TimeResponse():
+            return _courses(picture, printer)
         case _:
             assert_never(picture)
 
@@ -68,6 +71,20 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
     return _framed(grid, picture.window, [part("Re"), part("Im")], printer)
 
 
+def _courses(picture: TimeResponse, printer: TextPrinter) -> str:
+    """A character for each course, which the line above explains."""
+    grid = _grid(picture.window, lambda _x, _y: " ")
+    zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
+    if picture.window[1][0] < 0 < picture.window[1][1]:
+        grid[min(zero, _ROWS - 1)] = ["┈"] * _COLUMNS
+    marks = dict(zip(picture.courses, CHARACTERS, strict=False))
+    for course, mark in reversed(marks.items()):
+        for place in course.points:
+            _put(grid, picture.window, place, mark)
+    told = "   ".join(f"{mark} {printer.inline(name_of(course))}" for course, mark in marks.items())
+    return f"{told}\n{_framed(grid, picture.window, [symbol('t')], printer)}"
+
+
 def _grid(window: tuple[Interval, Interval], character: Callable[[float, float], str]) -> list[list[str]]:
     """Return the character of every cell, asked for at its middle; the top row first."""
     (left, right), (bottom, top) = (tuple(map(float, interval)) for interval in window)
@@ -89,10 +106,10 @@ def _framed(
 ) -> str:
     """Return the rows with axes, their names and the ends of the window."""
     (left, right), (bottom, top) = window
-    first, second = (printer.inline(name) for name in names)
+    first, second = ([printer.inline(name) for name in names] + [""])[:2]
     low, high = _short(bottom), _short(top)
     margin = max(len(low), len(high))
-    lines = [f"{' ' * margin} {second}"]
+    lines = [f"{' ' * margin} {second}"] if second else []
     for row, characters in enumerate(grid):
         label = {0: high, _ROWS - 1: low}.get(row, "")
         lines.append(f"{label:>{margin}} │{''.join(characters)}")

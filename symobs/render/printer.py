@@ -69,6 +69,14 @@ SIGNALS = frozenset(
 )
 
 
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def _with_index(latex: str, index: str) -> str:
+    stem, below, own = latex.partition("_")
+    return f"{stem}_{{{own.strip('{}')},{index}}}" if below else f"{stem}_{index}"
+
+
 class Printer(Glyphs[B]):
     """Formula → mathematics of one format."""
 
@@ -93,12 +101,17 @@ class Printer(Glyphs[B]):
     # -- letters --------------------------------------------------------------------------------------------------
 
     def letter_latex(self, name: str) -> str:
-        """Return the LaTeX of a letter, its variable put in, or of a parameter."""
+        """Return the LaTeX of a letter, its variable put in, of a component `x[1` of a signal, or of a parameter."""
+        if "[" in name:
+            return _with_index(self.letter_latex(name.partition("[")[0]), name.partition("[")[2])
         form = self.letters.get(name)
         return form.latex.replace("{v}", self.variable) if form else symbol_latex(name, self.symbols.get(name))
 
     def letter_text(self, name: str) -> str:
         """Return a letter as a terminal shows it, its variable put in, or a parameter."""
+        if "[" in name:
+            text = self.letter_text(name.partition("[")[0])
+            return text + ("," if text[-1].isnumeric() else "") + name.partition("[")[2].translate(_BELOW)
         form = self.letters.get(name)
         return form.text.replace("{v}", self.variable) if form else symbol_text(name)
 

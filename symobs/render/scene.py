@@ -109,6 +109,7 @@ STYLES = {
     "divider": Style(0.4, "text", (2.5, 1.8)),
     "piece": Style(2.6, "ink"),
     "path": Style(0.9, "ink"),
+    "estimate": Style(0.9, "ink", (3.0, 2.0)),
 }
 RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
 ARROW = 5.0
@@ -124,7 +125,7 @@ class Scene:
     strokes: tuple[Stroke, ...]
     signs: tuple[Sign, ...]
     texts: tuple[Text, ...]
-    numbered: tuple[Relation, ...] = ()
+    numbered: tuple[Formula | Relation, ...] = ()
 
 
 def coordinate(value: float) -> str:

@@ -15,9 +15,11 @@ if TYPE_CHECKING:
 
 FONTS = "'STIX Two Text','Latin Modern Roman','Cambria','Times New Roman','DejaVu Serif',serif"
 #: Sub- and superscripts: their size, and how far they are lowered, in parts of the size of the font.
-_SCRIPT, _LOWERED = 0.72, {"sub": 0.2, "super": -0.36, "": 0.0}
+_SCRIPT, _LOWERED = 0.72, {"sub": 0.2, "super": -0.36, "": 0.0, "dot": -0.2}
 #: The character after this one stands below the letter before, upright.
 BELOW = "\ue000"
+#: A dot above an accent: fonts put both at one place, so it is a character of its own, set back over the letter.
+DOT, _SET_BACK = "\ue001", 0.36
 #: Names of several letters, such as Re, stand upright.
 _WORDS = re.compile(r"[A-Za-z]{2,}")
 _SPECIAL_WIDTHS = {
@@ -40,7 +42,7 @@ def width_of(pieces: Iterable[Piece], size: float) -> float:
         (_SCRIPT if level else 1.0) * _SPECIAL_WIDTHS.get(character, 0.56)
         for piece in pieces
         for character, level, _ in _characters(piece)
-        if not unicodedata.combining(character)
+        if not unicodedata.combining(character) and character != DOT
     )
 
 
@@ -50,10 +52,11 @@ def spans(pieces: Iterable[Piece], size: float) -> str:
     before = 0.0
     every = (character for piece in pieces for character in _characters(piece))
     for (level, is_italic), run in groupby(every, key=lambda item: item[1:]):
-        text = escape("".join(character for character, _, _ in run))
+        text = escape("".join(character for character, _, _ in run)).replace(DOT, "˙")
         lowered = _LOWERED[level] * size
         attributes = [f'dy="{coordinate(lowered - before)}"'] if lowered != before else []
-        attributes += [f'font-size="{coordinate(_SCRIPT * size)}"'] if level else []
+        attributes += [f'dx="{coordinate(-_SET_BACK * size)}"'] if level == "dot" else []
+        attributes += [f'font-size="{coordinate(_SCRIPT * size)}"'] if level in {"sub", "super"} else []
         attributes += ['font-style="italic"'] if is_italic else []
         written.append(f"<tspan {' '.join(attributes)}>{text}</tspan>" if attributes else text)
         before = lowered
@@ -69,6 +72,9 @@ def _characters(piece: Piece) -> Iterator[tuple[str, str, bool]]:
         level = {"<sub>": "sub", "<super>": "super"}.get(form.partition(" ")[0], "")
         plain = unicodedata.normalize("NFKC", character) if level else character
         if character == BELOW:
+            continue
+        if character == DOT:
+            yield character, "dot", False
             continue
         if place and piece.text[place - 1] == BELOW:
             yield character, "sub", False

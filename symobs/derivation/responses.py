@@ -1,0 +1,132 @@
+"""Whether courses over time are those of the equations of the page (trusted).
+
+The values are found anew, by steps: e^{Mh} from its power series in rational numbers, with a bound for the rest, and
+then one product a step, in fixed point with as many bits as rounding can eat up.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from itertools import pairwise
+from math import lcm
+from operator import mul
+from typing import TYPE_CHECKING
+
+from symobs.certificate import verify
+from symobs.exact import Matrix, Scalar
+from symobs.formula import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symobs.formula import Environment, Formula
+    from symobs.picture import Course, TimeResponse
+
+#: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
+_NEAR, _BETWEEN = Fraction(1, 500), Fraction(1, 100)
+#: Bits that are left when rounding has done its worst, those that a factor e takes, and the most that are worth it.
+_BITS, _BITS_OF_E, _MOST_BITS = 64, Fraction(3, 2), 20_000
+
+Vector = list[Fraction]
+
+
+def faults_of_response(picture: TimeResponse, subject: Formula, environment: Environment) -> Iterator[str]:
+    """Yield what a picture of courses shows that is not so."""
+    state = Block(tuple((Letter(name),) for name in picture.states))
+    for relation in ((Derivative(state), Product((subject, state))), *_signals(picture, state, environment)):
+        if verify(Relation(relation, ("=",)), environment)[0] == "":
+            yield f"an equation of {', '.join(picture.states)} with this matrix"
+            return
+    (low, high), (bottom, top) = picture.window
+    instants = [x for x, _ in picture.courses[0].points] if picture.courses else []
+    if len(instants) < 2 or instants[0] != 0 or low != 0 or instants[-1] != high or bottom >= top:
+        yield "a window that begins at 0 and that courses fill"
+        return
+    steps = {b - a for a, b in pairwise(instants)}
+    if len(steps) != 1 or min(steps) <= 0:
+        yield "instants at equal distances"
+        return
+    sizes = [_size(name, environment) for name in picture.states]
+    if [len(start) for start in picture.starts] != sizes:
+        yield f"a start of {', '.join(picture.states)}"
+        return
+    matrix = evaluate(subject, environment, Exact(environment))
+    values = _stepped(
+        matrix, tuple(part for start in picture.starts for part in start), instants[1] / 2, 2 * len(instants) - 1
+    )
+    for course in picture.courses:
+        yield from _faults_of_course(course, instants, values, (bottom, top))
+
+
+def _signals(picture: TimeResponse, state: Block, environment: Environment) -> Iterator[tuple[Formula, Formula]]:
+    """Yield the equations that make courses components of their signals."""
+    for name in dict.fromkeys(course.signal for course in picture.courses):
+        rows = {course.component: course.row for course in picture.courses if course.signal == name}
+        size = _size(name, environment)
+        if sorted(rows) != ([0] if size == 1 else list(range(1, size + 1))):
+            raise ValueError(f"not all components of {name}")
+        table = Matrix.of([[Scalar.of(part) for part in rows[component]] for component in sorted(rows)])
+        yield Letter(name), Product((Literal(table), state))
+
+
+def _size(name: str, environment: Environment) -> int:
+    """Return how many components a signal has."""
+    signal = evaluate(Letter(name), environment, Exact(environment))
+    return signal.size if isinstance(signal, Signal) else 0
+
+
+def _faults_of_course(
+    course: Course, instants: Sequence[Fraction], values: list[list[int]], edges: tuple[Fraction, Fraction]
+) -> Iterator[str]:
+    """Yield where a course is not what it is said to be; `values` are those at all instants and between them."""
+    common = lcm(*(part.denominator for part in course.row))
+    row = [int(part * common) for part in course.row]
+    true = [sum(map(mul, row, value)) // common for value in values]
+    if [x for x, _ in course.points] != list(instants):
+        yield f"{course.signal} at other instants"
+        return
+    drawn = [(y.numerator << _BITS) // y.denominator for _, y in course.points]
+    bottom, top = (int(edge * (1 << _BITS)) for edge in edges)
+    height = top - bottom
+    off = [abs(y - value) for y, value in zip(drawn, true[::2], strict=True)]
+    between = [abs((a + b) // 2 - value) for (a, b), value in zip(pairwise(drawn), true[1::2], strict=True)]
+    if max(off) > height * _NEAR or max(between) > height * _BETWEEN:
+        yield f"the course of {course.signal}"
+    if min(drawn) < bottom or max(drawn) > top:
+        yield f"{course.signal}, which leaves the window,"
+
+
+@lru_cache(maxsize=2)
+def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
+    """Return the state at `count` instants, in parts of 2 to the power of _BITS.
+
+    A step enlarges an error at most by e^‖Mh‖: as many bits are kept in reserve for each, so rounding is not seen.
+    """
+    table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
+    norm = max(sum(map(abs, row), Fraction(0)) for row in table)
+    bits = 2 * _BITS + int(count * norm * _BITS_OF_E) + count
+    if bits > _MOST_BITS:
+        raise ValueError("a course with too much to compute")
+    once = _exponential(table, norm, bits)
+    state = [round(part * (1 << bits)) for part in start]
+    values = []
+    for _ in range(count):
+        values.append([part >> (bits - _BITS) for part in state])
+        state = [sum(map(mul, row, state)) >> bits for row in once]
+    return values
+
+
+def _exponential(table: list[Vector], norm: Fraction, bits: int) -> list[list[int]]:
+    """Return e^M in fixed point by its power series, until its terms are nothing and go on falling."""
+    order = len(table)
+    fixed = [[round(entry * (1 << bits)) for entry in row] for row in table]
+    term = [[(i == j) << bits for j in range(order)] for i in range(order)]
+    total = [list(row) for row in term]
+    k = 0
+    while k <= 2 * norm or any(entry not in {0, -1} for row in term for entry in row):
+        k += 1
+        columns = list(zip(*fixed, strict=True))
+        term = [[sum(map(mul, row, column)) // (k << bits) for column in columns] for row in term]
+        total = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
+    return total

@@ -1,0 +1,205 @@
+"""Courses of errors and estimates over time: true, shown only where they can be read, and refused where spoiled."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from fractions import Fraction
+from math import exp
+from typing import TYPE_CHECKING
+
+import pytest
+
+import symobs
+from symobs.derivation import Derivation, Plot, Section
+from symobs.errors import DerivationRejected
+from symobs.exact import Matrix, Scalar
+from symobs.exact.response import rates, response
+from symobs.formula import Exact, Literal, evaluate
+from symobs.picture import TimeResponse
+from symobs.render.latex_printer import LatexPrinter
+from symobs.render.plots_svg import svg, svg_scene
+from symobs.render.plots_text import character_plot
+from symobs.render.plots_tikz import latex_scene, tikz
+from symobs.render.text_printer import TextPrinter
+from symobs.system import StateSpace
+from tests.courses import untrue_courses
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.derivation import Step
+    from symobs.method import Result
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+PAGES: dict[str, Callable[[], Result]] = {
+    "observer": lambda: symobs.observer(SERVO, poles=[-10, -10]),
+    "oscillating": lambda: symobs.observer(SERVO, poles="-1+2i, -1-2i"),
+    "two outputs": lambda: symobs.observer(
+        StateSpace("[0 1 0; 0 0 1; 1 2 3]", None, "[1 0 0; 0 1 1]"), poles=[-1, -2, -3]
+    ),
+    "compensator": lambda: symobs.compensator(SERVO, control_poles=[-2, -2], observer_poles=[-10, -10]),
+    "minimal-order compensator": lambda: symobs.compensator(
+        SERVO, control_poles=[-2, -2], observer_poles=[-10], observer="minimal"
+    ),
+    "reduced-order observer": lambda: symobs.reduced_order_observer(
+        StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]"), poles=[-5, -6]
+    ),
+}
+every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
+
+
+def within(steps: tuple[Step, ...]) -> Iterator[Step]:
+    for step in steps:
+        yield step
+        if isinstance(step, Section):
+            yield from within(step.steps)
+
+
+def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
+    found = (step for step in within(result.derivation.steps) if isinstance(step, Plot))
+    return [(step, step.picture) for step in found if isinstance(step.picture, TimeResponse)]
+
+
+def test_the_error_of_the_servo_by_its_formula() -> None:
+    """The double pole -10: e(t) = exp(-10 t) (I + (A - LC + 10 I) t) e(0), worked out by hand for e(0) = (1, 1)."""
+    ((_, picture),) = plots(PAGES["observer"]())
+    first, second = picture.courses
+    assert (first.signal, first.component, second.component) == ("e", 1, 2)
+    for (t, one), (_, two) in zip(first.points, second.points, strict=True):
+        assert float(one) == pytest.approx(exp(-10 * t) * (1 - 8 * t), abs=1e-5)
+        assert float(two) == pytest.approx(exp(-10 * t) * (1 - 72 * t), abs=1e-5)
+
+
+@every_page
+def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Result]) -> None:
+    result = page()
+    known = result.derivation.check()
+    ((step, picture),) = plots(result)
+    value = evaluate(step.subject, known, Exact(known))
+    assert list(untrue_courses(picture, [[entry.fraction() for entry in row] for row in value.rows])) == []
+
+
+def test_estimate_and_state_meet() -> None:
+    for name in ("compensator", "minimal-order compensator"):
+        ((_, picture),) = plots(PAGES[name]())
+        state, estimate = ([c for c in picture.courses if c.signal == signal] for signal in ("x", "x_hat"))
+        assert [course.dashed for course in (*state, *estimate)] == [False, False, True, True]
+        assert all(course.points[0][1] == 1 for course in state)
+        for one, other in zip(state, estimate, strict=True):
+            assert abs(one.points[-1][1] - other.points[-1][1]) < Fraction(1, 1000)
+            assert abs(one.points[-1][1]) < Fraction(1, 10)
+        starts = [float(course.points[0][1]) for course in estimate]
+        assert starts == ([0, 0] if name == "compensator" else [1, 0])  # what is measured is known from the start
+
+
+def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
+    parametric = StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
+    assert plots(symobs.observer(parametric, poles=[-1, -2])) == []
+    assert plots(symobs.observer(SERVO, poles=["-p", "-q"])) == []
+    assert plots(symobs.observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", dt=True), poles=[0, 0])) == []
+    assert plots(symobs.observer(SERVO, poles=[-1, -16])) == []  # the fast mode would be a vertical line
+    assert plots(symobs.observer(SERVO, poles=[-1, -15])) != []
+    assert plots(symobs.observer(SERVO, poles=[0, -1])) == []  # nothing converges
+    assert plots(symobs.observer(SERVO, poles=[1, -1])) == []
+
+
+# -- what is refused --------------------------------------------------------------------------------------------------
+
+
+@every_page
+def test_no_spoiled_course_is_accepted(page: Callable[[], Result]) -> None:
+    derivation = page().derivation
+    derivation.check()
+    ((step, picture),) = plots(page())
+    (step,) = [other for other in within(derivation.steps) if other == step]
+    for spoiled in spoilt(picture):
+        with pytest.raises(DerivationRejected):
+            replaced(derivation, step, replace(step, picture=spoiled)).check()
+    value = evaluate(step.subject, derivation.check(), Exact(derivation.check()))
+    for subject in (Literal(value), Literal(value * Scalar.of(2))):
+        with pytest.raises(DerivationRejected):
+            replaced(derivation, step, replace(step, subject=subject)).check()
+
+
+def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
+    course, *others = picture.courses
+    end, (bottom, top) = picture.window[0][1], picture.window[1]
+    height = top - bottom
+    middle = len(course.points) // 2
+    x, y = course.points[middle]
+    for moved in ((x, y + height / 100), (x, y - height / 100), (x + end / 1000, y)):
+        points = (*course.points[:middle], moved, *course.points[middle + 1 :])
+        yield replace(picture, courses=(replace(course, points=points), *others))
+    yield replace(picture, courses=(replace(course, points=course.points[:-1]), *others))
+    yield replace(picture, courses=(replace(course, points=course.points[:: len(course.points) - 1]), *others))
+    yield replace(picture, courses=(replace(course, row=tuple(-part for part in course.row)), *others))
+    yield replace(picture, courses=(replace(course, component=course.component + 1), *others))
+    yield replace(picture, courses=(replace(course, signal="u"), *others))
+    yield replace(picture, courses=())
+    yield replace(picture, starts=tuple(tuple(2 * part for part in start) for start in picture.starts))
+    yield replace(picture, starts=(picture.starts[0][1:], *picture.starts[1:]))
+    yield replace(picture, states=("u", *picture.states[1:]))
+    yield replace(picture, window=((Fraction(0), 2 * end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), end), (bottom, bottom + height / 2)))
+    faster = tuple(replace(c, points=tuple((x / 2, y) for x, y in c.points)) for c in picture.courses)
+    yield replace(picture, courses=faster, window=((Fraction(0), end / 2), (bottom, top)))
+
+
+def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
+    def through(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        return tuple(
+            replace(step, steps=through(step.steps)) if isinstance(step, Section) else new if step is old else step
+            for step in steps
+        )
+
+    return Derivation(through(derivation.steps), derivation.start, derivation.symbols, derivation.discrete)
+
+
+# -- the kernel -------------------------------------------------------------------------------------------------------
+
+
+def test_enclosures_are_rounded_to_the_nearest_part() -> None:
+    spin = Matrix.of([[0, 1], [-1, 0]])
+    found = list(response(spin, [Fraction(0), Fraction(1)], [Fraction(0), Fraction(1, 2), Fraction(3)], 10**9))
+    assert found == [(0, 10**9), (479425539, 877582562), (141120008, -989992497)]
+
+
+def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
+    assert rates(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
+    assert rates(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
+
+
+def test_what_cannot_be_enclosed_is_not_drawn() -> None:
+    with pytest.raises(ArithmeticError):
+        list(response(Matrix.of([[200]]), [Fraction(1)], [Fraction(1)], 10**9))
+
+
+# -- what is written --------------------------------------------------------------------------------------------------
+
+
+@every_page
+def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -> None:
+    ((_, picture),) = plots(page())
+    text, latex = TextPrinter(), LatexPrinter()
+    sketched = character_plot(picture, text, 76)
+    drawn = tikz(latex_scene(picture, latex), latex)
+    written = svg(svg_scene(picture, text), text)
+    ET.fromstring(written)  # noqa: S314 - our own text
+    assert max(map(len, sketched.splitlines())) <= 76
+    names: dict[str, tuple[str, str]] = {
+        "e": ("e", "e"),
+        "x": ("x", "x"),
+        "x_hat": ("x̂", r"\hat x"),
+        "e_2": ("e₂", "e_2"),
+    }
+    for course in picture.courses:
+        in_text, in_latex = names[course.signal]
+        index = "₁₂₃"[course.component - 1] if course.component else ""
+        comma = "," if course.signal == "e_2" and index else ""
+        assert f" {in_text}{comma}{index}" in sketched
+        below = f"_{{2,{course.component}}}" if comma else f"_{course.component}" if index else ""
+        assert f"${in_latex.removesuffix('_2' if comma else '')}{below}$" in drawn
+    dashes = any(course.dashed for course in picture.courses)
+    assert ("stroke-dasharray" in written) == dashes
+    assert ("dash" in drawn) == dashes
