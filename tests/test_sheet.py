@@ -355,6 +355,17 @@ def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_to
     assert pages > 3
 
 
+def test_a_problem_told_in_words_begins_the_first_slide(folder: Path) -> None:
+    text = (
+        'title = "T"\ntext = "Two states, one seen."\ntask = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    )
+    (folder / "words.toml").write_text(text, encoding="utf-8")
+    run = inside("solve", "words.toml", "--format", "beamer", folder=folder)
+    frames = run.out.split(r"\begin{frame}")[1:]
+    assert [frame.partition("{")[2].partition("}")[0] for frame in frames] == ["", "Given", "Observability"]
+    assert frames[1].splitlines()[1] == "Two states, one seen."
+
+
 def test_a_suffix_never_means_slides(folder: Path) -> None:
     run = inside("sheet", "good.toml", "-o", "out.tex", folder=folder)
     assert run.code == 0
