@@ -336,14 +336,13 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_slides_are_typeset_without_a_fault(tmp_path: Path, require_tool: RequireTool) -> None:
-    names = {"two_masses_parametric", "region_nonconvex", "cart_pole", "pendulum_hanging_region", "servo_feedthrough"}
-    names |= {"output_feedback_servo", "pendulum_gramian", "region_two_intervals", "two_masses_feedthrough"}
+    names = {"two_masses_parametric", "region_nonconvex", "cart_pole", "pendulum_hanging_region", "output_feedback_servo"}
     files = [str(path) for path in EXAMPLES if path.stem in names]
     run = inside("sheet", *files, "--solutions", "--format", "beamer", "--title", "Slides")
     assert len(files) == len(names)
     faults, pages = typeset(run.out, tmp_path, require_tool("pdflatex"))
     assert faults == []
-    assert pages > 80
+    assert pages > 50
 
 
 def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_tool: RequireTool) -> None:
