@@ -20,6 +20,7 @@ _FLAGS = (
     "--headless",
     "--no-sandbox",
     "--disable-gpu",
+    "--disable-dev-shm-usage",
     "--disable-extensions",
     "--disable-background-networking",
     "--no-first-run",

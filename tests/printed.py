@@ -21,7 +21,8 @@ def problem(*relations: str, convention: str = "standard", plant: dict[str, str]
         "tasks": ["observer"],
         "plant": plant or SERVO,
         "specification": {"poles": [-10, -10]},
-        "printed": [{"relation": relation, "convention": convention} for relation in relations],
+        "convention": convention,
+        "printed": [{"relation": relation} for relation in relations],
     }
     return json.dumps(data | rest)
 

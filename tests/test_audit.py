@@ -14,13 +14,15 @@ from hypothesis import strategies as st
 from symobs.audit import audit, report
 from symobs.audit.differences import decimal_of
 from symobs.audit.grammar import every, read_relation
-from symobs.errors import ProblemErrors, SymobsError
+from symobs.errors import CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
 from tests.command_line import ROOT, SERVO, inside
 from tests.printed import finding, findings, problem
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from symobs.audit.grammar import Node
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [
@@ -250,6 +252,16 @@ def test_what_would_build_too_much_is_refused(relation: str) -> None:
         findings(relation)
 
 
+def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lie(left: Node, _right: Node, *_: object) -> tuple[Node, Node, str]:
+        return left, left.parts[0], "no reason"
+
+    monkeypatch.setattr("symobs.audit.findings.found_slip", lie)
+    with pytest.raises(ProblemErrors, match="does not hold") as raised:
+        findings("A + L C = A - B C")
+    assert isinstance(raised.value.errors[0], CertificateRejected)
+
+
 # -- files that cannot be read -----------------------------------------------------------------------------------------
 
 
@@ -339,6 +351,18 @@ def test_errors_of_all_files_are_told_together(files: dict[str, str]) -> None:
     assert (run.code, run.out) == (3, "")
     assert all(any(line.startswith(name) for line in run.lines) for name in (files["bad"], files["worse"], "nowhere"))
     assert sum(line.startswith(files["bad"]) for line in run.lines) == 2
+
+
+def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> None:
+    own = 'name = "lecture"\nfeedback = "u = K x_hat"\nobserver = "A + N C"\n[letters]\ne = "x_bar"\n'
+    (tmp_path / "lecture.toml").write_text(own, encoding="utf-8")
+    relations = ("N = [-19; -81]", "A + N C = [-19 1; -81 -1]", "x_bar' = (A + N C) x_bar", "N = [19; 81]")
+    printed = [{"relation": relation} for relation in relations]
+    (tmp_path / "file.json").write_text(problem(convention="lecture", printed=printed), encoding="utf-8")
+    run = inside("audit", "file.json", folder=tmp_path)
+    assert run.code == 4
+    assert "all signs are wrong" in run.out
+    assert run.out.endswith("4 printed equations, 1 wrong.\n")
 
 
 def test_a_problem_without_printed_equations_has_nothing_wrong(tmp_path: Path) -> None:

@@ -51,10 +51,9 @@ FLOORS = {
     "output": 11,
     "problem": 11,
     "audit": 12,
-    "audit_command": 13,
-    "cli": 14,
-    "teaching": 14,
-    "__main__": 15,
+    "cli": 13,
+    "teaching": 13,
+    "__main__": 14,
 }
 # The package itself (`__init__.py`) stands above all floors. It lists the modules in which methods and formats
 # register, and two modules may look at it or load by name: the registry (the only way up) and the command line.

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+from symobs import StateSpace, observer
 from symobs.derivation import Conclude, Define, Derivation, Equal, Given, Note, Section, Sentence, Step
-from symobs.errors import DerivationRejected
+from symobs.errors import DerivationRejected, ProblemErrors
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Exactly, Letter, Literal, Predicate, Relation, Transpose
+from symobs.method import render
 from symobs.phrases import PHRASES
+from symobs.problem.validation import validate
 from symobs.render.blocks import Block, CaseBlock, Caution, Display, Drawing, Heading, Paragraph, Title, Verified, every
 from symobs.render.narrator import LABELS, narrate
-from symobs.render.prose import filled
+from symobs.render.prose import filled, with_reference
 from tests import render_examples as example
 from tests.render_examples import document, equals, minus, number, plus, say, times, values
 
@@ -213,3 +218,52 @@ def test_a_slot_that_is_a_region_shows_its_inequalities() -> None:
 def test_a_name_between_dollars_is_mathematics(written: str, formula: object, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PHRASES, "test_named", f"Here ${written}$ is named.")
     assert filled(Sentence("test_named")) == ("Here ", formula, " is named.")
+
+
+# -- sources and the problem in words -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("inlines", "shown"),
+    [
+        (("It is observable.",), ("It is observable\u00a0[2].",)),
+        (("By duality", ONE, " holds§, so"), ("By duality", ONE, " holds\u00a0[2], so")),
+        (("The error", ONE), ("The error", ONE, "\u00a0[2]")),
+        (("is driven by",), ("is driven by\u00a0[2]",)),
+    ],
+)
+def test_a_sentence_has_the_number_of_its_source(inlines: tuple[object, ...], shown: tuple[object, ...]) -> None:
+    assert with_reference(inlines, 2) == shown  # type: ignore[arg-type]
+
+
+def test_without_a_source_nothing_is_added() -> None:
+    assert with_reference(("By duality§ it is.",), None) == ("By duality it is.",)
+
+
+def test_numbers_in_the_text_are_those_of_the_sources() -> None:
+    page = str(observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10]).to("text"))
+    words, _, sources = page.partition("Sources. ")
+    cited = re.findall(r"\[(\d)\]", words.partition("Observer\n")[2])
+    listed = re.findall(r"\[(\d)\]", sources)
+    assert listed == sorted(listed)
+    assert [number for number in cited if number in listed][:2] == ["1", "2"]
+    assert set(listed) <= set(cited)
+    assert "[1] rank test for observability: S0, Theorem 4.2" in " ".join(sources.split())
+
+
+def test_the_problem_in_words_stands_under_the_title() -> None:
+    data = {
+        "title": "A tank",
+        "text": "Salt & water,\nmixed.\n\nHow much is there?",
+        "task": "observability",
+        "plant": {"A": "[-1]", "C": "[1]"},
+    }
+    found = validate(data)
+    page = str(render(found.document(found.solve()), "latex"))
+    title, statement, given = (page.index(part) for part in (r"A tank", r"Salt \& water, mixed.", "Given."))
+    assert title < statement < page.index("How much is there?") < given
+
+
+def test_words_that_are_no_text_are_refused() -> None:
+    with pytest.raises(ProblemErrors, match="text: a text is expected"):
+        validate({"text": 3, "task": "observability", "plant": {"A": "[-1]", "C": "[1]"}})

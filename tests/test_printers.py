@@ -6,7 +6,7 @@ import random
 import re
 import subprocess
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 from hypothesis import given, settings
@@ -37,8 +37,6 @@ from symobs.render.text_printer import TextPrinter, text_width
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
-
-    from symobs.render.printer import Printer
 
 Value = Scalar | Matrix
 
@@ -724,7 +722,7 @@ def hostile_members(source: random.Random) -> Iterator[Formula]:
     yield Product((Apply("det", A), Apply("det", Sum((A, matrix_of(3, 3, lambda: polynomial(source, 9))))), A))
 
 
-def displays(source: random.Random, printer: Printer[Any]) -> Iterator[str]:
+def displays(source: random.Random, printer: LatexPrinter | TextPrinter) -> Iterator[str]:
     for index, member in enumerate(hostile_members(source)):
         left = (K, Sum((A, Negative(Product((B, K))))), Letter("G_cl"))[index % 3]
         yield printer.display([equation(left, A, member)], boxed=index % 2 == 0)

@@ -69,7 +69,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     for name in ("problem", "servo"):
         (tmp_path / f"{name}.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 16
+    assert len(lines) == 17
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
@@ -87,3 +87,13 @@ def test_the_template_replaces_one_block(tmp_path: Path) -> None:
     run = fresh("solve", "problem.toml", "--templates", ".", folder=tmp_path)
     assert (run.code, run.err) == (0, "")
     assert run.out.index(r"\usepackage{charter}") < run.out.index(r"\begin{document}")
+
+
+def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
+    mass = ROOT / "worked_examples" / "double_integrator_observer.toml"
+    *_, printed = blocks("toml")
+    (shown,) = blocks("text")
+    (tmp_path / "printed.toml").write_text(f"{mass.read_text(encoding='utf-8')}\n{printed}", encoding="utf-8")
+    run = fresh("audit", "printed.toml", folder=tmp_path)
+    assert (run.code, run.err) == (4, "")
+    assert shown in run.out

@@ -83,7 +83,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
     found = after("--version")
     assert found & (HEAVY | KERNEL) == set()
     own = {name for name in found if name.startswith("symobs")}
-    assert own == {"symobs", "symobs.audit_command", "symobs.cli", "symobs.errors", "symobs.output"}
+    assert own == {"symobs", "symobs.cli", "symobs.errors", "symobs.output"}
 
 
 def test_importing_symobs_imports_nothing_else_of_it() -> None:
@@ -108,11 +108,13 @@ def test_only_latex_needs_its_templates() -> None:
         assert "jinja2" not in after("solve", str(SERVO), "--format", form)
 
 
-def test_help_lists_every_task_without_importing_one() -> None:
+def test_tasks_and_formats_are_listed_without_importing_one() -> None:
     import symobs  # noqa: PLC0415 - what the list is held against
-    from symobs.contents import task_summaries  # noqa: PLC0415
-    from symobs.method import tasks  # noqa: PLC0415
+    from symobs import contents, method  # noqa: PLC0415
 
-    assert task_summaries(symobs.TASK_PACKAGES) == {name: task.summary for name, task in sorted(tasks().items())}
+    tasks = {name: task.summary for name, task in sorted(method.tasks().items())}
+    assert contents.task_summaries(symobs.TASK_PACKAGES) == tasks
+    formats = {name: kind.suffix for name, kind in sorted(method.formats().items())}
+    assert contents.format_suffixes(symobs.FORMAT_PACKAGE) == formats
     found = after("--help")
     assert not {name for name in found if name.startswith(("symobs.analysis", "symobs.design", "flint"))}

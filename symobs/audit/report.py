@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from symobs.audit.findings import Audited, Finding
+
+
+_WIDTH = 100
 
 
 def report(audited: Mapping[str, Audited], format_name: str) -> str:
@@ -38,7 +42,9 @@ def _text(audited: Mapping[str, Audited]) -> str:
         for finding in each.findings:
             lines += [f"  {_heading(finding)}", f"    printed   {finding.printed}"]
             lines += [f"    right     {finding.right}"] if finding.right else []
-            lines += [f"    because   {finding.reason}"] if finding.reason else []
+            lines += (
+                wrap(f"    because   {finding.reason}", _WIDTH, subsequent_indent=" " * 14) if finding.reason else []
+            )
             lines += [""]
     return "\n".join([*lines, summary(audited), ""])
 

@@ -15,18 +15,20 @@ from typing import Any, NoReturn
 
 import click
 
-from symobs.audit_command import command as audit_command
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 _MOST_LINES = 100
 #: Commands in modules of their own, imported when they are called, and what each does.
-_LATE = {"sheet": "Put several problem files on one sheet: all questions first, then all solutions."}
+_LATE = {
+    "audit": "Recompute what a source prints, and list what is wrong with the reason.",
+    "sheet": "Put several problem files on one sheet: all questions first, then all solutions.",
+}
 
 
 class Tasks(click.Group):
-    """The commands that stand in this file, `sheet`, and one for every registered task."""
+    """The commands that stand in this file, those in `_LATE`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return all names."""
@@ -47,7 +49,11 @@ class Tasks(click.Group):
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
-        if cmd_name in _LATE:
+        if cmd_name == "audit":
+            from symobs.cli.audit import audit_command  # noqa: PLC0415 - only audits pay for it
+
+            return audit_command
+        if cmd_name == "sheet":
             from symobs.cli.sheet import sheet  # noqa: PLC0415 - only sheets pay for it
 
             return sheet
@@ -228,13 +234,16 @@ def _progress(found: Any) -> Any:
 
 def _format_of(format_name: str | None, target: str | None) -> str:
     """Return the format asked for, or the one the target's suffix names, or LaTeX."""
-    from symobs.method import format_named, formats  # noqa: PLC0415
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.contents import format_suffixes  # noqa: PLC0415 - a run pays for one format
+    from symobs.method import format_named  # noqa: PLC0415
 
     suffix = Path(target).suffix if target is not None else ""
     if format_name is None and suffix:
-        named = [name for name, found in formats().items() if found.suffix == suffix]
+        known = format_suffixes(symobs.FORMAT_PACKAGE)
+        named = [name for name in known if known[name] == suffix]
         if not named:
-            repair = f"give --format one of {', '.join(sorted(formats()))}"
+            repair = f"give --format one of {', '.join(known)}"
             raise UsageError(f"the suffix {_quoted(suffix)} names no output format", where="-o", repair=repair)
         format_name = "latex" if "latex" in named else named[0]
     return str(format_named(format_name or "latex").name)
@@ -342,7 +351,6 @@ def _templates() -> list[Path]:
 
 #: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
 _COLLECTED_AFTER = 50_000
-cli.add_command(audit_command(_read, _say))
 
 
 def main() -> NoReturn:

@@ -224,7 +224,7 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     )
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     polynomial = design.loop_polynomial.value
-    if all(factor.degree(design.plant.variable) <= 2 for factor, _ in design.loop_polynomial.factors):
+    if all(_has_short_roots(factor, design.plant.variable) for factor, _ in design.loop_polynomial.factors):
         page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
     else:
         page.conclude("loop_polynomial")
@@ -232,6 +232,11 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
     page.define("G_r", around, unity, say="unity_feedback", closing=False)
     draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
+
+
+def _has_short_roots(factor: Scalar, variable: str) -> bool:
+    """Whether the roots of a factor can be told in a sentence: those of a quadratic with parameters are too long."""
+    return factor.degree(variable) == 1 or (factor.degree(variable) == 2 and factor.names <= {variable})
 
 
 def return_path_of_several(page: Page, design: OutputFeedback) -> None:

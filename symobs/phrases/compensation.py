@@ -26,9 +26,9 @@ PHRASES: dict[str, str] = {
     "compensator_written": "Written out, the compensator is",
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
-    "compensator_stable_low": "It is strictly proper, and stable by itself because all coefficients of {polynomial} are positive.",
+    "compensator_stable_low": "It is strictly proper, and stable by itself because all coefficients of {polynomial} are positive§.",
     "compensator_unstable": "It is strictly proper. By itself it is not stable, although the loop is.",
-    "compensator_unstable_low": "It is strictly proper. By itself it is not stable, since not all coefficients of {polynomial} are positive, although "
+    "compensator_unstable_low": "It is strictly proper. By itself it is not stable, since not all coefficients of {polynomial} are positive§, although "
     "the loop is.",
     "compensator_proper": "It is strictly proper.",
     "compensator_stable_if": "It is strictly proper, and by itself stable exactly where {where}.",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.formula import Together
 from symobs.render.arrangement import Arrangement, Metrics, arranged
+from symobs.render.escape import centred
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,10 +26,8 @@ def tikz(drawing: Drawing, printer: LatexPrinter) -> str:
     """Return a drawing in TikZ, in the middle of the page; needs tikz and its library arrows.meta."""
     arrangement = arranged(drawing, metrics_for(printer), printer.width, discrete=printer.discrete)
     lines = "\n".join(_written(arrangement, printer))
-    return (
-        "\\begin{center}\n\\begin{tikzpicture}[x=1em,y=-1em,>=Stealth,every node/.style={inner sep=0pt}]\n"
-        f"{lines}\n\\end{{tikzpicture}}\n\\end{{center}}"
-    )
+    options = "x=1em,y=-1em,>=Stealth,every node/.style={inner sep=0pt}"
+    return centred(f"\n\\begin{{tikzpicture}}[{options}]\n{lines}\n\\end{{tikzpicture}}\n")
 
 
 def metrics_for(printer: LatexPrinter) -> Metrics:

@@ -119,6 +119,12 @@ _LONG_WORD = 40  # characters; a longer one must be allowed to break, or it leav
 _PIECE = 20
 
 
+def centred(body: str) -> str:
+    """Return LaTeX in the middle of the page; what introduces it is not left behind at the foot of the page before."""
+    kept = r"\csname @beginparpenalty\endcsname=10000 "
+    return f"{{{kept}\\begin{{center}}{body}\\end{{center}}}}"
+
+
 def escape(text: str) -> str:
     """Return LaTeX that shows the text as it is, on one line; every stretch of white space becomes one space."""
     line = unicodedata.normalize("NFC", _WHITE.sub(" ", text))

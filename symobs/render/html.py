@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, ClassVar
 from symobs.formula import Roots
 from symobs.method import output_format
 from symobs.phrases import PHRASES
-from symobs.render import widths
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
@@ -31,7 +30,7 @@ from symobs.render.blocks import (
     Verified,
     opened,
 )
-from symobs.render.diagrams import sketch
+from symobs.render.diagrams import svg
 from symobs.render.mathml_elements import MINUS, PLUS
 from symobs.render.mathml_printer import MathmlPrinter
 from symobs.render.narrator import narrate, printer_for
@@ -50,7 +49,6 @@ if TYPE_CHECKING:
 _SOMEWHERE = "\0"
 _FOLDER = Path(__file__).parent
 _INSET = 2.0  # em, as in the style
-_SKETCH = 78  # columns
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 _ROOTS = RootGlyphs(
@@ -105,7 +103,8 @@ class HtmlFragment:
 
     def render(self, document: Document) -> str:
         """Return the body."""
-        body = HtmlWriter(printer_for(document, MathmlPrinter), level=2).body(narrate(document))
+        writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=None, level=2)
+        body = writer.body(narrate(document))
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
 
 
@@ -145,10 +144,11 @@ def plain(text: str) -> str:
 class HtmlWriter:
     """Writes blocks as HTML: the text around the mathematics, which the printer writes."""
 
-    def __init__(self, printer: MathmlPrinter, *, prefix: str = "", level: int = 1, inset: float = 0.0) -> None:
+    def __init__(self, printer: MathmlPrinter, *, prefix: str | None = "", level: int = 1, inset: float = 0.0) -> None:
         """Write mathematics with `printer`, on lines shorter by `inset` em.
 
-        A title is a heading of `level`, and `prefix` begins every id: parts of one page are told apart by it.
+        A title is a heading of `level`, and `prefix` begins every id: parts of one page are told apart by it.  Without a
+        prefix there are no ids, since nobody knows the page around.
         """
         self.printer = copy(printer)
         self.printer.width = printer.width - inset
@@ -177,7 +177,7 @@ class HtmlWriter:
                 kind = "caution" if warns else "note"
                 return f'<p class="{kind}"><strong>{plain(label)}</strong> {self.sentence(inlines)}</p>'
             case Drawing():
-                return diagram(block, self._text_printer())
+                return f"<figure>\n{svg(block, self._text_printer())}\n</figure>"
             case TableBlock():
                 table, told = html_table(block, self.printer, self.sentence)
                 below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(told)}" if told else ""
@@ -185,7 +185,8 @@ class HtmlWriter:
             case PictureBlock():
                 return self._picture(block)
             case CaseBlock(label, blocks):
-                inside = HtmlWriter(self.printer, prefix=f"{self.prefix}case-", level=self.level + 1, inset=_INSET)
+                prefix = None if self.prefix is None else f"{self.prefix}case-"
+                inside = HtmlWriter(self.printer, prefix=prefix, level=self.level + 1, inset=_INSET)
                 inside.unnumbered = self.unnumbered
                 label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
@@ -208,15 +209,19 @@ class HtmlWriter:
     def _heading(self, number: str, words: str) -> str:
         """A heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
         depth = min(6, self.level + max(1, number.count(".")))
+        words = f"{number} {words}".strip().removesuffix(".")
+        if self.prefix is None:
+            return f"<h{depth}>{words}</h{depth}>"
         place = number.rstrip(".").replace(".", "-") or f"part-{next(self.unnumbered)}"
-        return f'<h{depth} id="{self.prefix}s-{place}">{f"{number} {words}".strip().removesuffix(".")}</h{depth}>'
+        return f'<h{depth} id="{self.prefix}s-{place}">{words}</h{depth}>'
 
     def _display(self, mathematics: str) -> str:
         return f'<div class="display">{mathematics}</div>'
 
     def _picture(self, block: PictureBlock) -> str:
         from symobs.render.plots_caption import below  # noqa: PLC0415 - only pages with pictures
-        from symobs.render.plots_svg import svg, svg_scene  # noqa: PLC0415
+        from symobs.render.plots_svg import svg as plotted  # noqa: PLC0415
+        from symobs.render.plots_svg import svg_scene  # noqa: PLC0415
 
         printer = self._text_printer()
         scene = svg_scene(block.picture, printer)
@@ -224,17 +229,13 @@ class HtmlWriter:
         spoken = "".join(
             part if isinstance(part, str) else printer.inline(part) for part in words if not isinstance(part, Roots)
         )
-        return f"<figure>\n{svg(scene, printer, spoken)}\n<figcaption>{self.sentence(words)}</figcaption>\n</figure>"
+        return (
+            f"<figure>\n{plotted(scene, printer, spoken)}\n<figcaption>{self.sentence(words)}</figcaption>\n</figure>"
+        )
 
     def _text_printer(self) -> TextPrinter:
         """The printer of the words inside pictures."""
-        printer = self.printer
-        return TextPrinter(
-            printer.variable, printer.symbols, discrete=printer.discrete, width=int(2 * widths.TEXT_WIDTH)
-        )
-
-
-def diagram(drawing: Drawing, printer: TextPrinter) -> str:
-    """Return a block diagram."""
-    drawn = escape(sketch(drawing, printer, _SKETCH))
-    return f'<pre role="img" aria-label="Block diagram">\n{drawn}\n</pre>'
+        own = self.printer
+        printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete)
+        printer.letters = own.letters
+        return printer

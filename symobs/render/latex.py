@@ -28,7 +28,6 @@ from symobs.render.escape import escape
 from symobs.render.latex_printer import LatexPrinter
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.roots import LATEX, listed
-from symobs.render.table_formats import latex_table
 from symobs.render.templates import fill
 
 if TYPE_CHECKING:
@@ -149,6 +148,8 @@ class LatexWriter:
             case Drawing():
                 return tikz(block, self.printer)
             case TableBlock():
+                from symobs.render.table_formats import latex_table  # noqa: PLC0415 - only pages with tables
+
                 return latex_table(block, self.printer, self.sentence)
             case PictureBlock(picture, caption):
                 from symobs.render.plots_caption import below  # noqa: PLC0415 - only pages with pictures

@@ -192,7 +192,10 @@ class MarkdownWriter:
 
     def _text_printer(self) -> TextPrinter:
         """The printer of what is drawn with characters."""
-        return TextPrinter(self.printer.variable, self.printer.symbols, discrete=self.printer.discrete, width=_SKETCH)
+        own = self.printer
+        printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete, width=_SKETCH)
+        printer.letters = own.letters
+        return printer
 
 
 def fenced(text: str) -> str:

@@ -23,6 +23,7 @@ TIMES = "<mo>&#x2062;</mo>"
 TIMES_OR_BREAK = '<mo form="infix">&#x2062;</mo>'
 OPENING = '<mo form="prefix" stretchy="false">(</mo>'
 CLOSING = '<mo form="postfix" stretchy="false">)</mo>'
+LIST = '<mo form="prefix" stretchy="false">[</mo>', '<mo form="postfix" stretchy="false">]</mo>'
 DOT = '<mo form="infix">⋅</mo>'
 SLASH = '<mo form="infix" lspace="0" rspace="0">/</mo>'
 BAR = '<mo form="postfix" fence="true" stretchy="true">|</mo>'

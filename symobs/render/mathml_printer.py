@@ -24,6 +24,7 @@ from symobs.render.mathml_elements import (
     COMMA,
     DOT,
     LARGE,
+    LIST,
     MINUS,
     OPENING,
     PLUS,
@@ -229,8 +230,9 @@ class MathmlPrinter(Printer[MathmlBox]):
         width = base.width + widths.SCRIPT * width
         if base.indexed:
             return MathmlBox(width, Level.POWER, (f"<msubsup>{''.join(base.indexed)}{script}</msubsup>",), base.height)
-        if base.elements[-1] == CLOSING:  # a line may end between these parentheses
-            elements = (*base.elements[:-1], f"<msup>{CLOSING}{script}</msup>")
+        *front, last = base.elements
+        if last in {CLOSING, LIST[1]}:  # a line may end between these parentheses
+            elements = (*front, f"<msup>{last}{script}</msup>")
             return MathmlBox(width, Level.POWER, elements, base.height)
         return MathmlBox(width, Level.POWER, (f"<msup>{base.one}{script}</msup>",), base.height)
 
@@ -247,7 +249,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
         if self.running and width > _WIDE:
-            return MathmlBox(width, Level.ATOM, _list_of(rows))
+            return _list_of(rows)
         struts = (STRUT, *("" for _ in range(columns - 1)))
         body = "".join(f"<mtr>{''.join(map(self._cell, line, struts))}</mtr>" for line in rows)
         small = ' scriptlevel="+1"' if self.running and len(rows) > 1 else ""
@@ -377,14 +379,15 @@ def is_large(entry: MathmlBox) -> bool:
     return has_fraction and not _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
 
 
-def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> tuple[str, ...]:
+def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
     """A matrix as a list of its entries, [a, b; c, d]."""
     elements: list[str] = []
     for line in rows:
         for place, entry in enumerate(line):
             mark = COMMA if place else SEMICOLON
             elements += [mark, *entry.elements] if elements else entry.elements
-    return ('<mo form="prefix" stretchy="false">[</mo>', *elements, '<mo form="postfix" stretchy="false">]</mo>')
+    width = sum(entry.width + widths.COLUMN_GAP for line in rows for entry in line)
+    return MathmlBox(width, Level.ATOM, (LIST[0], *elements, LIST[1]))
 
 
 def _sized(opening: str, closing: str, size: str, width: float) -> tuple[MathmlBox, MathmlBox]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.formula import Roots
-from symobs.render.escape import escape
+from symobs.render.escape import centred, escape
 from symobs.render.plots import scene_of
 from symobs.render.plots_caption import below, caption
 from symobs.render.plots_rows import ABOVE, NARROWEST
@@ -41,11 +41,8 @@ def tikz(scene: Scene, printer: LatexPrinter) -> str:
 
 def figure(scene: Scene, words: str, printer: LatexPrinter) -> str:
     """Return a scene in the middle of the page with the text below it, which stay on one page."""
-    return (
-        "\\begin{center}\\begin{minipage}{.92\\linewidth}\\centering\n"
-        f"{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
-        "\\end{minipage}\\end{center}"
-    )
+    told = f"{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
+    return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{told}\\end{{minipage}}")
 
 
 def tikz_file(picture: Picture, printer: LatexPrinter) -> str:

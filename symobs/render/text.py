@@ -28,7 +28,6 @@ from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.plots_text import character_plot
 from symobs.render.roots import TEXT, listed
-from symobs.render.table_formats import text_table
 from symobs.render.text_printer import TextPrinter, text_width
 
 if TYPE_CHECKING:
@@ -111,6 +110,8 @@ class TextWriter:
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
             case TableBlock():
+                from symobs.render.table_formats import text_table  # noqa: PLC0415 - only pages with tables
+
                 table, told = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
                 return f"{indented(table)}{below}"
