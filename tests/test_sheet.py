@@ -336,7 +336,13 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_slides_are_typeset_without_a_fault(tmp_path: Path, require_tool: RequireTool) -> None:
-    names = {"two_masses_parametric", "region_nonconvex", "cart_pole", "pendulum_hanging_region", "output_feedback_servo"}
+    names = {
+        "two_masses_parametric",
+        "region_nonconvex",
+        "cart_pole",
+        "pendulum_hanging_region",
+        "output_feedback_servo",
+    }
     files = [str(path) for path in EXAMPLES if path.stem in names]
     run = inside("sheet", *files, "--solutions", "--format", "beamer", "--title", "Slides")
     assert len(files) == len(names)
