@@ -336,14 +336,19 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_slides_are_typeset_without_a_fault(tmp_path: Path, require_tool: RequireTool) -> None:
-    names = {"two_masses_parametric", "region_nonconvex", "cart_pole", "pendulum_hanging_region", "servo_feedthrough"}
-    names |= {"output_feedback_servo", "pendulum_gramian", "region_two_intervals", "two_masses_feedthrough"}
+    names = {
+        "two_masses_parametric",
+        "region_nonconvex",
+        "cart_pole",
+        "pendulum_hanging_region",
+        "output_feedback_servo",
+    }
     files = [str(path) for path in EXAMPLES if path.stem in names]
     run = inside("sheet", *files, "--solutions", "--format", "beamer", "--title", "Slides")
     assert len(files) == len(names)
     faults, pages = typeset(run.out, tmp_path, require_tool("pdflatex"))
     assert faults == []
-    assert pages > 80
+    assert pages > 50
 
 
 def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_tool: RequireTool) -> None:
@@ -353,6 +358,17 @@ def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_to
     faults, pages = typeset(run.out, tmp_path, require_tool("pdflatex"))
     assert faults == []
     assert pages > 3
+
+
+def test_a_problem_told_in_words_begins_the_first_slide(folder: Path) -> None:
+    text = (
+        'title = "T"\ntext = "Two states, one seen."\ntask = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    )
+    (folder / "words.toml").write_text(text, encoding="utf-8")
+    run = inside("solve", "words.toml", "--format", "beamer", folder=folder)
+    frames = run.out.split(r"\begin{frame}")[1:]
+    assert [frame.partition("{")[2].partition("}")[0] for frame in frames] == ["", "Given", "Observability"]
+    assert frames[1].splitlines()[1] == "Two states, one seen."
 
 
 def test_a_suffix_never_means_slides(folder: Path) -> None:

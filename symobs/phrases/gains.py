@@ -110,6 +110,8 @@ RESTS_ON: dict[str, str] = {
 }
 
 EXPLAINS = (
+    "open_eigenvalues_observer",
+    "open_eigenvalues_state_feedback",
     "assignable_observer",
     "assignable_state_feedback",
     "already_canonical",

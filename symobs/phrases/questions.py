@@ -109,7 +109,7 @@ PHRASES: dict[str, str] = {
     "new input.",
     "ask tracking": "Let the state follow the states $x_d$ of its own unforced motion, by state feedback and an observer of minimal order.",
     "ask tracking reference_matrix": "Let the state follow every reference $x_d$, by state feedback and an observer of minimal order. Is that possible?",
-    "ask tracking reference_matrix reference_start": "Let the state follow the reference $x_d$ from this one initial state, by state feedback and an observer of "
+    "ask tracking reference_matrix reference_start": "Let the state follow the reference $x_d$ from the initial state given, by state feedback and an observer of "
     "minimal order. Is that possible?",
     "also tracking observer=full": "The observer is to have full order.",
     "also reference_start": "The reference starts at the initial state given.",

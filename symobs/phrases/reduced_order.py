@@ -51,4 +51,4 @@ RESTS_ON: dict[str, str] = {
     "reduced_observer": "reduced_order",
 }
 
-EXPLAINS = ("first_part_measures", "mere_copy")
+EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails")

@@ -78,16 +78,17 @@ def _title(text: str) -> dict[str, Any]:
 
 
 def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
-    """Yield what stands under each heading of the first level, its title first."""
+    """Yield what stands under each heading of the first level, its title first; what stands above all goes with the first."""
     title: Inlines = ()
     body: list[Block] = []
     for block in blocks:
-        if isinstance(block, Heading) and block.number.count(".") <= 1:
-            if body:
-                yield title, tuple(body)
+        if not isinstance(block, Heading) or block.number.count(".") > 1:
+            body.append(block)
+        elif title and body:
+            yield title, tuple(body)
             title, body = block.inlines, []
         else:
-            body.append(block)
+            title = block.inlines
     if body:
         yield title, tuple(body)
 
