@@ -235,6 +235,12 @@ def test_an_equation_is_written_as_it_is_read(left: str, right: str) -> None:
     assert read_relation(" = ".join(map(str, members)), "") == members
 
 
+def test_of_a_long_equation_the_entries_are_told_all_the_same() -> None:
+    found = finding("A = " + " + ".join(["A"] * 90))
+    assert found.right == "A = [0 1; 0 -1]"
+    assert "every entry is multiplied by 90" in found.reason
+
+
 @pytest.mark.parametrize(
     "relation",
     [

@@ -176,7 +176,7 @@ def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed
     if is_signal(left):
         if is_signal(right) or shape(right) not in (None, (1, 1)):
             raise Misfit(f"{before} is a signal; {behind} has to stand before it")
-        return right @ left
+        return Term(Literal(right.scalar), right.environment) @ left
     first, second = shape(left), shape(right)
     if first is not None and second is not None and first[1] != second[0]:
         raise no_fit(f"{before} {kind_of(left)} and {behind} {kind_of(right)}")
@@ -366,5 +366,5 @@ def holds(left: Node, right: Node, environment: Environment) -> bool:
     """Tell whether an equation is true; one whose sizes do not fit is not."""
     try:
         return equal(*common(value_of(left, environment), value_of(right, environment), environment))
-    except (Misfit, Unknown, InputError):
+    except (Misfit, Unknown, *SENSELESS):  # InputError is a ValueError
         return False

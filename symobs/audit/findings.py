@@ -13,10 +13,10 @@ from symobs.audit.functions import Misfit, Unknown
 from symobs.audit.grammar import Node, letters_of, read_relation
 from symobs.audit.letters import INSTANTS, values
 from symobs.audit.signals import signals
-from symobs.audit.slips import found_slip
+from symobs.audit.slips import Patience, found_slip
 from symobs.audit.spectra import spectral, spectrum_text
 from symobs.audit.statements import Statement, statements
-from symobs.errors import CertificateRejected, ProblemErrors, SymobsError, UnknownName
+from symobs.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError, UnknownName
 from symobs.exact import Matrix, Scalar
 from symobs.expect import mismatches
 from symobs.formula import Environment, Signal
@@ -63,9 +63,10 @@ def audit(problem: Problem) -> Audited:
     found: list[Finding] = []
     errors: list[SymobsError] = []
     desks: dict[str, _Desk] = {}
+    patience = Patience()
     for entry in entries:
         name = entry.convention.name
-        desk = desks[name] = desks.get(name) or _Desk(problem, results, entry.convention)
+        desk = desks[name] = desks.get(name) or _Desk(problem, results, entry.convention, patience)
         try:
             found += desk.read(entry)
         except SymobsError as error:
@@ -83,6 +84,7 @@ class _Desk:
     problem: Problem
     results: Sequence[Result]
     convention: Convention
+    patience: Patience
     known: list[Node] = field(default_factory=list)
     values: Mapping[str, Scalar | Matrix] = field(init=False)
     let: Mapping[str, Node] = field(init=False, default_factory=dict)
@@ -104,16 +106,20 @@ class _Desk:
             if finding is None:
                 self.known += [left, right]
             else:
-                self._confirm(finding[0])
-                findings.append(Finding(entry.where, entry.erratum, f"{left} = {right}", *finding))
+                equation, reason = self._confirmed(finding[0]), finding[1]
+                findings.append(Finding(entry.where, entry.erratum, f"{left} = {right}", equation, reason))
         return findings
 
-    def _confirm(self, right: str) -> None:
-        """Read what is said to be right as if it were printed: it must be true."""
-        members = read_relation(right, "") if right else ()
+    def _confirmed(self, right: str) -> str:
+        """Return what is said to be right, read as if it were printed: it must be true.  Too long a text is left out."""
+        try:
+            members = read_relation(right, "") if right else ()
+        except BudgetExceeded:
+            return ""
         if any(self._checked(*pair) is not None for pair in pairwise(members)):
             message = f"the equation {right} does not hold"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=right)
+        return right
 
     # -- one equation -------------------------------------------------------------------------------------------------
 
@@ -177,7 +183,7 @@ class _Desk:
         fields = {name for result in self.results for name in result.fields if name[0].islower()}
         matrices = {f"{result.task}_matrix" for result in self.results}
         alphabet = Letters(environment, frozenset(fields | matrices), fit=fit)
-        found = found_slip(left, right, self.true, alphabet)
+        found = found_slip(left, right, self.patience.asks(self.true), alphabet)
         return None if found is None else (f"{found[0]} = {found[1]}", found[2])
 
     def _misfit(self, left: Node, right: Node, message: str, environment: Environment) -> tuple[str, str]:
@@ -283,7 +289,7 @@ class _Desk:
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
         if len(names) != 1 or self._has_numbers(right):
             return None
-        written = self._matrices(letters_of(left, right), environment)
+        true, written = self.patience.asks(self.true), self._matrices(letters_of(left, right), environment)
         offered = self._matrices([*written, *environment.values], environment)
         for letters, most in ((written[:6], _MOST_LETTERS), (offered[:16], 2)):
             for chosen in (each for count in range(1, most + 1) for each in product(letters, repeat=count)):
@@ -291,7 +297,7 @@ class _Desk:
                 terms = right.parts if right.kind == "sum" else (right,)
                 for last in (term, Node("negative", (term,))):
                     fixed = Node("sum", (*terms, last))
-                    if self.true(left, fixed):
+                    if true(left, fixed):
                         return f"{left} = {fixed}", f"the term {last} is missing"
         return None
 

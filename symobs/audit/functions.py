@@ -79,6 +79,8 @@ def applied(node: Node, arguments: Sequence[Matrix], environment: Environment) -
         case "trace":
             return sum((first[i, i] for i in range(first.shape[0])), Scalar.of(0))
         case "eigenvalues":
+            if environment.variable in first.names:
+                raise Misfit(f"{part} is no constant matrix")
             return first.characteristic_polynomial(environment.variable)
         case "rank":
             return Scalar.of(rank(first))

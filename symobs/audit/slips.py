@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
 _MOST_TRIED = 1_000
-#: So many parts of equations are evaluated for one kind of slip: of a long equation fewer changes are tried.
-_MOST_PARTS = 30_000
+#: So many parts of changed equations are evaluated for one finding, and for all of a file: of long equations fewer
+#: changes are tried.
+_MOST_PARTS, _MOST_PARTS_OF_A_FILE = 12_000, 100_000
 _MOST_ROWS = 6
 _INDEX = re.compile(r"_?[0-9]+$|_d$")
 _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
@@ -44,6 +45,26 @@ class Alphabet(Protocol):
 
     def rounded(self, block: Node) -> str | None:
         """Return the letter whose value a bracket of decimals is, rounded."""
+
+
+@dataclass
+class Patience:
+    """How much may still be tried for the findings of a file."""
+
+    left: int = _MOST_PARTS_OF_A_FILE
+
+    def asks(self, true: Callable[[Node, Node], bool]) -> Callable[[Node, Node], bool]:
+        """Return the same question for one finding; it is answered with no when too much has been asked."""
+        end = max(0, self.left - _MOST_PARTS)
+
+        def asked(left: Node, right: Node) -> bool:
+            cost = sum(1 for side in (left, right) for _ in every(side))
+            if self.left - cost < end:
+                return False
+            self.left -= cost
+            return true(left, right)
+
+        return asked
 
 
 def found_slip(
@@ -97,10 +118,9 @@ def _decided(
     left: Node, right: Node, true: Callable[[Node, Node], bool], kind: Callable[[Node], Iterator[Slip]]
 ) -> tuple[tuple[Node, Node, str] | None] | None:
     """Return the one slip of a kind, in a pair; None where the kind has none; a pair of None where it has several."""
-    most = min(_MOST_TRIED, _MOST_PARTS // sum(1 for side in (left, right) for _ in every(side)))
     candidates = [
-        *((slip, (left, slip.side)) for slip in islice(kind(right), most)),
-        *((slip, (slip.side, right)) for slip in islice(kind(left), most) if left.kind != "letter"),
+        *((slip, (left, slip.side)) for slip in islice(kind(right), _MOST_TRIED)),
+        *((slip, (slip.side, right)) for slip in islice(kind(left), _MOST_TRIED) if left.kind != "letter"),
     ]
     fitting: dict[str, tuple[Slip, tuple[Node, Node]]] = {}
     for slip, pair in candidates:
