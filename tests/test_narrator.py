@@ -133,6 +133,13 @@ def test_what_is_given_is_said_once_on_a_page() -> None:
     assert shown == [A_IS_ONE, C_IS_ONE]
 
 
+def test_an_answer_is_not_told_again_as_a_step() -> None:
+    answer, step = (Equal((ONE,), say("large"), answer=is_answer) for is_answer in (True, False))
+    both = narrate(document(derivation(section(answer)), derivation(section(step, Equal((TWO,))))))
+    displays = [block.relations for block in both if isinstance(block, Display)]
+    assert displays == [(ONE,), (TWO,)]
+
+
 def test_another_value_is_given_again() -> None:
     blocks = narrate(document(*(derivation(Given((given,))) for given in (A_IS_ONE, A_IS_TWO, A_IS_ONE))))
     assert [block.relations for block in blocks if isinstance(block, Display)] == [

@@ -275,3 +275,9 @@ def test_the_closed_loop_has_a_value_wherever_the_conditions_hold() -> None:
     found = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
     assert [str(condition) for condition in found.conditions] == ["Ne(46*d - 1, 0)"]
     assert not found.closed_loop.subs("d", 0).has(sympy.nan, sympy.zoo)
+
+
+def test_a_plant_of_negative_gain_keeps_its_sign_in_the_box() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[-2 0]")
+    page = str(symobs.compensator(plant, control_poles=[-2, -3], observer_poles=[-10, -11]).to("text"))
+    assert "│ -2/(s(s + 1)) │" in page

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.formula import Together
+from symobs.formula import Negative, Quotient, Together
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
 
@@ -45,14 +45,24 @@ def draw_compensator(page: Page) -> None:
     page.diagram("observer_controller", say="drawn_compensator", Plant=_plant(page), **gains)
 
 
+def _whole(page: Page, label: Member) -> Member:
+    """Return what stands in a box with its own minus inside: one in front of it would be read as a sign of the figure."""
+    match label:
+        case Term(Negative(Quotient(above, below))):
+            return page.term(Quotient(Negative(above), below))
+        case Term(Negative()):
+            return page.value(label.value)
+    return label
+
+
 def draw_loop(page: Page, plant: Member, compensator: Term) -> None:
     """The compensator in the return path."""
-    page.diagram("loop", say="drawn_loop", P=plant, F=-compensator, response=page["G_cl"])
+    page.diagram("loop", say="drawn_loop", P=_whole(page, plant), F=-compensator, response=page["G_cl"])
 
 
 def draw_unity_loop(page: Page, plant: Member, compensator: Member) -> None:
     """The compensator before the plant, unity feedback."""
-    page.diagram("unity_loop", say="drawn_unity_loop", P=plant, F=compensator, response=page["G_r"])
+    page.diagram("unity_loop", say="drawn_unity_loop", P=_whole(page, plant), F=compensator, response=page["G_r"])
 
 
 def draw_feedforward(page: Page, *, minimal: bool) -> None:

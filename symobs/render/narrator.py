@@ -144,8 +144,9 @@ def _given_relations(step: Step) -> Iterator[Relation]:
 
 
 def _inside(steps: Sequence[Step]) -> set[Step]:
-    """Return the steps of the sections, which later derivations need not repeat."""
-    return {inner for step in steps if isinstance(step, Section) for inner in step.steps}
+    """Return the steps of the sections, which later derivations need not repeat, though they be answers only once."""
+    told = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
+    return {*told, *(replace(step, answer=False) for step in told if isinstance(step, (Define, Equal, Where)))}
 
 
 def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
