@@ -333,6 +333,13 @@ PROBLEMS = {
     ),
     "double_integrator_observer": Hand(**mass, observer=(s + 1) * (s + 2)),
     "double_integrator_output_feedback": Hand(**mass, control=s**2 + 2 * s + 2, observer=(s + 1) * (s + 2)),
+    "servo_companion_form": Hand(**servo, observer=(s + 1) * (s + 2)),
+    "pendulum_output_feedback": Hand(
+        **hanging,
+        control=s**2 + (b - k2) * s + omega**2 - k1,
+        observer=s**2 + (b + h2) * s + omega**2 * (1 - h1),
+        signs=pendulum | dict.fromkeys(["k1", "k2", "h1", "h2"], "real"),
+    ),
     "third_order_observer": Hand(**third_order, observer=(s + 5) * (s + 6) * (s + 7)),
     "third_order_plant": Hand(**third_order, control=(s + 3) * (s + 4) * (s + 5)),
     "pendulum_hanging": Hand(**hanging, observer=s**2 + p * s + q, signs=pendulum | {"p": "real", "q": "real"}),

@@ -191,6 +191,7 @@ PROBLEMS_IN_TIME = {
     "third_order_gramian_period": InTime(
         Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
     ),
+    "dual_gramian": InTime(Matrix([[0, 1], [0, 0]]), Matrix([[1, 0]]), signs=plain),
     "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
     "pendulum_gramian": InTime(
         Matrix([[0, 1], [-(omega**2), -b]]),

@@ -306,8 +306,8 @@ class Reader:
             self.assumed.append(scalar(self.value(target)) - scalar(self.value(rest[0])))
             return
         values = [self.value(member) for member in rest]
-        for value in values[1:]:
-            assert self.agree(values[0], value), relation
+        for left, operator, right in zip(values, relation.operators[1:], values[1:], strict=False):
+            assert self.holds(left, operator, right) if operator == "≈" else self.agree(values[0], right), relation
         self.tally.compared += len(values) - 1
         match target:
             case Derivative(Letter(name)):
@@ -366,6 +366,9 @@ class Reader:
             return self.agree(left, right) == (operator == "=")
         if operator == "~":
             return bool(left.rank() == right.rank() == left.col_join(right).rank())
+        if operator == "≈":
+            assert shape(left) == shape(right)
+            return all(map(is_rounding, entries_of(left), entries_of(right)))
         difference = scalar(left) - scalar(right)
         return all(compare(difference.subs(point), operator) for point in self.samples())
 
@@ -593,3 +596,14 @@ def stacked(rows: list[list[Value]]) -> Value:
         }
     blocks = [[part if shape(part) else sympy.Matrix([[part]]) for part in row] for row in rows]
     return sympy.Matrix.vstack(*[sympy.Matrix.hstack(*row) for row in blocks])
+
+
+def entries_of(value: Value) -> list[Any]:
+    """The entries of a matrix, or the number alone."""
+    return list(value) if isinstance(value, sympy.MatrixBase) else [value]
+
+
+def is_rounding(exact: Any, shown: Any) -> bool:
+    """Tell whether a decimal is what a number is rounded to: by SymPy's digits, and exact where it is a whole number."""
+    places = next(k for k in range(60) if (shown * 10**k).is_integer)
+    return bool(exact == shown if places == 0 else abs(exact - shown) * 2 * 10**places <= 1)
