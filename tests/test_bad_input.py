@@ -112,7 +112,7 @@ WRONG = {
     "task and tasks": (problem(top='task = "observer"\ntasks = ["observer"]'), "tasks", "both"),
     "method": (problem(f'{POLES}\nmethod = "magic"'), "specification.method", "'magic' … ackermann"),
     "a number for a method": (problem(f"{POLES}\nmethod = 5"), "specification.method", "a number came"),
-    "convention": (problem(top='task = "observer"\nconvention = "S9"'), "convention", '"S9" … "standard"'),
+    "convention": (problem(top='task = "observer"\nconvention = "S9"'), "convention", '"S9" … use one of standard'),
     "title": (problem(top='task = "observer"\ntitle = 5'), "title", "a text is expected, but a number came"),
     "title without a glyph": (problem(top='task = "observer"\ntitle = "\\u0007"'), "title", "U+0007"),
     "id": (problem(top='task = "observer"\nid = ["a", 5]'), "id[1]", "a text is expected, but a number came"),
