@@ -69,7 +69,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
     """Return a label where it is farthest from everything that is not its own."""
     size, taken = measure(content), around.taken
     own = set(lines)
-    others = [line for line in around.lines if line not in own]
+    others = [_places(line) for line in around.lines if line not in own]
     room = around.frame.grown(-_CLEAR)
     best, worth = None, float("-inf")
     for text, from_middle in _trials(content, lines, size):
@@ -78,7 +78,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
             continue
         if any(_crosses(line, box.grown(_CLEAR)) for line in around.lines):
             continue
-        value = min([_FAR, *(_distance(box, line) for line in others)])
+        value = min([_FAR, *(_distance(box, places) for places in others)])
         value += min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle
         value += _FREE * (not any(_crosses(line, box) for line in around.pale))
@@ -113,12 +113,23 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
 
 
 def _crosses(line: Sequence[Point], box: Box) -> bool:
-    return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
+    """Whether a line meets a box; most segments lie on one side of it, which is seen at once."""
+    left, right, bottom, top = box.left, box.right, box.bottom, box.top
+    for a, b in pairwise(line):
+        beside = (a[0] < left and b[0] < left) or (a[0] > right and b[0] > right)
+        above = (a[1] < bottom and b[1] < bottom) or (a[1] > top and b[1] > top)
+        if not beside and not above and segment_in(a, b, box) is not None:
+            return True
+    return False
 
 
-def _distance(box: Box, line: Sequence[Point]) -> float:
-    """Return how far a line keeps from a box, seen at places along it."""
-    places = [point for point, _, _ in walk(line, _STEP)] or list(line)
+def _places(line: Sequence[Point]) -> list[Point]:
+    """Return the places along a line from which distances are taken."""
+    return [point for point, _, _ in walk(line, _STEP)] or list(line)
+
+
+def _distance(box: Box, places: Sequence[Point]) -> float:
+    """Return how far places keep from a box."""
     return min(hypot(max(box.left - x, 0.0, x - box.right), max(box.bottom - y, 0.0, y - box.top)) for x, y in places)
 
 
