@@ -8,6 +8,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,6 +309,12 @@ def symbol_text(name: str, declared: str | None = None) -> str:
     if rest or (len(stem) > 1 and stem not in GREEK_LETTERS):
         return name
     return GREEK_LETTERS.get(stem, stem) + digits.translate(SUBSCRIPTS)
+
+
+def printed_alike(letters: Iterable[str], forms: Mapping[str, LetterForm], parameters: Iterable[str]) -> list[str]:
+    """Return the parameters that would be printed like one of these letters."""
+    printed = {forms[letter].alone.text for letter in letters if letter in forms}
+    return sorted(name for name in parameters if symbol_text(name) in printed)
 
 
 def _split(name: str) -> tuple[str, str, list[str]]:

@@ -19,6 +19,7 @@ from symobs.derivation import (
     Sentence,
     Step,
     Tabulate,
+    set_apart,
 )
 from symobs.exact import Matrix, Scalar, rounded
 from symobs.exact.functions import identities, known, roots_in
@@ -40,7 +41,7 @@ from symobs.formula import (
     Together,
 )
 from symobs.formula.term import Term
-from symobs.notation import sans_serif
+from symobs.notation import LETTERS, printed_alike
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -149,13 +150,12 @@ class Page:
     def derivation(self) -> Derivation:
         """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
         letters = {*self.environment.values, *self.environment.signals}
-        shared = sorted(letters.intersection(self.plant.field.names) - self.plant.symbols.latex.keys())
-        symbols = {**{name: sans_serif(name) for name in shared}, **self.plant.symbols.latex, **self.forms}
-        told = [Note(sentence("without_serifs", {"parameter": Scalar.symbol(name)})) for name in shared]
-        first, *rest = self.steps
-        if isinstance(first, Section):
-            first = replace(first, steps=(*first.steps, *told))
-        return Derivation((first, *rest), self.start, symbols, self.plant.is_discrete)
+        parameters = set(self.plant.field.names) - self.plant.symbols.latex.keys()
+        shared = printed_alike(letters, LETTERS, parameters)
+        written = Derivation(
+            tuple(self.steps), self.start, {**self.plant.symbols.latex, **self.forms}, self.plant.is_discrete
+        )
+        return set_apart(written, shared)
 
     # -- terms --------------------------------------------------------------------------------------------------------
 

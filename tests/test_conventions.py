@@ -315,6 +315,37 @@ def test_a_convention_of_one_s_own(tmp_path: Path) -> None:
     assert inside("solve", str(file), "--convention", "S1", "--format", "text").out.count("A + M C") > 1
 
 
+def test_a_parameter_printed_like_a_letter_is_set_apart() -> None:
+    """With the mass M and S1's gain M on one page, the mass is set without serifs, and the page says so."""
+    mass = DESIGN.replace("[0; 1]", "[0; 1/M]")
+    told = page(validate({**parse(mass), "convention": "S1", "symbols": {"M": "positive"}}))
+    assert "𝖬" in told
+    assert "without serifs" in told
+    assert "𝖬" not in page(validate({**parse(mass), "symbols": {"M": "positive"}}))
+
+
+def test_no_page_writes_two_things_alike(tmp_path: Path) -> None:
+    path = tmp_path / "same.toml"
+    path.write_text('name = "same"\n[letters]\nA_c = "V_o"\nV_o = "A_c"\nx_1 = "z"\n', encoding="utf-8")
+    assert inside("solve", str(EXAMPLES[0].parent / "output_feedback_servo.toml"), "--convention", str(path)).code == 0
+    run = inside("solve", str(EXAMPLES[0].parent / "servo_minimal_order.toml"), "--convention", str(path))
+    assert (run.code, "writes z for two things of this page" in run.err) == (2, True)
+    with pytest.raises(ProblemErrors, match="F would stand for L and for F"):
+        read_convention({"name": "b", "observer": "A + F C"}, "book.toml")
+    assert inside("conventions", str(path)).out.startswith('name = "same"')
+
+
+def test_data_equal_to_a_gain_keep_their_sign() -> None:
+    """C = [1 0] is written as it is given, though Lᵀ is the same."""
+    plant = '[plant]\nA = "[0 1; 0 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\n'
+    text = 'task = "compensator"\n' + plant + 'control_polynomial = "s^2+3s+1"\nobserver_polynomial = "s^2 + 4 s + 3"\n'
+    (result,) = problem(text, "S1").solve()
+    assert str(result.answer["L"]) == "[1; 0]"
+    shown = page(problem(text, "S1")).split("A_c = ")[1].split("Written out")[0]
+    assert "[1  0]" in shown
+    assert "[-1  0]" not in shown
+
+
 def test_every_error_of_a_convention_is_told_at_once() -> None:
     wrong = """
     name = "my book"

@@ -79,7 +79,7 @@ def sheet(
 ) -> None:
     """Put several problem FILEs on one sheet: all questions first, then all solutions.
 
-    A file that cannot be used keeps its place on the sheet, which says so; the reasons go to standard error.
+    A problem that cannot be worked out keeps its place on the sheet, which says so; the reasons go to standard error.
     """
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
@@ -173,7 +173,10 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
             entry = replace(entry, solution=_part(problem.document(results), wanted))
     except Exception as error:  # noqa: BLE001 - as above
         return replace(entry, failure=PHRASES["sheet_failed"]), *_failure(error)
-    unmet = mismatches(problem.viewed(results), problem.expect)
+    try:
+        unmet = mismatches(problem.viewed(results), problem.expect)
+    except SymobsError as error:  # what is expected cannot be read: the solution stands all the same
+        return entry, *_failure(error)
     if problem.expect:
         return entry, EXIT_NO if unmet else 0, unmet
     verdicts = [(result.task, result.verdict) for result in results if result.verdict in {"no", "undecided"}]

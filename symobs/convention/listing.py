@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from symobs.convention import PROFILES, STANDARD, Convention, convention_named, conventions
 from symobs.notation import LETTERS
 
@@ -61,4 +63,5 @@ def file_of(name: str) -> str:
     if name == STANDARD.name:
         return _OF_STANDARD
     convention_named(name)
-    return (PROFILES / f"{name}.toml").read_text(encoding="utf-8")
+    path = Path(name) if name.endswith(".toml") else PROFILES / f"{name}.toml"
+    return path.read_text(encoding="utf-8")

@@ -52,7 +52,7 @@ _TEXTS = {
 }
 _TABLES = ("letters", "letters_of_reduced_order")
 #: Letters that nearly every page speaks of: no other letter may be written like one of them.
-_COMMON = ("A", "B", "C", "D", "K", "L", "x", "x_hat", "u", "y", "e")
+_COMMON = ("A", "B", "C", "D", "K", "L", "x", "x_hat", "u", "y", "e", "F", "T")
 
 
 def is_name(text: str) -> bool:

@@ -18,7 +18,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.translation import translated
+from symobs.derivation.translation import set_apart, translated
 
 __all__ = [
     "Case",
@@ -37,5 +37,6 @@ __all__ = [
     "Survey",
     "Tabulate",
     "Where",
+    "set_apart",
     "translated",
 ]

@@ -10,6 +10,7 @@ import re
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
+from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation.rejection import reject
 from symobs.derivation.steps import (
     Case,
@@ -27,6 +28,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
+from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Exact,
@@ -48,16 +50,20 @@ from symobs.formula import (
     with_children,
 )
 from symobs.formula.signs import negated
+from symobs.notation import LETTERS, printed_alike, sans_serif
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from symobs.convention import Convention
     from symobs.derivation.check import Derivation
     from symobs.flow import Label
     from symobs.formula import Environment
+    from symobs.notation import LetterForm
 
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
+#: What an observer is assumed to do with the output, and the gain it turns out to be: S4 calls both H.
+_ANSATZ = {"L", "H_x"}
 _FACTS = (Sentence, Predicate, Roots, Exactly, Together)
 
 
@@ -66,13 +72,52 @@ def translated(derivation: Derivation, convention: Convention) -> Derivation:
     before = derivation.check()
     if convention.is_standard:
         return derivation
-    steps = _with_own_unknowns(derivation.steps, before, convention)
+    letters = {*before.values, *before.signals}
+    reduced = not OF_REDUCED_ORDER.isdisjoint(letters)
+    forms = convention.forms(reduced=reduced)
+    _no_letter_twice(letters, forms, before, convention)
+    steps = _with_own_unknowns(derivation.steps, before, convention, reduced=reduced)
     if convention.turned:
+        data = {value for name in "ABCD" if name in before.values for value in _both_ways(before.values[name])}
         written = {value for relation in _relations(steps) for value in _values(relation, convention.turned)}
-        steps = _in_signs(steps, Turned(convention.turned, written))
+        steps = _in_signs(steps, Turned(convention.turned, written - data))
     made = replace(derivation, steps=steps)
-    _hold_against(before, made.check(), convention.turned)
-    return made
+    after = made.check()
+    _hold_against(before, after, convention.turned)
+    parameters = {name for literal in _literals(steps) for name in literal.names} - {derivation.variable}
+    return set_apart(made, printed_alike(letters, {**LETTERS, **forms}, parameters - derivation.symbols.keys()))
+
+
+def set_apart(derivation: Derivation, shared: Sequence[str]) -> Derivation:
+    """Return the derivation with these parameters set without serifs, and a note where the data are given."""
+    if not shared:
+        return derivation
+    told = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
+    first, *rest = derivation.steps
+    if isinstance(first, Section):
+        first = replace(first, steps=(*first.steps, *told))
+    symbols = {**derivation.symbols, **{name: sans_serif(name) for name in shared}}
+    return replace(derivation, steps=(first, *rest), symbols=symbols)
+
+
+def _no_letter_twice(
+    letters: Collection[str], forms: Mapping[str, LetterForm], known: Environment, convention: Convention
+) -> None:
+    """Refuse a convention in which a page would write two things alike, unless they are equal."""
+    written = {name: {**LETTERS, **forms}[name].alone.text for name in letters if name in LETTERS}
+    for name in sorted(forms.keys() & written.keys()):
+        for other in sorted(written.keys() - {name}):
+            same = known.values.get(name) is not None and known.values.get(name) == known.values.get(other)
+            if written[other] == written[name] and not same and {name, other} != _ANSATZ:
+                spoken = f"{LETTERS[name].spoken} and {LETTERS[other].spoken}"
+                message = (
+                    f"the convention {convention.name} writes {written[name]} for two things of this page: {spoken}"
+                )
+                raise UsageError(message, repair=f"give {name} or {other} a letter of its own there")
+
+
+def _both_ways(value: Scalar | Matrix) -> tuple[Matrix, ...]:
+    return (value, value.T) if isinstance(value, Matrix) else ()
 
 
 def _in_signs(item: Any, turned: Turned) -> Any:
@@ -108,12 +153,12 @@ def _rebuilt(item: Any, of_part: Callable[[Any], Any]) -> Any:
 # -- unknown entries ------------------------------------------------------------------------------------------------
 
 
-def _with_own_unknowns(steps: Any, final: Environment, convention: Convention) -> Any:
+def _with_own_unknowns(steps: Any, final: Environment, convention: Convention, *, reduced: bool) -> Any:
     """Return the steps with the unknown entries of a gain called after its letter: m₁ and not −l₁ where M is −L."""
     used = {name for literal in _literals(steps) for name in literal.names} | set(final.signs)
     meant: dict[str, Scalar] = {}
     for letter in ("K", "L"):
-        own = convention.letters.get(letter, letter).lower()[:1]
+        own = convention.written(reduced=reduced).get(letter, letter).lower()[:1]
         for name in _unknowns(steps, letter, final):
             written = re.sub("^[a-z]", own, name)
             sign = -1 if letter in convention.turned else 1

@@ -330,6 +330,7 @@ def _specification(
     gains: dict[str, Any] = {}
     for own, (name, sign) in named.items():
         if own in table:
+            gains[name] = table[own]
             with errors:
                 where = f"specification.{own}"
                 known = symbols.naming(table.get("parameters"), "specification.parameters")

@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation import (
     Case,
     Conclude,
@@ -73,10 +74,6 @@ LABELS: dict[str, str] = {
     "caution": "A caution.",
     "sources": "Sources.",
 }
-
-
-#: Letters that a page has only where it speaks of a reduced-order observer.
-_OF_REDUCED_ORDER = frozenset({"F_z", "G_z", "H_z", "M_z", "A_12"})
 
 
 def narrate(document: Document) -> tuple[Block, ...]:
@@ -174,7 +171,7 @@ def _letters(document: Document) -> Mapping[str, LetterForm]:
     if document.convention.is_standard:
         return {}
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(_OF_REDUCED_ORDER))
+    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(OF_REDUCED_ORDER))
 
 
 class _Page:
