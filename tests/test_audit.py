@@ -86,6 +86,8 @@ def test_what_is_right_is_not_reported(relation: str) -> None:
         ("x_hat' = A x_hat + B u + L y", "x_hat' = A x_hat + B u + L y - L C x_hat", "term -L C x_hat is missing"),
         ("A - C L = [-19 1; -81 -1]", "", "the sizes do not fit: A is 2x2, but C L is 1x1"),
         ("A A^-1 = I", "", "A has no inverse"),
+        ("A^-1 = [1 0; 0 1]", "", "A has no inverse"),  # not: A is printed for O, whose inverse that is
+        ("det(L) = 19", "", "det takes a square matrix"),  # not: L is printed for a number that is 19
         ("y''' = u", "", "the derivative of y' is not known here"),
     ],
 )

@@ -289,7 +289,13 @@ def _letters(side: Node, alphabet: Alphabet, *, primed: bool = False) -> Iterato
             right = Node("primed", (plain,)) if primed else plain
             yield Slip(right, _printed_for(node, right), near=_stem(name) == _stem(node.text))
 
-    return _everywhere(side, change)
+    alone = _alone(side)
+    return (slip for slip in _everywhere(side, change) if slip.near or _alone(slip.side) == alone)
+
+
+def _alone(side: Node) -> set[str]:
+    """Return the functions and powers of a letter alone: which letter that is, another one's value does not tell."""
+    return {str(part) for part in every(side) if part.kind in {"call", "power"} and part.parts[0].kind == "letter"}
 
 
 def _stem(name: str) -> str:
