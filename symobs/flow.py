@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, overload
 
 from symobs.exact import Scalar
 from symobs.formula import Formula, Letter, Literal, Negative, Together
@@ -106,6 +106,14 @@ def is_integrator(node: str) -> bool:
 def key(node: str) -> str:
     """Return the label of a node."""
     return node.lstrip("∫").rstrip("'")
+
+
+@overload
+def without_sign(label: Formula) -> tuple[bool, Formula]: ...
+
+
+@overload
+def without_sign(label: Label) -> tuple[bool, Label]: ...
 
 
 def without_sign(label: Label) -> tuple[bool, Label]:

@@ -43,7 +43,7 @@ def equations_of(name: str, labels: Mapping[str, Label], environment: Environmen
         raise ValueError(f"a label {min(unused - is_named)}, which is not in the figure")
     flow = _Flow(figure, labels, environment)
     for label, letter in figure.letters:
-        yield Relation((Letter(letter), without_sign(flow.label(label))[1]), ("=",))  # type: ignore[arg-type]
+        yield Relation((Letter(letter), without_sign(flow.label(label))[1]), ("=",))
     said = [relation for node in figure.place for relation in flow.said_at(node)]
     if not said:
         raise ValueError("a figure that says nothing")

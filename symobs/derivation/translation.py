@@ -53,7 +53,7 @@ from symobs.formula.signs import negated
 from symobs.notation import LETTERS, printed_alike, sans_serif
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
     from symobs.convention import Convention
     from symobs.derivation.check import Derivation
@@ -210,34 +210,32 @@ def _without_minus(formula: Formula) -> Formula:
     return formula
 
 
-def _literals(item: Any) -> Iterator[Scalar | Matrix]:
-    """Yield all values that are written out."""
-    if isinstance(item, Literal):
-        yield item.value
-    elif isinstance(item, Formula):
-        for child in children(item):
-            yield from _literals(child)
+def _every(item: Any) -> Iterator[Any]:
+    """Yield a step, or several, and everything in it: sentences, facts, formulas and their parts."""
+    yield item
+    if isinstance(item, Formula):
+        parts: Iterable[Any] = children(item)
     elif isinstance(item, tuple):
-        for part in item:
-            yield from _literals(part)
+        parts = item
     elif isinstance(item, (*_STEPS, *_FACTS, Relation, Shown, Diagram)):
-        for field in fields(item):
-            yield from _literals(getattr(item, field.name))
+        parts = (getattr(item, field.name) for field in fields(item))
+    else:
+        return
+    for part in parts:
+        yield from _every(part)
+
+
+def _relations(steps: Any) -> Iterator[Relation]:
+    """Yield all relations of steps, those inside sentences and cases too."""
+    return (part for part in _every(steps) if isinstance(part, Relation))
+
+
+def _literals(steps: Any) -> Iterator[Scalar | Matrix]:
+    """Yield all values that are written out."""
+    return (part.value for part in _every(steps) if isinstance(part, Literal))
 
 
 # -- what is held against what --------------------------------------------------------------------------------------
-
-
-def _relations(item: Any) -> Iterator[Relation]:
-    """Yield all relations of steps, those inside sentences and cases too."""
-    if isinstance(item, Relation):
-        yield item
-    elif isinstance(item, tuple):
-        for part in item:
-            yield from _relations(part)
-    elif isinstance(item, (*_STEPS, *_FACTS)):
-        for part in fields(item):
-            yield from _relations(getattr(item, part.name))
 
 
 def _values(relation: Relation, names: frozenset[str]) -> Iterator[Matrix]:
