@@ -9,8 +9,8 @@ import pytest
 
 from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
 
-HEAVY = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
-KERNEL = {"flint", "jinja2", "lark"}
+HEAVY = {"control", "distributed", "lark", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+KERNEL = {"flint", "jinja2"}
 _COMMAND = """
 import sys
 from symobs.cli import main

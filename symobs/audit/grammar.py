@@ -147,7 +147,13 @@ class _Ready(Lexer):
         pass
 
     def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]
-        return iter(tokens)
+        return map(_of_lark, tokens)
+
+
+def _of_lark(ready: Any) -> Token:
+    token = Token(ready.type, ready, start_pos=ready.start)
+    token.value = ready.value
+    return token
 
 
 @cache
