@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import random
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
@@ -43,6 +43,7 @@ from symobs.formula import (
 from symobs.formula.calculus import TIME
 from symobs.formula.plain import plain_relation
 from symobs.pointwise import Pointwise, never_together_zero
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -58,7 +59,7 @@ SENSELESS = (ArithmeticError, AssertionError, AttributeError, LookupError, Recur
 _AT_POINTS = {"=", "!=="}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Claim:
     """A relation that must hold in an environment; `says` is its text for the reader."""
 
@@ -70,7 +71,7 @@ class Claim:
         return self.says or plain_relation(self.relation, self.environment.variable)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Statement:
     """What no equation says: `shown` returns how it was found true, "" where it is not."""
 
@@ -78,7 +79,7 @@ class Statement:
     shown: Callable[[], str]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Certificate:
     """A claim that was checked: how, and the probability with which a false one would have passed."""
 

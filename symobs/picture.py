@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -16,7 +17,7 @@ Place: TypeAlias = "tuple[Fraction, Fraction]"
 Interval: TypeAlias = "tuple[Fraction, Fraction]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Curve:
     """A piece of the set where `equation` holds; a `boundary` is an edge of the region, other curves only divide the plane."""
 
@@ -25,7 +26,7 @@ class Curve:
     boundary: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mark:
     """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
@@ -33,7 +34,7 @@ class Mark:
     kind: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RegionPicture:
     """A region of two parameters inside a window: filled areas (closed polygons), curves, marks.
 
@@ -48,7 +49,7 @@ class RegionPicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class End:
     """An end of an interval on a line: where it is drawn, and the formula or text that is written there."""
 
@@ -56,7 +57,7 @@ class End:
     label: Scalar | str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LinePicture:
     """Intervals of one parameter, open at both ends; an end that is missing lies beyond the window."""
 
@@ -67,7 +68,7 @@ class LinePicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PoleMap:
     """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
 
@@ -87,7 +88,7 @@ class PoleMap:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Course:
     """One component of a signal over time; it is `row` times the state that the picture starts from.
 
@@ -101,7 +102,7 @@ class Course:
     dashed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimeResponse:
     """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`."""
 

@@ -22,6 +22,7 @@ LONGEST = 400
 FLOORS = {
     "errors": 0,
     "contents": 0,
+    "record": 0,
     "exact": 1,
     "notation": 1,
     "convention": 2,

@@ -7,7 +7,7 @@ or, behind a signal, its derivative; and `=`.  A name is a letter, and is not ev
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from symobs.exact import Scalar
 from symobs.expression.names import Scope
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,7 +58,7 @@ row: sum (_COMMA sum)*
 """
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Node:
     """A part of a printed equation, as it is printed.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ from symobs.output import write
 from symobs.phrases import PHRASES
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
+from symobs.record import dataclass
 from symobs.sheet import Entry, Sheet
 
 if TYPE_CHECKING:

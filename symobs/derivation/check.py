@@ -7,7 +7,7 @@ that was not established before.  Renderers accept checked derivations only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
@@ -59,6 +59,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
+from symobs.record import dataclass
 from symobs.stability import monic
 
 if TYPE_CHECKING:

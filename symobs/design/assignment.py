@@ -7,7 +7,6 @@ be assigned exactly when their polynomial divides it, and then every gain differ
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ from symobs.exact import (
     unit_rows,
 )
 from symobs.exact.krylov import Krylov
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial

@@ -5,7 +5,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
@@ -22,6 +22,7 @@ from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
+from symobs.record import dataclass
 from symobs.stability import Stability, stability
 
 if TYPE_CHECKING:

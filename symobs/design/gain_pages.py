@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import (
@@ -26,6 +25,7 @@ from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients,
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
 from symobs.page import Page, predicate, relation
+from symobs.record import dataclass
 from symobs.specification import DesiredPolynomial
 
 if TYPE_CHECKING:

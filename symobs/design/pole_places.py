@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import floor, log, log10, pi
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from symobs.conditions import sign_of
 from symobs.exact import Complex, Root, Scalar, factored, product_of, transfer
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import PI, function, square_root
+from symobs.record import dataclass
 from symobs.stability import is_beyond, on_boundary, stability
 
 if TYPE_CHECKING:

@@ -6,7 +6,6 @@ dₙ₋₁ N⁻¹ eₙ.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ from flint import fmpq_mat, fmpz_mat, nmod_mat
 from symobs.exact import ring
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly

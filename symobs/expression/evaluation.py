@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-from dataclasses import dataclass
 from math import isqrt
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from symobs.expression.ordering import postfix
 from symobs.expression.plain import plain_rows
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -43,7 +43,7 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     return _Evaluator(source, scope).entries(postfix(Tokeniser(source, scope).run(), source))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Grid:
     """The rows of a matrix, all of one length, and where its bracket opens."""
 

@@ -7,7 +7,7 @@ A signal's value is its row of matrix coefficients over the free signals; d/dt f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
@@ -31,6 +31,7 @@ from symobs.formula.nodes import (
     Sum,
     Transpose,
 )
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

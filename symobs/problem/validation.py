@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
@@ -17,6 +17,7 @@ from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
 from symobs.problem.keys import PLANT, PRINTED, TOP
 from symobs.problem.tables import Decimal
+from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, cos, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.formula import Literal, Relation
 from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.record import dataclass
 from symobs.render import plots_time
 from symobs.render.plots_caption import drawn, part, radius_of, symbol
 from symobs.render.plots_labels import Surroundings, labelled, walk
@@ -60,7 +60,7 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
             assert_never(picture)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Frame:
     """A window of the plane and the rectangle on paper that shows it."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from symobs.record import dataclass
 from symobs.render.scene import Box, Text, segment_in
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Surroundings:
     """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
 

@@ -6,12 +6,12 @@ every text has its place: a format only writes down.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.formula import Formula, Relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,7 +25,7 @@ Measure: TypeAlias = "Callable[[Content], tuple[float, float]]"
 FONT_SIZE = 9.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Box:
     """A rectangle."""
 
@@ -59,7 +59,7 @@ class Box:
         return (self.left + self.right) / 2, (self.bottom + self.top) / 2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Text:
     """Something written: the `anchor` of its box (center, north, south, east or west) lies at `place`."""
 
@@ -75,7 +75,7 @@ class Text:
         return Box(left, bottom, left + width, bottom + height)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stroke:
     """A line in one of the styles of `STYLES`."""
 
@@ -83,7 +83,7 @@ class Stroke:
     style: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sign:
     """A small sign: a `dot`, a `cross`, a `ring`, or the `arrow` that points in a direction."""
 
@@ -92,7 +92,7 @@ class Sign:
     direction: Point = (1.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Style:
     """How a line is drawn: its width, whether in the colour of the ink or of text (or `pale`), and its dashes."""
 
@@ -115,7 +115,7 @@ RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
 ARROW = 5.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Scene:
     """A picture on paper; `numbered` are the equations of curves that carry numbers."""
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
 from symobs.expression import declared_name
 from symobs.notation import GREEK
+from symobs.record import dataclass
 
 
 @dataclass(frozen=True)
