@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 from symobs.render.scene import Box, Text, segment_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula import Formula, Relation
     from symobs.render.scene import Content, Measure, Point
 
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
 _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
+#: Lines are looked at in pieces of so many segments, since most lie far from a label.
+_SEGMENTS, _TOUCH = 6, 0.01
 #: What it is worth, in points of distance, to stand outside the shaded areas, on no pale line, near a curve's middle.
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
@@ -69,20 +71,25 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
     """Return a label where it is farthest from everything that is not its own."""
     size, taken = measure(content), around.taken
     own = set(lines)
-    others = [_places(line) for line in around.lines if line not in own]
+    others = [place for line in around.lines if line not in own for place in _places(line)]
+    pieces = [piece for line in around.lines for piece in _pieces(line)]
     room = around.frame.grown(-_CLEAR)
     best, worth = None, float("-inf")
     for text, from_middle in _trials(content, lines, size):
+        highest = _FAR + _FAR / 3 - _MIDDLE * from_middle + _FREE + _UNSHADED
+        if highest <= worth:
+            continue
         box = text.box(size)
         if not room.holds(box) or any(box.meets(other) for other in taken):
             continue
-        if any(_crosses(line, box.grown(_CLEAR)) for line in around.lines):
+        clear = box.grown(_CLEAR)
+        if any(piece.meets(clear) and _crosses(points, clear) for piece, points in pieces):
             continue
-        value = min([_FAR, *(_distance(box, places) for places in others)])
-        value += min([_FAR, *(_apart(box, other) for other in taken)]) / 3
+        value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle
         value += _FREE * (not any(_crosses(line, box) for line in around.pale))
         value += _UNSHADED * (not any(contains(area, box.centre) for area in around.shades))
+        value += _distance(box, others, worth - value)
         if value > worth:
             best, worth = text, value
     return best
@@ -112,15 +119,17 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
         gone += length
 
 
+def _pieces(line: Sequence[Point]) -> Iterator[tuple[Box, Sequence[Point]]]:
+    """Yield a line in pieces of some segments, each in the rectangle that holds it and all that touches it."""
+    for first in range(0, len(line) - 1, _SEGMENTS):
+        points = line[first : first + _SEGMENTS + 1]
+        xs, ys = zip(*points, strict=True)
+        yield Box(min(xs), min(ys), max(xs), max(ys)).grown(_TOUCH), points
+
+
 def _crosses(line: Sequence[Point], box: Box) -> bool:
-    """Whether a line meets a box; most segments lie on one side of it, which is seen at once."""
-    left, right, bottom, top = box.left, box.right, box.bottom, box.top
-    for a, b in pairwise(line):
-        beside = (a[0] < left and b[0] < left) or (a[0] > right and b[0] > right)
-        above = (a[1] < bottom and b[1] < bottom) or (a[1] > top and b[1] > top)
-        if not beside and not above and segment_in(a, b, box) is not None:
-            return True
-    return False
+    """Whether a line meets a box."""
+    return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
 
 def _places(line: Sequence[Point]) -> list[Point]:
@@ -128,9 +137,19 @@ def _places(line: Sequence[Point]) -> list[Point]:
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
-def _distance(box: Box, places: Sequence[Point]) -> float:
-    """Return how far places keep from a box."""
-    return min(hypot(max(box.left - x, 0.0, x - box.right), max(box.bottom - y, 0.0, y - box.top)) for x, y in places)
+def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
+    """Return how far places keep from a box, up to _FAR; no further is looked once that is not more than enough."""
+    left, right, bottom, top = box.left, box.right, box.bottom, box.top
+    nearest = _FAR
+    for x, y in places:
+        dx = left - x if x < left else max(x - right, 0.0)
+        if dx < nearest:
+            dy = bottom - y if y < bottom else max(y - top, 0.0)
+            if dy < nearest:
+                nearest = min(nearest, hypot(dx, dy))
+                if nearest <= enough:
+                    break
+    return nearest
 
 
 def _apart(box: Box, other: Box) -> float:
