@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import time
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -873,22 +871,6 @@ def test_any_text_ends_soon_in_a_value_or_in_an_error_of_symobs(text: str) -> No
 
 
 # -- cost ---------------------------------------------------------------------------------------------------------
-
-
-def test_parser_is_built_when_the_first_text_that_needs_a_grammar_is_read() -> None:
-    program = (
-        "from symobs.expression import parse_matrix, evaluation\n"
-        "parse_matrix([[0, 1], [0, -1]])\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -1]')\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -1/2*a]')\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -(1/2)]')\n"
-        "parse_matrix('[0 1; 0 -(1/2)]')\n"
-        "assert evaluation._parser.cache_info().misses == 1\n"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_all_undeclared_names_of_a_text_are_told_together() -> None:

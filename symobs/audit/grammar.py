@@ -147,7 +147,10 @@ class _Ready(Lexer):
         pass
 
     def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]
-        return iter(tokens)
+        for token in tokens:
+            made = Token(token.type, str(token), start_pos=token.start_pos)
+            made.value = str(token) if token.value is None else token.value
+            yield made
 
 
 @cache

@@ -1,7 +1,7 @@
 """Text to exact values: the only way from what a user wrote into the field.
 
-Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  lark's LALR
-parser orders the tokens (`evaluation`), and the tree is computed with exact values; `budget` asks before every
+Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid; `order` puts the
+tokens in the order in which they are computed; `evaluation` computes, with exact values.  `budget` asks before every
 operation how large its result can get.  Nothing is run as a program and nothing recurses on the depth of a text, so
 any text ends, soon, in an exact value or in one of symobs's errors.
 """

@@ -1,46 +1,32 @@
-"""Second and third step: lark orders the tokens by a grammar, and the tree is computed from its leaves."""
+"""Third step: what the ordered tokens come to, in exact values."""
 
 from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
-from functools import cache
 from math import isqrt
 from typing import TYPE_CHECKING, Any
-
-from lark import Lark, Token, UnexpectedToken
-from lark.exceptions import VisitError
-from lark.lexer import Lexer
-from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ShapeMismatch
 from symobs.exact import Complex, Scalar, functions
 from symobs.expression.budget import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
+from symobs.expression.order import Unexpected, in_order
 from symobs.expression.plain import plain_rows
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
     from typing import TypeAlias
 
     from symobs.expression.names import Scope
+    from symobs.expression.tokens import Token
 
     Entry: TypeAlias = "Number | Grid"
 
 MOST_CHARACTERS = 10_000
 _SMALLER = "write something smaller, with a symbol in place of what is large"
 EQUAL_ROWS = "give every row the same number of entries"
-
-# A sign binds its power, -2^2 = -(2^2), and an exponent takes a sign, 2^-1; powers associate to the right.
-GRAMMAR = r"""
-row: sum (_COMMA sum)*
-?sum: product | sum ADD product -> binary
-?product: signed | product MULTIPLY signed -> binary
-?signed: atom | ADD signed -> sign | atom POWER signed -> power
-?atom: VALUE | _OPEN sum _CLOSE | LEFT row (_END row)* _RIGHT -> brackets | FUNCTION _OPEN sum _CLOSE -> call
-%declare VALUE FUNCTION ADD MULTIPLY POWER LEFT _RIGHT _OPEN _CLOSE _COMMA _END
-"""
 
 
 def read(text: str, scope: Scope, where: str) -> list[Entry]:
@@ -54,30 +40,12 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
         rows, bracketed = plain
         return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
     try:
-        return _Evaluator(source, scope).transform(_parser().parse(Tokeniser(source, scope).run()))
-    except UnexpectedToken as found:
-        at_end = found.token.type == "$END"
-        place = "at the end" if at_end else f'before "{shown(found.token)}"'
-        position = len(text) if at_end else start(found.token)
+        ordered = in_order(Tokeniser(source, scope).run())
+    except Unexpected as found:
+        place = "at the end" if found.token is None else f'before "{shown(found.token)}"'
+        position = len(text) if found.token is None else found.token.start_pos
         raise source.error(f'a number, a name or "(" is expected {place}', position, "write one there") from None
-    except VisitError as wrapped:  # lark's wrapping of what the evaluator raised
-        raise wrapped.orig_exc from None
-
-
-class _Ready(Lexer):
-    """Hands lark the tokens that are already made."""
-
-    def __init__(self, _configuration: object) -> None:
-        pass
-
-    def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]
-        return iter(tokens)
-
-
-@cache
-def _parser() -> Lark:
-    """Build the parser, once and only where a text is read: it takes longer than most texts."""
-    return Lark(GRAMMAR, parser="lalr", lexer=_Ready, start="row", maybe_placeholders=False)
+    return _Evaluator(source, scope).run(ordered)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,41 +80,56 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 _SCALAR_OPERATIONS = 12
 
 
-class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
-    """Computes a tree from its leaves: one method for each rule of the grammar, given the rule's parts.
+class _Evaluator:
+    """Computes the entries of a text: operands are laid on a stack, operations take them from it.
 
     Invariant: no operation begins before `_spend` has bounded its result.
     """
 
     def __init__(self, source: Source, scope: Scope) -> None:
-        super().__init__()
         self.source = source
         self.meter = scope.meter
         self.functions = scope.functions
 
-    def VALUE(self, token: Token) -> Number:
-        number: Number = token.value
-        return number
+    def run(self, ordered: Sequence[tuple[str, Token]]) -> list[Entry]:
+        """Return what stands between the commas outside brackets."""
+        stack: list[Any] = []
+        rows: list[list[list[Entry]]] = [[[]]]
+        for kind, token in ordered:
+            match kind:
+                case "VALUE":
+                    stack.append(token.value)
+                case "ADD" | "MULTIPLY":
+                    right, left = stack.pop(), stack.pop()
+                    stack.append(self._combined(self._number(left), token, self._number(right), token))
+                case "SIGN":
+                    number = self._number(stack.pop())
+                    stack.append(-number if token.startswith("-") else number)
+                case "POWER":
+                    exponent, base = stack.pop(), stack.pop()
+                    stack.append(self.power(base, token, exponent))
+                case "FUNCTION":
+                    stack.append(self.call(token, stack.pop()))
+                case "LEFT":
+                    rows.append([[]])
+                    stack.append(token)
+                case _:
+                    rows[-1][-1].append(stack.pop())
+                    if kind == "_END":
+                        rows[-1].append([])
+                    elif kind == "_RIGHT":
+                        stack.append(self.brackets(stack.pop(), rows.pop()))
+        return [*rows[0][0], stack.pop()]
 
-    def row(self, entries: list[Entry]) -> list[Entry]:
-        return entries
-
-    def brackets(self, parts: tuple[Token, *tuple[list[Entry], ...]]) -> Entry:
-        (left, *rows), unequal = parts, unequal_row(parts[1:])
+    def brackets(self, left: Token, rows: list[list[Entry]]) -> Entry:
+        unequal = unequal_row(rows)
         if unequal:
-            raise self.source.error(unequal[0], start(left), EQUAL_ROWS, kind=ShapeMismatch, row=unequal[1])
-        grid = Grid([[self._number(entry) for entry in row] for row in rows], start(left))
+            raise self.source.error(unequal[0], left.start_pos, EQUAL_ROWS, kind=ShapeMismatch, row=unequal[1])
+        grid = Grid([[self._number(entry) for entry in row] for row in rows], left.start_pos)
         return grid.rows[0][0] if grid.shape == (1, 1) else grid
 
-    def binary(self, parts: tuple[Entry, Token, Entry]) -> Number:
-        return self._combined(self._number(parts[0]), parts[1].value, self._number(parts[2]), parts[1])
-
-    def sign(self, parts: tuple[Token, Entry]) -> Number:
-        number = self._number(parts[1])
-        return -number if parts[0].value == "-" else number
-
-    def power(self, parts: tuple[Entry, Token, Entry]) -> Number:
-        base, token, exponent = self._number(parts[0]), parts[1], self._exponent(self._number(parts[2]), parts[1])
+    def power(self, below: Entry, token: Token, above: Entry) -> Number:
+        base, exponent = self._number(below), self._exponent(self._number(above), token)
         if isinstance(base, Complex):
             return self._complex_power(base, exponent, token)
         if exponent < 0:
@@ -154,32 +137,34 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
         self._spend(power_size(base, exponent), token)
         return base**exponent
 
-    def call(self, parts: tuple[Token, Entry]) -> Number:
+    def call(self, token: Token, argument: Entry) -> Number:
         """Return sqrt of the square of a rational number, the one call with a value in the field.
 
         Where functions of time are asked for, a function of a real argument is a generator of its own.
         """
-        function, number = parts[0].value, self._number(parts[1])
+        function, number = str(token), self._number(argument)
         if self.functions:
-            return self._function(function, number, parts[0])
+            return self._function(function, number, token)
         instead = "sqrt of the square of a rational number is possible; for other constants declare a symbol"
         if function != "sqrt":
-            raise self.source.error(f"{function} has no exact value here", start(parts[0]), instead)
+            raise self.source.error(f"{function} has no exact value here", token.start_pos, instead)
         if isinstance(number, Complex) or not number.is_constant or number.fraction() < 0:
-            raise self.source.error("sqrt of this has no exact value here", start(parts[0]), instead)
+            raise self.source.error("sqrt of this has no exact value here", token.start_pos, instead)
         square = number.fraction()
         above, below = isqrt(square.numerator), isqrt(square.denominator)
         if (above**2, below**2) != (square.numerator, square.denominator):
-            raise self.source.error(f"sqrt({shown(str(square))}) is not rational", start(parts[0]), instead)
+            raise self.source.error(f"sqrt({shown(str(square))}) is not rational", token.start_pos, instead)
         return Scalar.rational(above, below)
 
     def _function(self, name: str, argument: Number, token: Token) -> Scalar:
         if isinstance(argument, Complex):
-            raise self.source.error(f"{name} of a complex number", start(token), "write it with sin and cos")
+            raise self.source.error(f"{name} of a complex number", token.start_pos, "write it with sin and cos")
         if name != "sqrt":
             return functions.function(name, argument)
         if argument.is_constant and argument.fraction() < 0:
-            raise self.source.error("sqrt of a negative number", start(token), "write sin and cos of a real argument")
+            raise self.source.error(
+                "sqrt of a negative number", token.start_pos, "write sin and cos of a real argument"
+            )
         return argument if argument.is_zero else functions.square_root(argument)
 
     def _number(self, entry: Entry) -> Number:
@@ -191,11 +176,11 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
     def _exponent(self, value: Number, token: Token) -> int:
         if isinstance(value, Complex) or not value.is_constant or value.fraction().denominator != 1:
             message = f"the exponent {shown(str(value))} is not an integer"
-            raise self.source.error(message, start(token), "exponents are integers; write sqrt( ) for a root")
+            raise self.source.error(message, token.start_pos, "exponents are integers; write sqrt( ) for a root")
         exponent = int(value.fraction())
         if abs(exponent) > MOST_EXPONENT:
             message = f"the exponent is beyond {MOST_EXPONENT}"
-            raise self.source.error(message, start(token), _SMALLER, kind=BudgetExceeded)
+            raise self.source.error(message, token.start_pos, _SMALLER, kind=BudgetExceeded)
         return exponent
 
     def _combined(self, left: Number, sign: str, right: Number, token: Token) -> Number:
@@ -222,14 +207,9 @@ class _Evaluator(Transformer_NonRecursive[Token, "list[Entry]"]):
 
     def _require_nonzero(self, value: Number, token: Token) -> None:
         if isinstance(value, Scalar) and value.is_zero:
-            raise self.source.error("division by zero", start(token), "write a denominator that is not 0")
+            raise self.source.error("division by zero", token.start_pos, "write a denominator that is not 0")
 
     def _spend(self, sizes: Parts, token: Token, times: int = 1) -> None:
         excess = self.meter.charge(times * work(*sizes), sizes)
         if excess:
-            raise self.source.error(f"this would build {excess}", start(token), _SMALLER, kind=BudgetExceeded)
-
-
-def start(token: Token) -> int:
-    """Return where a token begins in the text."""
-    return token.start_pos or 0
+            raise self.source.error(f"this would build {excess}", token.start_pos, _SMALLER, kind=BudgetExceeded)

@@ -12,8 +12,6 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from lark import Token
-
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.functions import PI
@@ -56,6 +54,16 @@ def _context_of(texts: Iterable[str]) -> Field:
     return Field.of(fit if len(fit) <= MOST_NAMES else ())
 
 
+class Token(str):
+    """A piece of text, what it is, where it begins, and of a VALUE its exact number."""
+
+    __slots__ = ("start_pos", "type", "value")
+
+    type: str
+    start_pos: int
+    value: Scalar | Complex | None
+
+
 class Tokeniser:
     """Cuts one text into tokens; each VALUE carries its exact number.
 
@@ -95,7 +103,7 @@ class Tokeniser:
             self._take(str(match.lastgroup), match.group(), position)
             position = match.end()
         if self.open:
-            place, repair = self.open[-1].start_pos or 0, f'close it with "{_CLOSING[self.open[-1]]}"'
+            place, repair = self.open[-1].start_pos, f'close it with "{_CLOSING[self.open[-1]]}"'
             raise self.source.error(f'this "{self.open[-1]}" is never closed', place, repair)
         if not self.tokens:
             raise self.source.error(
@@ -152,9 +160,8 @@ class Tokeniser:
         return bool(self.tokens) and self.tokens[-1].type in types
 
     def _add(self, kind: str, text: str, at: int, value: Scalar | Complex | None = None) -> Token:
-        token = Token(kind, text, start_pos=at)
-        if value is not None:
-            token.value = value
+        token = Token(text)
+        token.type, token.start_pos, token.value = kind, at, value
         self.tokens.append(token)
         return token
 
