@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
 _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
 #: Lines are looked at in pieces of so many segments, since most lie far from a label.
-_SEGMENTS, _TOUCH = 6, 0.01
+_SEGMENTS = 6
 #: What it is worth, in points of distance, to stand outside the shaded areas, on no pale line, near a curve's middle.
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
@@ -69,21 +69,20 @@ def _beside(around: Surroundings, written: Sequence[Text], measure: Measure) -> 
 
 def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> Text | None:
     """Return a label where it is farthest from everything that is not its own."""
-    size, taken = measure(content), around.taken
+    (width, height), taken = measure(content), around.taken
     own = set(lines)
     others = [place for line in around.lines if line not in own for place in _places(line)]
     pieces = [piece for line in around.lines for piece in _pieces(line)]
     room = around.frame.grown(-_CLEAR)
     best, worth = None, float("-inf")
-    for text, from_middle in _trials(content, lines, size):
+    for (x, y), from_middle in _trials(lines, width, height):
         highest = _FAR + _FAR / 3 - _MIDDLE * from_middle + _FREE + _UNSHADED
-        if highest <= worth:
+        left, bottom = x - width / 2, y - height / 2
+        right, top = left + width, bottom + height
+        if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
-        box = text.box(size)
-        if not room.holds(box) or any(box.meets(other) for other in taken):
-            continue
-        clear = box.grown(_CLEAR)
-        if any(piece.meets(clear) and _crosses(points, clear) for piece, points in pieces):
+        box = Box(left, bottom, right, top)
+        if any(box.meets(other) for other in taken) or _is_crossed(box.grown(_CLEAR), pieces):
             continue
         value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle
@@ -91,19 +90,19 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         value += _UNSHADED * (not any(contains(area, box.centre) for area in around.shades))
         value += _distance(box, others, worth - value)
         if value > worth:
-            best, worth = text, value
-    return best
+            best, worth = (x, y), value
+    return None if best is None else Text(content, best)
 
 
-def _trials(content: Content, lines: Lines, size: tuple[float, float]) -> Iterator[tuple[Text, float]]:
-    """Yield the label on both sides of every place along its curves, with how far that is from the middle (0 to 1)."""
-    width, height = size
+def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, float]]:
+    """Yield middles of labels on both sides of every place along lines, and how far that is from the middle (0 to 1)."""
     for line in lines:
         length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(line))
         for (x, y), (dx, dy), along in walk(line, _STEP):
-            for nx, ny in ((-dy, dx), (dy, -dx)):
-                away = _GAP + abs(nx) * width / 2 + abs(ny) * height / 2
-                yield Text(content, (x + nx * away, y + ny * away)), abs(2 * along / length - 1)
+            away = _GAP + abs(dy) * width / 2 + abs(dx) * height / 2
+            from_middle = abs(2 * along / length - 1)
+            yield (x - dy * away, y + dx * away), from_middle
+            yield (x + dy * away, y - dx * away), from_middle
 
 
 def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, float]]:
@@ -119,12 +118,22 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
         gone += length
 
 
-def _pieces(line: Sequence[Point]) -> Iterator[tuple[Box, Sequence[Point]]]:
-    """Yield a line in pieces of some segments, each in the rectangle that holds it and all that touches it."""
+def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float, Sequence[Point]]]:
+    """Yield a line in pieces of some segments, each behind the sides (left, bottom, right, top) of what holds it."""
     for first in range(0, len(line) - 1, _SEGMENTS):
         points = line[first : first + _SEGMENTS + 1]
         xs, ys = zip(*points, strict=True)
-        yield Box(min(xs), min(ys), max(xs), max(ys)).grown(_TOUCH), points
+        yield min(xs), min(ys), max(xs), max(ys), points
+
+
+def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
+    """Whether one of the pieces of lines meets a box."""
+    left, bottom, right, top = box.left, box.bottom, box.right, box.top
+    for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
+        is_aside = piece_left > right or left > piece_right or piece_bottom > top or bottom > piece_top
+        if not is_aside and _crosses(points, box):
+            return True
+    return False
 
 
 def _crosses(line: Sequence[Point], box: Box) -> bool:

@@ -202,6 +202,11 @@ def _next(
 
 def segment_in(a: Point, b: Point, box: Box) -> tuple[Point, Point] | None:
     """Return the part of a segment in a rectangle, None where there is none."""
+    (x0, y0), (x1, y1), left, right, bottom, top = a, b, box.left, box.right, box.bottom, box.top
+    if left <= x0 <= right and left <= x1 <= right and bottom <= y0 <= top and bottom <= y1 <= top:
+        return a, b
+    if (x0 < left and x1 < left) or (x0 > right and x1 > right) or (y0 < bottom and y1 < bottom) or (y0 > top < y1):
+        return None
     start, stop = 0.0, 1.0
     dx, dy = b[0] - a[0], b[1] - a[1]
     sides = ((-dx, a[0] - box.left), (dx, box.right - a[0]), (-dy, a[1] - box.bottom), (dy, box.top - a[1]))
