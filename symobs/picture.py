@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from symobs.exact import Scalar
     from symobs.formula import Relation
 
@@ -93,24 +92,35 @@ class Course:
     """One component of a signal over time; it is `row` times the state that the picture starts from.
 
     `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
+    `heights` are its values, in whole parts of one, at equal distances from the begin of the window to its end.
     """
 
     signal: str
     component: int
     row: tuple[Fraction, ...]
-    points: tuple[Place, ...]
+    heights: tuple[int, ...]
     dashed: bool = False
 
 
 @dataclass(frozen=True)
 class TimeResponse:
-    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`."""
+    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
+
+    Heights of courses are counted in `parts` of one.
+    """
 
     states: tuple[str, ...]
     starts: tuple[tuple[Fraction, ...], ...]
     courses: tuple[Course, ...]
     window: tuple[Interval, Interval]
+    parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+    def points(self, course: Course) -> list[Place]:
+        """Return the places in the plane of one of the courses."""
+        begin, end = self.window[0]
+        step = (end - begin) / (len(course.heights) - 1)
+        return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(course.heights)]
 
 
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse

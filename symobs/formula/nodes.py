@@ -6,12 +6,14 @@ environment (`evaluate`), and is printed only by a format.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact.functions import all_roots
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from symobs.exact import Matrix, Root, Scalar
     from symobs.exact.functions import Function
 
@@ -211,23 +213,26 @@ class Names:
 Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown | Names
 
 
+#: Where the formulas directly below a node stand; asked for more often than anything else of a formula.
+_BELOW: dict[type, Callable[[Any], tuple[Formula, ...]]] = {
+    Sum: lambda node: node.terms,
+    Product: lambda node: node.factors,
+    Quotient: lambda node: (node.numerator, node.denominator),
+    Negative: lambda node: (node.operand,),
+    Transpose: lambda node: (node.operand,),
+    Derivative: lambda node: (node.operand,),
+    At: lambda node: (node.operand,),
+    Apply: lambda node: (node.argument,),
+    Power: lambda node: (node.base,),
+    Integral: lambda node: (node.integrand, node.primitive),
+    Block: lambda node: tuple(entry for row in node.rows for entry in row),
+}
+
+
 def children(formula: Formula) -> tuple[Formula, ...]:
     """Return the formulas directly below."""
-    match formula:
-        case Sum(terms):
-            return terms
-        case Product(factors):
-            return factors
-        case Quotient(above, below):
-            return above, below
-        case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _) | At(inner):
-            return (inner,)
-        case Integral(integrand, primitive):
-            return integrand, primitive
-        case Block(rows):
-            return tuple(entry for row in rows for entry in row)
-        case _:
-            return ()
+    below = _BELOW.get(type(formula))
+    return () if below is None else below(formula)
 
 
 def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
