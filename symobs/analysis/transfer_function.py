@@ -90,16 +90,17 @@ class TransferFunction(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, and where nothing more cancels and no zero is lost."""
+        changing = {c.expression for case in self.case_tree for c in case.when}
         own = super().holds_where
-        listed, changing = {c.expression for c in own}, {c.expression for case in self.case_tree for c in case.when}
-        return (*own, *(Condition("existence", f) for f in self._factors if f in changing - listed))
+        changing -= {c.expression for c in own}
+        return (*own, *(Condition("existence", f) for f in self._factors if f in changing))
 
     @cached_property
     def _factors(self) -> tuple[Scalar, ...]:
         """What must not vanish alone."""
         single = [self.plant.simplified(system[0]) for system in self.decisive if len(system) == 1]
-        claimed = [c.expression for c in super().holds_where if c.kind == "claim"]
-        return vanishing_factors([*single, *claimed], self.plant.symbols.signs)
+        below = self.answer["transfer_function"].common_denominator().coefficients(self.plant.variable)[0]
+        return vanishing_factors([*single, below], self.plant.symbols.signs)
 
     @property
     def verdict(self) -> str:
