@@ -210,7 +210,7 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
         return False
     if never_zero(value, environment.signs):
         return True
-    if environment.relations or value.size > FACTORED_UP_TO:
+    if value.size > FACTORED_UP_TO:
         return False
     assumed = set(environment.assumed)
     return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])

@@ -12,7 +12,15 @@ from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix
-from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of, remainder
+from symobs.exact.polynomial import (
+    apply_polynomial,
+    companion,
+    from_coefficients,
+    hankel_of,
+    product_of,
+    remainder,
+    resultant,
+)
 from symobs.exact.real import RealNumber
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
@@ -56,6 +64,7 @@ __all__ = [
     "rank",
     "reduced_echelon",
     "remainder",
+    "resultant",
     "root_of_pole",
     "roots_are",
     "roots_of",

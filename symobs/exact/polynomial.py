@@ -116,3 +116,10 @@ def discriminant(polynomial: Scalar, variable: str) -> Scalar:
     """Return the discriminant of the numerator in a variable: 0 where two roots are equal."""
     found = polynomial.numerator_part.discriminant(variable)
     return Scalar(polynomial.field, found, polynomial.field.one)
+
+
+def resultant(one: Scalar, other: Scalar, variable: str) -> Scalar:
+    """Return the resultant of two numerators in a variable: 0 where they have a root in common, or both leads vanish."""
+    field = one.field | other.field | Field.of((variable,))
+    one, other = one.within(field), other.within(field)
+    return Scalar(field, one.numerator_part.resultant(other.numerator_part, variable), field.one)
