@@ -36,8 +36,8 @@ warning("off", "all");
 """.replace("value.(:)", "value(:)")
 
 
-def ask(questions: Sequence[str], limit: float = 600) -> list[Reply]:
-    """Return what each question said; a question that ends in an error does not end the others."""
+def ask(questions: Sequence[str], limit: float = 600, beginning: str = "") -> list[Reply]:
+    """Return what each question said, after a beginning; a question that ends in an error does not end the others."""
     parts = [
         f'printf("# {k}\\n");\ntry\n{question}\ncatch failure\n'
         'printf("! %s\\n", strrep(failure.message, "\\n", " "));\nend_try_catch'
@@ -45,7 +45,7 @@ def ask(questions: Sequence[str], limit: float = 600) -> list[Reply]:
     ]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "questions.m"
-        program.write_text("\n".join([_BEGINNING, *parts, 'printf("# end\\n");\n']), encoding="utf-8")
+        program.write_text("\n".join([_BEGINNING, beginning, *parts, 'printf("# end\\n");\n']), encoding="utf-8")
         command = [COMMAND, "--norc", "--no-history", "--quiet", str(program)]
         done = other_systems.run(command, limit, folder=Path(folder))
     if done is None:
