@@ -86,8 +86,10 @@ def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
     if case.result is None:
         return {"when": when, "verdict": "undecided"}
     inner = {name: to_json(value) for name, value in case.result.fields.items()}
-    differing = {name: value for name, value in inner.items() if outer.get(name) != value}
-    nested = [_case_object(deeper, inner) for deeper in case.result.case_tree]
+    # What the stratum does not have is said to be missing: a reader would take it from around the case.
+    missing = dict.fromkeys(name for name, value in outer.items() if name not in inner and value is not None)
+    differing = missing | {name: value for name, value in inner.items() if outer.get(name) != value}
+    nested = [_case_object(deeper, missing | inner) for deeper in case.result.case_tree]
     certificates = [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in case.result.all_certificates]
     whole = {"when": when, "verdict": case.result.verdict, **differing, "certificates": certificates}
     return {**whole, "cases": nested} if nested else whole

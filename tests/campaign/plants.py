@@ -33,9 +33,9 @@ _LETTERS = "ABCD"
 def drawn(seed: int, tasks: Collection[str] = ()) -> tuple[str, Tables]:
     """Return the kind and the problem of a seed; with `tasks` one of these is asked, else any."""
     random = Random(f"symobs {seed}")  # noqa: S311 - test problems, no secrets
-    kind = random.choices(list(KINDS), list(KINDS.values()))[0]
     weights = {name: weight for name, weight in TASKS.items() if not tasks or name in tasks}
     while True:
+        kind = random.choices(list(KINDS), list(KINDS.values()))[0]
         task = random.choices(list(weights), list(weights.values()))[0]
         shape = _shape(random, kind, task)
         asked = specification(random, task, shape)

@@ -1,0 +1,222 @@
+"""Parameters at rational points, and which case of an answer holds there.
+
+The relations of an answer are evaluated here in fractions, by Python's own grammar of expressions.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from itertools import islice, product
+from random import Random
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from tests.campaign.asked import Asked, Tables
+
+Point: TypeAlias = Mapping[str, Fraction]
+
+_OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.USub: operator.neg,
+    ast.UAdd: operator.pos,
+}
+_RELATION = re.compile(r"(.*?)\s*(!=|==|>=|<=|>|<)\s*(.*)")
+_COMPARED = {
+    "!=": operator.ne,
+    "==": operator.eq,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "<": operator.lt,
+    "<=": operator.le,
+}
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_VALUES = [
+    Fraction(p, q) for p, q in ((1, 1), (2, 1), (3, 1), (-1, 1), (-2, 1), (-3, 1), (0, 1), (1, 2), (-3, 2), (5, 3))
+]
+
+
+class NotRational(ValueError):
+    """A text that has no rational value: it contains a root, a function, or a name without a value."""
+
+
+@cache
+def _tree(text: str) -> ast.expr:
+    return ast.parse(text.replace("^", "**").strip(), mode="eval").body
+
+
+def value(text: str, point: Point) -> Fraction:
+    """Return the rational value of an expression; raises ZeroDivisionError or NotRational."""
+    try:
+        return _value(_tree(text), point)
+    except SyntaxError as error:
+        raise NotRational(text) from error
+
+
+def _value(node: ast.expr, point: Point) -> Fraction:
+    match node:
+        case ast.Constant(value=int(number)):
+            return Fraction(number)
+        case ast.Name(id=name) if name in point:
+            return point[name]
+        case ast.UnaryOp(op=sign, operand=inner):
+            return Fraction(_OPERATIONS[type(sign)](_value(inner, point)))
+        case ast.BinOp(left=left, op=operation, right=right):
+            found = _OPERATIONS[type(operation)](_value(left, point), _value(right, point))
+            if isinstance(found, Fraction):
+                return found
+    raise NotRational(ast.unparse(node))
+
+
+def holds(relation: str, point: Point) -> bool:
+    """Tell whether a relation of an answer holds at a point."""
+    if relation in {"True", "False"}:
+        return relation == "True"
+    parts = _RELATION.fullmatch(relation)
+    if parts is None:
+        raise NotRational(relation)
+    left, sign, right = parts.groups()
+    return bool(_COMPARED[sign](value(left, point), value(right, point)))
+
+
+def has_sign(number: Fraction, sign: str) -> bool:
+    """Tell whether a number has a declared sign."""
+    match sign:
+        case "positive":
+            return number > 0
+        case "negative":
+            return number < 0
+        case "nonnegative":
+            return number >= 0
+        case "nonpositive":
+            return number <= 0
+        case "nonzero":
+            return number != 0
+    return True
+
+
+# -- the answer at a point ---------------------------------------------------------------------------------------------
+
+
+class Uncovered(Exception):
+    """No case of an answer holds at a point where the plant is defined."""
+
+
+def answer_at(answer: Tables, point: Point) -> Tables | None:
+    """Return the fields of an answer that hold at a point, with the verdict; None where there is no plant.
+
+    Raises `Uncovered` where a condition fails and no case takes its place.
+    """
+    for kind, condition in zip(answer["condition_kinds"], answer["conditions"], strict=True):
+        if kind == "domain" and not holds(condition, point):
+            return None
+    conditions = [c for k, c in zip(answer["condition_kinds"], answer["conditions"], strict=True) if k != "domain"]
+    found = _deeper(answer, point)
+    broken = [condition for condition in conditions if not holds(condition, point)]
+    if found is None and broken:
+        raise Uncovered(f"{broken[0]} fails and no case holds")
+    branch = dict(found or answer)
+    # Where its conditions hold, and no deeper case does, what is said under conditions is said.
+    return branch | ({"verdict": "yes"} if branch["verdict"] == "conditional" else {})
+
+
+def _deeper(outer: Tables, point: Point) -> Tables | None:
+    for case in outer.get("cases", []):
+        if all(holds(relation, point) for relation in case["when"]):
+            inner = {**outer, "cases": [], **case}
+            return _deeper(inner, point) or inner
+    return None
+
+
+def texts_at(thing: Any, point: Point) -> Any:
+    """Put the numbers of a point in place of the names in every text of a value."""
+    if isinstance(thing, str):
+        return _NAME.sub(lambda name: f"({point[name.group()]})" if name.group() in point else name.group(), thing)
+    if isinstance(thing, list):
+        return [texts_at(entry, point) for entry in thing]
+    if isinstance(thing, Mapping):
+        return {key: texts_at(entry, point) for key, entry in thing.items()}
+    return thing
+
+
+# -- points ------------------------------------------------------------------------------------------------------------
+
+
+def points_for(asked: Asked, most: int = 6) -> Iterator[Point]:
+    """Yield points: some anywhere, and one in each pattern of equations that the answer speaks of, as far as found."""
+    signs = asked.problem["symbols"]
+    if not signs:
+        yield {}
+        return
+    random = Random(f"points {asked.seed}")  # noqa: S311 - test points, no secrets
+    seen: set[tuple[bool, ...]] = set()
+    equations = sorted({side for text in _relations(asked.answer) for side in _sides(text)})
+    for point in islice(_candidates(signs, equations, random), 300):
+        pattern = tuple(_vanishes(equation, point) for equation in equations)
+        if pattern not in seen or (len(seen) < 2 and not any(pattern)):
+            seen.add(pattern)
+            yield point
+            if len(seen) >= most:
+                return
+
+
+def _vanishes(text: str, point: Point) -> bool:
+    try:
+        return value(text, point) == 0
+    except (ZeroDivisionError, NotRational):
+        return False
+
+
+def _relations(answer: Tables) -> Iterator[str]:
+    yield from answer.get("conditions", [])
+    for case in answer.get("cases", []):
+        yield from case["when"]
+        yield from _relations(case)
+
+
+def _sides(relation: str) -> list[str]:
+    parts = _RELATION.fullmatch(relation)
+    return [f"({parts.group(1)})-({parts.group(3)})"] if parts else []
+
+
+def _candidates(signs: Mapping[str, str], equations: Sequence[str], random: Random) -> Iterator[Point]:
+    """Yield a few points anywhere, points on every equation that is linear in a name, and then a grid."""
+    names = sorted(signs)
+    allowed = {name: [v for v in _VALUES if has_sign(v, signs[name])] for name in names}
+
+    def anywhere() -> dict[str, Fraction]:
+        return {name: random.choice(allowed[name]) for name in names}
+
+    for _ in range(2):
+        yield anywhere()
+    for equation in equations:
+        for name in names:
+            for _ in range(3):
+                yield from _solved(equation, name, anywhere(), signs)
+    grid: Iterable[tuple[Fraction, ...]] = product(*(allowed[name] for name in names))
+    if len(names) < 3:
+        yield from (dict(zip(names, values, strict=True)) for values in grid)
+    while True:
+        yield anywhere()
+
+
+def _solved(equation: str, name: str, point: dict[str, Fraction], signs: Mapping[str, str]) -> Iterator[Point]:
+    """Yield the point moved along one name to where the equation holds, where that is linear in the name."""
+    try:
+        zero, one, two = (value(equation, {**point, name: Fraction(k)}) for k in (0, 1, 2))
+    except (ZeroDivisionError, NotRational):
+        return
+    if one != zero and two - one == one - zero:
+        found = -zero / (one - zero)
+        if has_sign(found, signs[name]) and max(abs(found.numerator), found.denominator) < 10**6:
+            yield {**point, name: found}
