@@ -110,8 +110,7 @@ _FUNCTIONS = {
     "exponential": "exponential",
     "gramian": "isgramian",
     "steps": "issteps",
-    "poles": "poles",
-    "zeros": "zeros",
+    "poles_and_zeros": "polesandzeros",
     "plant_zero": "isplantzero",
     "on_circle": "oncircle",
     "explains": "explains",
@@ -206,7 +205,8 @@ def _posed(asked: Asked) -> Iterator[tuple[str, list[Claim]]]:
             branch, moment = answer_at(asked.answer, point), _MOMENT.get(asked.task, {})
             if branch is None:
                 continue
-            found = claims({**texts_at(asked.problem, point), "symbols": {}}, texts_at(branch, {**moment, **point}))
+            problem = {**texts_at(asked.problem, point), "symbols": {}} | ({"parameters": point} if point else {})
+            found = claims(problem, texts_at(branch, {**moment, **point}))
             if moment:
                 found = [claim for claim in found if claim.kind != "zero"]
         except Uncovered as error:
@@ -226,6 +226,8 @@ def differences(batch: Sequence[Asked]) -> list[Difference]:
                 program, _left = _question(found)
                 if found and "if(!" in program:
                     posed.append((index, where, found, program))
+        except (KeyError, TypeError, ValueError, AssertionError) as error:
+            judged[index] = Untold(f"the answer cannot be read: {error!r}")
         except Uncovered as error:
             judged[index] = Untold(f"the answer says nothing there: {error}")
     replies = answers(_GP, [program for *_, program in posed], 40)
