@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.campaign import shapes
+from tests.campaign import regions, shapes
 from tests.campaign.asked import text_of
 from tests.campaign.signals import output_of, time_varying
 
@@ -214,26 +214,6 @@ def _pole_advice(random: Random, shape: Shape) -> Drawn:
     return {"settling_time": random.choice(["1", "2", "1/2"]), "overshoot": random.choice(["1/20", "1/10", "1/5"])}
 
 
-def _stability_region(random: Random, shape: Shape) -> Drawn:
-    """A polynomial whose coefficients depend on one or two gains, or a plant with some entries of its gain free."""
-    names = ["h1", "h2"][: random.choice([1, 1, 2])]
-    s = "z" if shape.discrete else "s"
-    degree = random.randint(1, 3 if len(names) > 1 else 4)
-    forms = ["{0}", "2*{0}+1", "{0}-3", "1-{0}", "{0}+{1}", "{0}*{1}", "{0}^2"]
-    terms = [f"{s}^{degree}"]
-    for power in range(degree - 1, -1, -1):
-        free = random.random() < 0.6 or power == 0
-        form = random.choice(forms).format(random.choice(names), random.choice(names))
-        terms.append(f"({form if free else random.randint(1, 6)})*{s}^{power}")
-    text = " + ".join(terms)
-    used = [name for name in names if name in text]
-    asked: dict[str, Any] = {"polynomial": text, "parameters": ", ".join(used)}
-    if random.random() < 0.15:
-        asked["radius" if shape.discrete else "margin"] = "1/2"
-    shape.signs = {}
-    return {**asked, "symbols": dict.fromkeys(used, "real"), "plant": {}}
-
-
 def _one_of(name: str, *values: Any) -> Callable[[Random, Shape], Drawn]:
     return lambda random, _shape: {name: random.choice(values)}
 
@@ -256,5 +236,5 @@ _SPECIFICATIONS: dict[str, Callable[[Random, Shape], Drawn]] = {
     "feedforward": _feedforward,
     "tracking": _tracking,
     "pole_advice": _pole_advice,
-    "stability_region": _stability_region,
+    "stability_region": regions.drawn,
 }
