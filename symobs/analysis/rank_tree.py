@@ -157,12 +157,17 @@ class _Search:
 
     def _sharpened(self, locus: Locus, minor: Minor) -> Locus | None:
         """Return the same locus with an entry of a minor among its equations that vanishes on it unseen."""
-        for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
-            if locus.ideal is None or value in locus.ideal or not locus.ideal.having(apart_from_zero(value)).is_whole:
-                continue
-            found = loci((*locus.equations, value), self.region)
-            if len(found) == 1 and found[0].ideal is not None:
-                return found[0]
+        try:
+            for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
+                if locus.ideal is None or value in locus.ideal:
+                    continue
+                if not locus.ideal.having(apart_from_zero(value)).is_whole:
+                    continue
+                found = loci((*locus.equations, value), self.region)
+                if len(found) == 1 and found[0].ideal is not None:
+                    return found[0]
+        except TooLarge:  # the locus stays as it is, and undecided
+            return None
         return None
 
 

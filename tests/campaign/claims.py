@@ -226,10 +226,11 @@ def _as_matrix(b: Branch, name: str) -> Term:
 def _transfer_function(b: Branch) -> Iterator[Claim]:
     yield same("transfer function", _as_matrix(b, "transfer_function"), transfer(b, b.A, b.B, b.C, b.D))
     plant = (b.A, b.B, b.C, b.D)
-    if isinstance(b.answer.get("poles"), list):
-        yield Claim("poles", "poles", (*plant, from_roots(b.variable, b.answer["poles"])))
-    if isinstance(b.answer.get("zeros"), list):
-        yield Claim("zeros", "zeros", (*plant, from_roots(b.variable, b.answer["zeros"])))
+    if not isinstance(b.answer.get("poles"), list) or not isinstance(b.answer.get("zeros"), list):
+        return
+    found = (from_roots(b.variable, b.answer["poles"]), from_roots(b.variable, b.answer["zeros"]))
+    # Poles and zeros that are found with parameters may cancel at some of their values.
+    yield Claim("poles and zeros", "poles_and_zeros", (*plant, *found), "parameters" not in b.problem)
 
 
 def _similar(b: Branch) -> Iterator[Claim]:
@@ -328,7 +329,7 @@ def _gain(b: Branch) -> Iterator[Claim]:
         yield same("B_y", gain, b.field("B_y"))
     if wanted is not None and rows_of(C) == 1:
         yield Claim("Ackermann", "ackermann", (A, C, wanted, gain.T if feedback else gain))
-    if b.has("family"):
+    if b.has("family") and b.answer["family"].get(letter):
         yield from _family(b, b.answer["family"], letter)
 
 

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from tests.campaign.shapes import Shape
 
 #: How often each kind of plant is drawn.
-KINDS = {
+KINDS: dict[str, float] = {
     "numeric": 20,
-    "large": 2,
+    "large": 0.7,
     "several": 18,
     "defective": 12,
     "hidden": 14,
     "discrete": 12,
     "feedthrough": 8,
-    "parametric": 9,
+    "parametric": 6,
     "parametric several": 3,
-    "parametric hidden": 2,
+    "parametric hidden": 3,
 }
 _LETTERS = "ABCD"
 
@@ -61,7 +61,7 @@ def _shape(random: Random, kind: str, task: str) -> Shape:
     inputs, outputs = 1, 1
     match kind:
         case "large":
-            order = random.randint(5, 12 if few >= 4 else few) if few >= 4 else few
+            order = random.choice([5, 5, 6, 6, 7, 8, 10, 12]) if few >= 4 else few
             if random.random() < 0.5:
                 inputs, outputs = random.randint(1, 3), random.randint(1, 3)
             return shapes.numeric(random, order, inputs, outputs)
@@ -84,7 +84,7 @@ def _shape(random: Random, kind: str, task: str) -> Shape:
             inner = random.choice(["numeric", "several", "defective", "hidden", "parametric"])
             return shapes.feedthrough(random, _shape(random, inner, task))
         case "parametric" | "parametric several":
-            order = min(order, 3) if random.random() < 0.8 else order
+            order = min(order, 2) if random.random() < 0.8 else order
             if kind == "parametric several":
                 inputs, outputs = random.choice([(1, 2), (2, 1), (2, 2)])
             return shapes.parametric(random, order, inputs, outputs)

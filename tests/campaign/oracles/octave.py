@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tests import octave
 from tests.campaign.asked import Untold
-from tests.campaign.numeric import COPIES, SHAKEN, Claims, claims_of, compared, covered
+from tests.campaign.numeric import COPIES, PLACES, SHAKEN, Claims, claims_of, compared, covered
 from tests.campaign.numeric_cases import Case, at_a_point, shown
 
 if TYPE_CHECKING:
@@ -263,7 +263,11 @@ def question(case: Case, claims: Claims) -> str:
         lines.append(f"{_RENAMED.get(name, name)} = {_literal(value)};")
     for name, value in claims.given.items():
         lines.append(f"{_RENAMED.get(name, name)}0 = {_literal(value)};")
-    lines += [f"places = {_literal(_PLACES)};", f"tsam = {-1 if case.discrete else 0};", 'rand("twister", 1);']
+    lines += [
+        f"places = {octave.matrix([list(PLACES)])};",
+        f"tsam = {-1 if case.discrete else 0};",
+        'rand("twister", 1);',
+    ]
     shaken = " ".join(f"{_RENAMED.get(name, name)} = shaken({_RENAMED.get(name, name)}0);" for name in claims.given)
     return "\n".join([*lines, f"for copy = 0:{COPIES}", shaken, _part(case, claims), "end"])
 
@@ -340,14 +344,3 @@ def _gain(case: Case, claims: Claims) -> str:
             acker="acker(A, B, roots(phi))" if feedback else "acker(A', C', roots(phi))'",
         )
     return text
-
-
-def _places() -> Any:
-    import numpy as np  # noqa: PLC0415
-
-    from tests.campaign.numeric import PLACES  # noqa: PLC0415
-
-    return np.array([PLACES])
-
-
-_PLACES = _places()

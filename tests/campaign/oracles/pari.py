@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +42,10 @@ def covers(problem: Tables) -> bool:
 # -- the language ------------------------------------------------------------------------------------------------------
 
 
+@cache
 def _scalar(text: str) -> str:
+    if text.lstrip("-").isdigit():
+        return text if text.isdigit() else f"({text})"
     if "CRootOf" in text:
         raise Unsupported("a root without a closed form")
     text = _ROOT_SUM.sub(
@@ -112,8 +116,7 @@ _FUNCTIONS = {
     "exponential": "exponential",
     "gramian": "isgramian",
     "steps": "issteps",
-    "poles": "poles",
-    "zeros": "zeros",
+    "poles_and_zeros": "polesandzeros",
     "plant_zero": "isplantzero",
     "on_circle": "oncircle",
     "explains": "explains",
@@ -208,7 +211,8 @@ def _posed(asked: Asked) -> Iterator[tuple[str, list[Claim]]]:
             branch, moment = answer_at(asked.answer, point), _MOMENT.get(asked.task, {})
             if branch is None:
                 continue
-            found = claims({**texts_at(asked.problem, point), "symbols": {}}, texts_at(branch, {**moment, **point}))
+            problem = {**texts_at(asked.problem, point), "symbols": {}} | ({"parameters": point} if point else {})
+            found = claims(problem, texts_at(branch, {**moment, **point}))
             if moment:
                 found = [claim for claim in found if claim.kind != "zero"]
         except Uncovered as error:
@@ -228,6 +232,8 @@ def differences(batch: Sequence[Asked]) -> list[Difference]:
                 program, _left = _question(found)
                 if found and "if(!" in program:
                     posed.append((index, where, found, program))
+        except (KeyError, TypeError, ValueError, AssertionError) as error:
+            judged[index] = Untold(f"the answer cannot be read: {error!r}")
         except Uncovered as error:
             judged[index] = Untold(f"the answer says nothing there: {error}")
     replies = answers(_GP, [program for *_, program in posed], 40)

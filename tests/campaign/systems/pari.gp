@@ -108,21 +108,27 @@ polepart(A, B, C) =
   Y = matinverseimage(R, A * R);
   charpoly(Y, 'x) \ hiddenpart(Y, C * R)
 };
-poles(A, B, C, D, q) = zero(polepart(A, B, C) - q);
 minors(G, r) =
 {
   my(found = List(), p = matsize(G)[1], m = matsize(G)[2]);
   forsubset([p, r], i, forsubset([m, r], j, listput(found, matdet(matrix(r, r, a, b, G[i[a], j[b]])))));
   Vec(found)
 };
-zeros(A, B, C, D, q) =
+zeropart(A, B, C, D) =
 {
   my(G = C * ('x * matid(#A) - A)^-1 * B + D, r = matrank(G), p, g = 0, all);
-  if (r == 0, return(1));
+  if (r == 0, return(0));
   p = polepart(A, B, C);
   all = minors(G, r);
   for (k = 1, #all, g = gcd(g, all[k] * p));
-  zero(monic(g + 0 * 'x) - q)
+  monic(g + 0 * 'x)
+};
+\\ Poles and zeros as they are; unless all of them are asked for, a part of both may cancel.
+polesandzeros(A, B, C, D, q, w, all) =
+{
+  my(p = polepart(A, B, C), z = zeropart(A, B, C, D));
+  if (z == 0, return(!all || zero(p - q)));
+  if (all, zero(p - q) && zero(z - w), zero(w * p - z * q))
 };
 \\ Zeros of the plant inside the region of stability.
 isplantzero(A, B, C, D, v) = { my(n = #A); zero(matdet(matconcat([v * matid(n) - A, B; -C, D]))) && real(v) < 0 };

@@ -1,0 +1,114 @@
+"""Random designs and analyses against independent systems: python -m tests.campaign --designs 100000 --seed 1."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.campaign import discovery
+from tests.campaign.asked import Asked, Tables, to_toml
+from tests.campaign.figures import DIFFERS, Figures
+from tests.campaign.plants import drawn
+from tests.campaign.shrink import disagrees, shrunk
+from tests.campaign.solving import solved
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from tests.campaign.discovery import Oracle
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a campaign; 1 where an oracle disagreed or symobs crashed."""
+    options = _parser().parse_args(arguments)
+    oracles, missing = discovery.found()
+    chosen = {name: oracle for name, oracle in oracles.items() if not options.oracle or name in options.oracle}
+    for name, reason in missing.items():
+        print(f"{name}: not asked, {reason}", file=sys.stderr)
+    folder: Path = options.out
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = folder / "figures.json"
+    figures = Figures.load(kept) if kept.exists() else Figures(options.seed)
+    while figures.total + sum(figures.refused.values()) < options.designs:
+        left = options.designs - figures.total - sum(figures.refused.values())
+        run_batch(figures, chosen, folder, min(options.batch, left), options.task, options.seconds)
+        figures.save(kept)
+        (folder / "table.txt").write_text(figures.table() + "\n", encoding="utf-8")
+        print(_progress(figures, chosen), file=sys.stderr, flush=True)
+    print(figures.table())
+    wrong = sum(figures.count(name, DIFFERS) for name in chosen)
+    return 1 if wrong or any((folder / "failures").glob("crash-*")) else 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m tests.campaign", description=__doc__)
+    parser.add_argument("--designs", type=int, default=1000, help="how many problems, those of an earlier run included")
+    parser.add_argument("--seed", type=int, default=1, help="the first seed")
+    parser.add_argument("--batch", type=int, default=200, help="problems between two starts of the oracles")
+    parser.add_argument("--seconds", type=float, default=4, help="time for one answer of symobs")
+    parser.add_argument("--oracle", action="append", default=[], help="ask this oracle alone; may be repeated")
+    parser.add_argument("--task", action="append", default=[], help="ask this task alone; may be repeated")
+    parser.add_argument("--out", type=Path, default=Path("campaign"), help="figures and failures; a run there goes on")
+    return parser
+
+
+def _progress(figures: Figures, oracles: Mapping[str, Oracle]) -> str:
+    wrong = {name: figures.count(name, DIFFERS) for name in oracles}
+    rate = 60 * figures.total / figures.seconds
+    said = ", ".join(f"{name} {number}" for name, number in wrong.items())
+    return f"{figures.total} answers, {rate:.0f} a minute; disagreements: {said}"
+
+
+def run_batch(
+    figures: Figures, oracles: Mapping[str, Oracle], folder: Path, count: int, tasks: Sequence[str], seconds: float
+) -> None:
+    """Draw, solve and judge so many problems, and count them."""
+    begun = time.perf_counter()
+    answers: list[Asked] = []
+    for seed in range(figures.next_seed, figures.next_seed + count):
+        kind, problem = drawn(seed, tasks)
+        try:
+            answer = solved(kind, seed, problem, seconds)
+        except Exception:  # noqa: BLE001 - whatever it is, it is a bug of ours, and the campaign goes on
+            _write(folder, f"crash-{seed}", problem, traceback.format_exc(limit=-3))
+            figures.refused[str(problem["task"]), "crashed"] += 1
+            continue
+        if isinstance(answer, Asked):
+            answers.append(answer)
+            figures.answered(answer)
+        else:
+            figures.gave_up(answer)
+    for name, oracle in oracles.items():
+        covered = [answer for answer in answers if oracle.covers(answer.problem)]
+        judgements = oracle.differences(covered) if covered else []
+        for answer, judgement in zip(covered, judgements, strict=True):
+            figures.judge(name, answer, judgement)
+            if isinstance(judgement, str):
+                report(folder, name, oracle, answer, judgement)
+    figures.next_seed += count
+    figures.seconds += time.perf_counter() - begun
+
+
+def report(folder: Path, name: str, oracle: Oracle, answer: Asked, judgement: str) -> Tables:
+    """Write a disagreement down as it came, and the smallest problem found that still shows one."""
+    print(f"{name} disagrees about seed {answer.seed} ({answer.kind}, {answer.task}): {judgement}", file=sys.stderr)
+    stem = f"{name.replace(' ', '-')}-{answer.seed}"
+    _write(folder, stem, answer.problem, judgement)
+    smaller = shrunk(answer.problem, lambda problem: disagrees(oracle, answer.kind, problem) is not None)
+    _write(folder, f"{stem}-small", smaller, disagrees(oracle, answer.kind, smaller) or judgement)
+    return smaller
+
+
+def _write(folder: Path, stem: str, problem: Tables, said: str) -> None:
+    failures = folder / "failures"
+    failures.mkdir(exist_ok=True)
+    remark = "".join(f"# {line}\n" for line in said.splitlines())
+    (failures / f"{stem}.toml").write_text(remark + to_toml(problem), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
