@@ -174,7 +174,11 @@ def test_what_varies_in_time_needs_values() -> None:
 
 @pytest.mark.usefixtures("at_points")
 def test_a_signal_in_time_needs_values_too() -> None:
-    plant = {"signals": {"x": None, "y": Product((Letter("T"), X))}, "sizes": {"x": 1}, "dynamics": {"x": Product((A, X))}}
+    plant = {
+        "signals": {"x": None, "y": Product((Letter("T"), X))},
+        "sizes": {"x": 1},
+        "dynamics": {"x": Product((A, X))},
+    }
     rate = said(Derivative(Letter("y")), Product((Literal(t + 1), X)))
     varying = Environment(values={"A": Scalar.of(1), "T": t}, **plant)  # type: ignore[arg-type]
     assert verify(rate, varying) == EXACTLY, "(t x)' = x + t x"
@@ -370,7 +374,9 @@ def test_the_bound_follows_degrees_and_heights(monkeypatch: pytest.MonkeyPatch) 
         found = iter(sizes)
         monkeypatch.setattr(certificate, "evaluate", lambda *_: next(found))
         members = tuple(Literal(a) for _ in sizes)
-        return certificate._error_bound(Relation(members, ("=",) * (len(sizes) - 1)), Environment(), Modular(Environment(), point))
+        return certificate._error_bound(
+            Relation(members, ("=",) * (len(sizes) - 1)), Environment(), Modular(Environment(), point)
+        )
 
     point = Point({"a"}, random.Random(0))  # noqa: S311 - any point will do
     once = 12 / 2**61 + 141 / 63 / (2 * 10**17)

@@ -25,7 +25,8 @@ from symobs.derivation import (
     Where,
 )
 from symobs.errors import DerivationRejected
-from symobs.exact import Scalar, roots_of
+from symobs.exact import Matrix, Scalar, roots_of
+from symobs.exact.functions import square_root
 from symobs.formula import (
     Apply,
     Environment,
@@ -125,6 +126,28 @@ def test_every_slot_of_every_sentence_is_read() -> None:
     checked(Note(replace(both, slots=(("changes", "words"), ("right", chi), ("axis", one)))), start=start)
 
 
+def test_what_is_shown_is_so() -> None:
+    start = replace(START, values={"chi": s - 1, "phi": s, "F": Scalar.of(1)})
+    determinant = Apply("det", A)
+    for told in (Shown(determinant, literal(2)), said(determinant, 2), A, Sum((A, A)), Quotient(A, F)):
+        for step in (Note(slot(told)), Section(slot(told), ()), Equal((one,), slot(told))):
+            checked(A_IS, step, start=start)
+    refused(A_IS, Note(slot(Shown(determinant, literal(3)))), start=start)
+
+
+def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
+    root = Product((literal(0), Literal(square_root(c))))
+    for relation in (said(root, 0), said(0, root), said(0, 0, root)):
+        refused(Equal((relation,)), match=">= 0")
+        refused(
+            Define(replace(relation, members=(F, *relation.members), operators=("=", *relation.operators))),
+            match=">= 0",
+        )
+    refused(Note(slot(Names(("a", str(square_root(c)))))), match=">= 0")
+    refused(Note(slot(Names((str(square_root(c)), "a")))), match=">= 0")
+    checked(Note(slot(Names(("a", str(square_root(a)))))))
+
+
 def test_a_sentence_may_name_a_value_only_where_it_claims_nothing_of_it() -> None:
     limit = Literal(Scalar.of(-2))
     checked(Note(Sentence("sought_margin", (("names", Names(("h",))), ("limit", limit)))))
@@ -220,6 +243,9 @@ def test_a_table_is_that_of_its_letter() -> None:
     refused(replace(table, polynomial=Literal(s**2 + h * s + 2)), start=start, match="no letter's")
     refused(replace(table, sentence=slot(two)), start=start)
     refused(table, match="before it is established")
+    refused(replace(told, sentence=Sentence("routh_table", (("polynomial", "words"),))), start=start)
+    checked(A_IS, replace(table, sentence=slot(A)), start=start)
+    checked(table, start=replace(start, values={"chi": Matrix.of([[s**2 + h * s + 2]])}))
 
 
 def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
@@ -228,7 +254,14 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
     where = (said(h, ">", 0), said(k, ">", 0))
     checked(Where(Exactly(stable, where)), start=start)
     checked(Conclude(None, (Exactly(stable, where),)), start=start)
-    for other in (where[:1], where[1:], (), (said(h, ">", 1), where[1]), (said(h, "<", 0), where[1]), (said(h, ">=", 0), where[1])):
+    for other in (
+        where[:1],
+        where[1:],
+        (),
+        (said(h, ">", 1), where[1]),
+        (said(h, "<", 0), where[1]),
+        (said(h, ">=", 0), where[1]),
+    ):
         refused(Where(Exactly(stable, other)), start=start)
         refused(Conclude(None, (Exactly(stable, other),)), start=start)
         refused(Note(slot(Exactly(stable, other))), start=start)
@@ -247,6 +280,7 @@ def test_a_region_is_that_of_its_letter() -> None:
     refused(Survey(Literal(s + h), ("h",), (), (right,)), start=start, match="no letter's")
     refused(Survey(phi, ("h",), (), (right,)), start=start, match="before it is established")
     refused(Survey(chi, ("h",), (), (right,), slot(two)), start=start)
+    checked(Survey(chi, ("h",), (), (right,)), start=replace(start, values={"chi": Matrix.of([[s + h]])}))
     discrete = Environment(variable="z", values={"chi": Scalar.symbol("z") + h})
     inside = (said(-1, "<", h, "<", 1),)
     checked(Survey(chi, ("h",), (), (inside,)), start=discrete, discrete=True)
@@ -288,6 +322,9 @@ def test_properties_are_of_letters_and_hold_whatever_coefficients_stand_for() ->
     refused(Conclude(None, (Predicate("stable", Literal(s + a)),)), start=start, match="no letter's")
     refused(Conclude(None, (Predicate("stable", Sum((Letter("s"), Literal(a)))),)), start=start, match="no letter's")
     refused(Conclude(None, (Predicate("unstable", chi),)), start=start)
+    proper, not_proper = Matrix.of([[1 / s, 1 / s**2]]), Matrix.of([[1 / s, s]])
+    checked(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": proper}))
+    refused(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": not_proper}))
 
 
 def test_roots_are_those_of_a_letter() -> None:
@@ -298,11 +335,12 @@ def test_roots_are_those_of_a_letter() -> None:
         for others in (roots[:1], (), (*roots, roots[0]), (roots[0], roots[0]), roots_of(s**2 + 3 * s, "s")):
             refused(Conclude(None, (Roots(subject, others),)), start=start, match="the roots of")
     refused(Conclude(None, (Roots(Literal(s**2 + 3 * s + 2), roots),)), start=start, match="no letter's")
+    table = replace(start, values={"chi": Matrix.of([[s**2 + 3 * s + 2]]), "F": 2 * s**2 + 6 * s + 4})
+    checked(Conclude(None, (Roots(chi, roots),)), start=table)
+    refused(Conclude(None, (Roots(F, roots),)), start=table, match="the roots of")
 
 
 def test_a_root_is_of_what_is_not_negative() -> None:
-    from symobs.exact.functions import square_root  # noqa: PLC0415 - of this test alone
-
     checked(Define(said(F, square_root(a))))
     refused(Define(said(F, square_root(c))), match=">= 0")
     refused(Equal((said(square_root(c), square_root(c)),)), match=">= 0")
@@ -335,8 +373,18 @@ def test_a_written_value_stands_as_it_is_written() -> None:
     d = Scalar.symbol("d")
     known = checked(Define(said(d, a + 1)), Define(said(F, d * d)))
     assert known.values["F"] == d * d
+    product = Product((Literal(d), Literal(d)))
+    for members in ((product, d * d), (d * d, product), ((a + 1) ** 2, d * d)):
+        assert checked(Define(said(d, a + 1)), Define(said(F, *members))).values["F"] == d * d
+    assert checked(Define(said(d, a + 1)), Define(said(F, d * d, (a + 1) ** 2))).values["F"] == (a + 1) ** 2
     known = checked(Define(said(d, a + 1)), Define(said(Scalar.symbol("e"), d * 2)))
     assert known.coefficients["e"] == 2 * d
+
+
+def test_a_condition_is_of_one_number() -> None:
+    start = replace(START, values={"F": Matrix.of([[c]]), "C": Matrix.of([[c, c]])})
+    assert checked(Given((said(F, "!=", 0),)), start=start).assumed == (c,)
+    refused(Given((said(C, "!=", 0),)), start=start)
 
 
 def test_a_letter_of_a_signal_is_no_value() -> None:

@@ -76,7 +76,9 @@ class Trial:
 
     def mapped(self, items: dict[str, pytest.Item]) -> None:
         """Find out which tests touch which lines, and how long they take, in a process whose traces are not kept."""
-        known = json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {"seconds": {}, "touching": {}}
+        known = (
+            json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {"seconds": {}, "touching": {}}
+        )
         new = [item for name, item in items.items() if name not in known["seconds"]]
         if new:
             pid = os.fork()
@@ -263,7 +265,8 @@ def _map(items: list[pytest.Item], paths: Sequence[Path], known: dict[str, Any],
     caches = [
         thing
         for thing in gc.get_objects()
-        if isinstance(thing, functools._lru_cache_wrapper) and thing.__module__.startswith(("symobs.derivation", "test"))
+        if isinstance(thing, functools._lru_cache_wrapper)
+        and thing.__module__.startswith(("symobs.derivation", "test"))
     ]
     tracer = coverage.Coverage(include=[str(path) for path in paths], data_file=None, config_file=False)
     tracer.start()
