@@ -232,6 +232,7 @@ class Modular:
 
 
 _MINUS_ONE = Scalar.of(-1)
+_OF_MATRICES = {"det", "adj", "rank"}
 
 
 def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic) -> Any:
@@ -268,6 +269,9 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             value = evaluate(argument, environment, arithmetic)
             if function.endswith("_at"):
                 return _polynomial_at(environment.values[function.removesuffix("_at")], value, environment, arithmetic)
+            if function not in _OF_MATRICES:
+                message = f"{function} is no function of a matrix"
+                raise ValueError(message)
             return arithmetic.apply(function, value)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
