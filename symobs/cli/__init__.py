@@ -354,7 +354,8 @@ def _interrupted() -> int:
     import signal  # noqa: PLC0415 - not for runs that nobody interrupts
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _say("interrupted")
+    shown = sys.stderr is not None and sys.stderr.isatty()
+    _say("\ninterrupted" if shown else "interrupted")  # a terminal has written ^C at the place where we write
     return EXIT_INTERRUPTED
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from symobs.errors import UsageError
 from symobs.output import check_target
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 
-class Outcome(NamedTuple):
+@dataclass(frozen=True)
+class Outcome:
     """What is to be written where, what is to be said besides, and the exit code."""
 
     outputs: tuple[tuple[str | bytes, str | None], ...]
