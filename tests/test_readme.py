@@ -69,7 +69,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     for name in ("problem", "servo"):
         (tmp_path / f"{name}.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 17
+    assert len(lines) == 19
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line

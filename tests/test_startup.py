@@ -64,6 +64,12 @@ def test_no_command_imports_what_is_heavy(arguments: list[str]) -> None:
     assert found & HEAVY == set()
 
 
+def test_a_budget_costs_nothing_where_there_is_none() -> None:
+    machinery = {"multiprocessing", "resource", "select", "signal", "subprocess", "symobs.cli.budget"}
+    assert after("solve", str(SERVO), "--format", "json") & machinery == set()
+    assert "symobs.cli.budget" in after("solve", str(SERVO), "--format", "json", "--timeout", "1000")
+
+
 def test_no_worked_example_imports_what_is_heavy() -> None:
     several = f"""
 import sys
