@@ -34,6 +34,7 @@ class Matrix:
         self.denominator = denominator
         self.shape = shape
         self._elsewhere: dict[Field, Matrix] = {}
+        self._degrees: tuple[int, int] | None = None
 
     # -- construction ---------------------------------------------------------------------------------------------
 
@@ -141,6 +142,10 @@ class Matrix:
         """The generators that really occur."""
         return frozenset().union(*(entry.names for entry in self.entries))
 
+    def has(self, name: str) -> bool:
+        """Tell whether a generator really occurs."""
+        return name in self.field.position and name in self.names
+
     @property
     def size(self) -> int:
         """The number of terms of the table and the denominator."""
@@ -149,10 +154,15 @@ class Matrix:
         return sum(len(entry) for row in self.table for entry in row) + len(self.denominator)
 
     def degrees(self) -> tuple[int, int]:
-        """Return upper bounds of the total degrees of the table's entries and of the denominator."""
+        """Return upper bounds of the total degrees of the table's entries and of the denominator; kept."""
+        if self._degrees is None:
+            self._degrees = self._degree_bounds()
+        return self._degrees
+
+    def _degree_bounds(self) -> tuple[int, int]:
         if isinstance(self.table, fmpz_mat):
             return 0, 0
-        above = max((degree_bound(entry) for row in self.table for entry in row), default=0)
+        above = max([degree_bound(entry) for row in self.table for entry in row], default=0)
         return above, degree_bound(self.denominator)
 
     def lengths(self) -> tuple[float, float]:
