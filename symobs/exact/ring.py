@@ -9,12 +9,10 @@ from __future__ import annotations
 from math import log2
 from typing import TYPE_CHECKING, TypeAlias
 
-from flint import fmpz_mat, fmpz_mpoly
+from flint import fmpz, fmpz_mat, fmpz_mpoly
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-
-    from flint import fmpz
 
     from symobs.exact.field import Field
 
@@ -246,6 +244,11 @@ def by_powers(
                 monomial[places[i]] = power
         collected[degree - int(powers[index])][tuple(monomial)] = coefficient
     return collected
+
+
+def number_of(constant: fmpz_mpoly) -> fmpz:
+    """Return the integer that a constant polynomial is."""
+    return constant.leading_coefficient() if constant else fmpz(0)
 
 
 def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:

@@ -66,9 +66,10 @@ class StateSpace:
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         given = [part for part in parts.values() if part is not None]
-        if any(part.has("t") for part in given):
+        if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
-        clash = self.variable in known.signs or any(part.has(self.variable) for part in given)
+        given = [part for part in given if self.variable in part.field.position]
+        clash = self.variable in known.signs or any(self.variable in part.names for part in given)
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
