@@ -12,6 +12,7 @@ from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix
+from symobs.exact.numeric import matrix_of_numbers
 from symobs.exact.polynomial import (
     apply_polynomial,
     companion,
@@ -57,6 +58,7 @@ __all__ = [
     "independent_rows",
     "is_rounding",
     "kernel",
+    "matrix_of_numbers",
     "modulo",
     "places",
     "pole_and_zero_polynomial",

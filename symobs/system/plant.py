@@ -65,9 +65,10 @@ class StateSpace:
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
-        if any("t" in part.names for part in parts.values() if part is not None):
+        given = [part for part in parts.values() if part is not None]
+        if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
-        given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
+        given = [part for part in given if self.variable in part.field.position]
         clash = self.variable in known.signs or any(self.variable in part.names for part in given)
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
