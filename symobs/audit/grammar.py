@@ -11,9 +11,10 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from lark import Lark, Token, Transformer, UnexpectedToken
+from lark import Lark, Token, UnexpectedToken
 from lark.exceptions import VisitError
 from lark.lexer import Lexer
+from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ExpressionError
 from symobs.exact import Scalar
@@ -96,10 +97,11 @@ def read_relation(text: str, where: str) -> tuple[Node, ...]:
 
 
 def every(node: Node) -> Iterator[Node]:
-    """Yield a node and all below it."""
-    yield node
-    for part in node.parts:
-        yield from every(part)
+    """Yield a node and all below it, from the left; a tree that is too deep is still counted."""
+    waiting = [node]
+    while waiting:
+        yield (first := waiting.pop())
+        waiting += reversed(first.parts)
 
 
 def letters_of(*nodes: Node) -> list[str]:
@@ -162,7 +164,7 @@ def _parser() -> Lark:
     return Lark(GRAMMAR, parser="lalr", lexer=_Ready, start="relation", maybe_placeholders=False)
 
 
-class _Reader(Transformer[Token, Any]):
+class _Reader(Transformer_NonRecursive[Token, Any]):
     """Makes the tree: one method for each rule of the grammar."""
 
     def __init__(self, source: Source) -> None:

@@ -176,16 +176,21 @@ def _table(data: Mapping[str, Any], name: str, errors: _Errors) -> Mapping[str, 
 
 def _text(table: Mapping[str, Any], name: str, errors: _Errors) -> str:
     value = table.get(name, "")
+    _check_text(value, name, errors)
+    return value if isinstance(value, str) and not isinstance(value, Decimal) else ""
+
+
+def _check_text(value: object, where: str, errors: _Errors) -> None:
+    """Note what is no text, or one that is too long or cannot be printed."""
     if not isinstance(value, str) or isinstance(value, Decimal):
-        errors.note(f"a text is expected, but {_came(value)} came", name, "write it in quotes")
-        return ""
+        errors.note(f"a text is expected, but {_came(value)} came", where, "write it in quotes")
+        return
     if len(value) > _MAX_TEXT:
-        errors.note(f"the text has more than {_MAX_TEXT} characters", name, "shorten it")
+        errors.note(f"the text has more than {_MAX_TEXT} characters", where, "shorten it")
     for character in value[:_MAX_TEXT]:
         if category(character) in {"Cc", "Cs"} and character not in "\t\n":
-            errors.note(f"the character U+{ord(character):04X} cannot be printed", name, "leave it out")
+            errors.note(f"the character U+{ord(character):04X} cannot be printed", where, "leave it out")
             break
-    return value
 
 
 def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
@@ -216,10 +221,7 @@ def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
             elif key == "let":
                 texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
         for place, text in texts.items():
-            if not isinstance(text, str) or isinstance(text, Decimal):
-                errors.note(f"a text is expected, but {_came(text)} came", place, "write it in quotes")
-            elif len(text) > _MAX_TEXT:
-                errors.note(f"the text has more than {_MAX_TEXT} characters", place, "shorten it")
+            _check_text(text, place, errors)
         if ("relation" in entry) == ("expect" in entry):
             errors.note("one of relation and expect is expected", where, 'write relation = "L = [19; 81]"')
     return tuple(entry for entry in entries if isinstance(entry, Mapping))
@@ -309,7 +311,7 @@ def _convention(data: Mapping[str, Any], folder: Path | None, errors: _Errors) -
         errors.note(f"a name is expected, but {_came(name)} came", "convention", 'write convention = "standard"')
         return STANDARD
     try:
-        return convention_named(name.removesuffix(".toml"), folder)
+        return convention_named(re.sub(r"(\.toml)+\Z", "", name), folder)  # a file names no path
     except UsageError as error:
         errors.note(error.message, "convention", error.repair)
     except ProblemErrors as wrong:

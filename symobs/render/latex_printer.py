@@ -115,7 +115,7 @@ class LatexPrinter(Printer[LatexBox]):
             return LatexBox(len(digits) * widths.DIGIT, Level.ATOM, digits)
         (name,) = value.names
         source = symbol_latex(name, self.symbols.get(name))
-        return LatexBox(widths.source_width(source), Level.ATOM, source)
+        return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def identity(self) -> LatexBox:
         """I."""
