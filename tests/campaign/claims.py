@@ -503,8 +503,8 @@ def _gramian(b: Branch) -> Iterator[Claim]:
         yield same("finite sum", b.field("finite_sum"), seen.T @ seen)
     horizon = str(b.specification["horizon"])
     if horizon == "inf":
-        yield Claim("verdict", "decays", (A, C), (b.variable, b.has("matrix")))
-    if not b.has("matrix"):
+        yield Claim("verdict", "decays", (A, C), (b.variable, b.has("matrix") and b.verdict != "no"))
+    if not b.has("matrix") or b.verdict == "no":
         return
     W = b.field("matrix")
     yield zero("determinant", W.determinant - b.field("determinant"))
