@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import operator
 import re
+from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
@@ -44,6 +45,10 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _VALUES = [
     Fraction(p, q) for p, q in ((1, 1), (2, 1), (3, 1), (-1, 1), (-2, 1), (-3, 1), (0, 1), (1, 2), (-3, 2), (5, 3))
 ]
+
+
+#: What an answer holds beside its fields.
+_NOT_FIELDS = {"certificates", "in_convention", "cases", "conditions"}
 
 
 class NotRational(ValueError):
@@ -140,33 +145,35 @@ def _deeper(outer: Tables, point: Point) -> Tables | None:
 
 def texts_at(thing: Any, point: Point) -> Any:
     """Put the numbers of a point in place of the names in every text of a value."""
+    if not point:
+        return thing
     if isinstance(thing, str):
         return _NAME.sub(lambda name: f"({point[name.group()]})" if name.group() in point else name.group(), thing)
     if isinstance(thing, list):
         return [texts_at(entry, point) for entry in thing]
     if isinstance(thing, Mapping):
-        return {key: texts_at(entry, point) for key, entry in thing.items()}
+        return {key: texts_at(entry, point) for key, entry in thing.items() if key not in _NOT_FIELDS}
     return thing
 
 
 # -- points ------------------------------------------------------------------------------------------------------------
 
 
-def points_for(asked: Asked, most: int = 6) -> Iterator[Point]:
+def points_for(asked: Asked, most: int = 5) -> Iterator[Point]:
     """Yield points: some anywhere, and one in each pattern of equations that the answer speaks of, as far as found."""
     signs = asked.problem["symbols"]
     if not signs:
         yield {}
         return
     random = Random(f"points {asked.seed}")  # noqa: S311 - test points, no secrets
-    seen: set[tuple[bool, ...]] = set()
     equations = sorted({side for text in _relations(asked.answer) for side in _sides(text)})
-    for point in islice(_candidates(signs, equations, random), 300):
+    seen: Counter[tuple[bool, ...]] = Counter()
+    for point in islice(_candidates(signs, equations, random), 60):
         pattern = tuple(_vanishes(equation, point) for equation in equations)
-        if pattern not in seen or (len(seen) < 2 and not any(pattern)):
-            seen.add(pattern)
+        if seen[pattern] < (1 if any(pattern) else 2):
+            seen[pattern] += 1
             yield point
-            if len(seen) >= most:
+            if seen.total() >= most:
                 return
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Drawn = dict[str, Any] | None
 
 #: How often each task is asked.
-TASKS = {
+TASKS: dict[str, float] = {
     "observability": 8,
     "controllability": 8,
     "detectability": 6,
@@ -32,13 +32,13 @@ TASKS = {
     "matrix_exponential": 4,
     "gramian": 3,
     "initial_state": 2,
-    "initial_state_covariance": 1,
+    "initial_state_covariance": 0.3,
     "time_varying_observability": 2,
     "state_feedback": 10,
     "observer": 10,
     "reduced_order_observer": 7,
-    "compensator": 8,
-    "feedforward": 4,
+    "compensator": 7,
+    "feedforward": 3,
     "tracking": 4,
     "pole_advice": 2,
     "stability_region": 2,
@@ -183,7 +183,7 @@ def _matrix_exponential(_random: Random, shape: Shape) -> Drawn:
 
 
 def _initial_state_covariance(random: Random, shape: Shape) -> Drawn:
-    if shape.discrete:
+    if shape.discrete or max(shape.inputs, shape.outputs) > 1:
         return None
     size, outputs = shape.inputs, shape.outputs
     Q = [["0"] * size for _ in range(size)]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +42,10 @@ def covers(problem: Tables) -> bool:
 # -- the language ------------------------------------------------------------------------------------------------------
 
 
+@cache
 def _scalar(text: str) -> str:
+    if text.lstrip("-").isdigit():
+        return text if text.isdigit() else f"({text})"
     if "CRootOf" in text:
         raise Unsupported("a root without a closed form")
     text = _ROOT_SUM.sub(lambda found: f"rootsum(subst({found.group(1)}, {found.group(2)}, 'x), ({found.group(2)} -> ", text)

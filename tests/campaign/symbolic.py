@@ -1,0 +1,82 @@
+"""Answers judged with their parameters in place, by a system that is told terms and asked whether they vanish."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tests.campaign.asked import Untold
+from tests.campaign.claims import claims
+from tests.campaign.points import NotRational
+from tests.campaign.running import System, answers
+from tests.campaign.writing import Language, Sheet, Unsupported
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from tests.campaign.algebra import Claim
+    from tests.campaign.asked import Asked, Difference
+
+#: Tasks whose claims are not identities.
+NOT_SYMBOLIC = {"stability_region", "initial_state", "initial_state_covariance"}
+_UNTOLD = {"could not tell"}
+
+
+@dataclass(frozen=True)
+class Judge:
+    """A system, its language, the condition under which it confirms a claim, and how a question is put."""
+
+    system: System
+    language: Language
+    condition: Callable[[Claim, list[str], str], str]
+    question: Callable[[Sequence[tuple[list[str], str, int]]], str]
+    seconds: float = 30
+
+    def differences(self, batch: Sequence[Asked]) -> list[Difference]:
+        """Judge a batch in one process."""
+        judged: list[Difference] = [Untold("nothing it claims can be asked here")] * len(batch)
+        posed: list[tuple[int, list[Claim], str]] = []
+        for index, asked in enumerate(batch):
+            try:
+                found = claims(asked.problem, _in_general(asked))
+            except NotRational:
+                continue
+            except (KeyError, TypeError, ValueError, AssertionError) as error:
+                judged[index] = Untold(f"the answer cannot be read: {error!r}")
+                continue
+            program = self._program(found, "z" if asked.problem["plant"].get("dt") else "s")
+            if program:
+                posed.append((index, found, program))
+        replies = answers(self.system, [program for *_, program in posed], self.seconds)
+        for (index, found, _), reply in zip(posed, replies, strict=True):
+            judged[index] = _read(found, reply)
+        return judged
+
+    def _program(self, found: Sequence[Claim], variable: str) -> str:
+        sheet = Sheet(self.language)
+        tests: list[tuple[list[str], str, int]] = []
+        for k, claim in enumerate(found):
+            try:
+                parts = [sheet.write(term) for term in claim.terms]
+                tests.append((list(sheet.lines), self.condition(claim, parts, variable), k))
+            except Unsupported:
+                continue
+            sheet.lines.clear()
+        return self.question(tests) if any(found[k].kind not in {"is", "never"} for _, _, k in tests) else ""
+
+
+def _in_general(asked: Asked) -> dict[str, object]:
+    """Return the answer for parameters in general position."""
+    return asked.answer | ({"verdict": "yes"} if asked.verdict == "conditional" else {})
+
+
+def _read(found: Sequence[Claim], reply: str | None) -> Difference:
+    if reply is None:
+        return Untold("no answer")
+    if reply == "[]":
+        return None
+    numbers = re.findall(r"\d+", reply)
+    if not re.fullmatch(r"\[[\d,]*\]", reply):
+        return Untold(reply[:80])
+    return ", ".join(found[int(k)].name for k in numbers)
