@@ -214,6 +214,15 @@ def _posed(asked: Asked) -> Iterator[tuple[str, list[Claim]]]:
         yield where, found
 
 
+#: What is said beside a verdict with parameters in general position, without the points at which it is otherwise:
+#: ranks of modes where two of them meet, and what is hidden besides where a verdict is no anyhow.
+_IN_GENERAL = {
+    **dict.fromkeys(("detectability", "stabilizability", "pbh"), frozenset({"modes"})),
+    **dict.fromkeys(("state_feedback", "observer", "reduced_order_observer"), frozenset({"fixed modes"})),
+    "gramian": frozenset({"rank", "kernel", "dimension of the kernel", "independent kernel"}),
+}
+
+
 def differences(batch: Sequence[Asked]) -> list[Difference]:
     """Judge a batch in one process."""
     posed: list[tuple[int, str, list[Claim], str]] = []
@@ -238,7 +247,10 @@ def differences(batch: Sequence[Asked]) -> list[Difference]:
             judged[index] = Untold(f"{where} {reply or 'no answer in time'}".strip())
         else:
             wrong = [found[int(k)].name for k in re.findall(r"\d+", reply)]
-            judged[index] = f"{where + ': ' if where else ''}{', '.join(wrong)}"
+            if where and set(wrong) <= _IN_GENERAL.get(batch[index].task, frozenset()):
+                judged[index] = Untold(f"said of parameters in general, not true at a point: {', '.join(wrong)}")
+            else:
+                judged[index] = f"{where + ': ' if where else ''}{', '.join(wrong)}"
     return judged
 
 
