@@ -175,12 +175,19 @@ def roots_of(coefficients: Sequence[Any]) -> list[Any]:
     kept = list(coefficients)
     while kept and abs(kept[0]) < TINY:
         kept.pop(0)
-    return [mpmath.mpc(r) for r in mpmath.polyroots(kept, maxsteps=500, extraprec=400)] if len(kept) > 1 else []
+    return list(_roots_of(tuple(kept))) if len(kept) > 1 else []
 
 
-def listed_roots(coefficients: Sequence[complex]) -> list[complex]:
-    """Return the roots of a polynomial in doubles, found in fifty digits."""
-    return [complex(root) for root in roots_of([mpmath.mpmathify(c) for c in coefficients])]
+@lru_cache(maxsize=1024)
+def _roots_of(coefficients: tuple[Any, ...]) -> tuple[Any, ...]:
+    """With more digits where few do not suffice."""
+    for extra in (50, 200, 800):
+        try:
+            found = mpmath.polyroots(coefficients, maxsteps=200, extraprec=extra)
+        except mpmath.NoConvergence:
+            continue
+        return tuple(mpmath.mpc(root) for root in found)
+    raise UnreadableError("no roots were found")
 
 
 def ratio(text: object, point: Mapping[str, Any], variable: str) -> Ratio:

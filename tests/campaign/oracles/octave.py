@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from tests import octave
 from tests.campaign.asked import Untold
-from tests.campaign.numeric import COPIES, PLACES, SHAKEN, Claims, claims_of, compared, covered
-from tests.campaign.numeric_cases import Case, at_a_point, shown
+from tests.campaign.numeric import COPIES, PLACES, SHAKEN, Claims, compared, covered, prepared
+from tests.campaign.numeric_cases import Case, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -218,22 +218,10 @@ def covers(problem: Tables) -> bool:
 
 def differences(batch: Sequence[Asked]) -> list[Difference]:
     """Let one process of Octave judge the batch."""
-    read = [_claims(asked) for asked in batch]
+    read = [prepared(asked) for asked in batch]
     asked = [question(*each) for each in read if isinstance(each, tuple)]
     replies = iter(octave.ask(asked, beginning=_BEGINNING) if asked else [])
     return [_judged(*each, next(replies)) if isinstance(each, tuple) else each for each in read]
-
-
-def _claims(asked: Asked) -> tuple[Case, Claims] | Untold:
-    case = at_a_point(asked)
-    if isinstance(case, Untold):
-        return case
-    claims = claims_of(case)
-    if isinstance(claims, Untold):
-        return claims
-    if not claims.values and not claims.ranks and not claims.wrong:
-        return Untold("nothing that Octave could judge")
-    return case, claims
 
 
 def _judged(case: Case, claims: Claims, reply: octave.Reply) -> Difference:
