@@ -61,7 +61,7 @@ class StabilityRegion(Result):
     def of(cls, question: Question, method_name: str) -> StabilityRegion:
         """Return the region of a question."""
         bounds, proof = _bounds_of(question)
-        table = routh_table(question.critical.written, question.critical.parameters)
+        table = routh_table(question.critical.headed, question.critical.parameters)
         answer = {"polynomial": question.polynomial, "routh": table, "bounds": bounds, "proof": proof}
         return cls(question.plant, method_name, answer, question)
 
@@ -86,7 +86,7 @@ class StabilityRegion(Result):
         """Yield what χ is, that the table is Routh's, and that the inequalities hold exactly on the region."""
         yield self._claim_of_polynomial()
         table: RouthTable = self.answer["routh"]
-        yield Statement("the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.written) else "")
+        yield Statement("the table is Routh's", lambda: "exact" if is_routh_table(table, self.critical.headed) else "")
         bounds, region = self.answer["bounds"], self.region
         if region is None:
             how = "Liénard and Chipart, products compared" + (", z3" if asks_z3(self.answer["proof"]) else "")

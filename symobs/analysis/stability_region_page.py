@@ -115,6 +115,10 @@ def _table(page: Page, result: StabilityRegion, chi: str) -> None:
     if not result.question.boundary.discrete:
         page.tabulate(page[chi], say="routh_table", polynomial=page[chi])
         return
+    if result.critical.written[0].is_zero:  # 1 is a root, which the map carries to infinity: no table shows it
+        page.remark("root_on_circle")
+        page.equal(relation(page.value(1).apply(f"{chi}_at"), 0))
+        return
     w = Scalar.symbol("w")
     image = page.term(Quotient(Literal(w + 1), Literal(w - 1)))
     order = result.critical.order

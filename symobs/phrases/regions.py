@@ -15,6 +15,7 @@ PHRASES: dict[str, str] = {
     "enlarged": "Divided by {by}, the roots are those of",
     "left_half_plane": "which must have all of them in the open left half plane.",
     "unit_disc": "which must have all of them in the open unit disc.",
+    "root_on_circle": "Whatever the values, not all roots lie in the open unit disc:",
     "mapped": "The map from $w$ to {image} carries the open left half plane to the open unit disc, so all roots lie in the disc exactly where those "
     "of this polynomial lie in the left half plane:",
     "crossing_one": "As {names} {vary}, the root leaves the left half plane only through 0: where this vanishes.",

@@ -80,6 +80,12 @@ class Critical:
         return tuple(c * self.scale for c in bilinear(found)) if self.boundary.discrete else found
 
     @cached_property
+    def headed(self) -> tuple[Scalar, ...]:
+        """Those from the first that is not zero: in discrete time a root z = 1 for all parameters lowers the degree."""
+        first = next(k for k, coefficient in enumerate(self.written) if not coefficient.is_zero)
+        return self.written[first:]
+
+    @cached_property
     def scale(self) -> Scalar:
         """What clears the denominators of the moved polynomial."""
         return self.boundary.moved(self.polynomial).denominator

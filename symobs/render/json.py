@@ -92,4 +92,7 @@ def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
     nested = [_case_object(deeper, missing | inner) for deeper in case.result.case_tree]
     certificates = [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in case.result.all_certificates]
     whole = {"when": when, "verdict": case.result.verdict, **differing, "certificates": certificates}
+    if case.result.verdict == "conditional":
+        whole["conditions"] = [to_json(condition) for condition in case.result.holds_where]
+        whole["condition_kinds"] = [condition.kind for condition in case.result.holds_where]
     return {**whole, "cases": nested} if nested else whole

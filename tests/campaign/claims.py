@@ -183,7 +183,9 @@ def _modes(b: Branch) -> Iterator[Claim]:
             if "CRootOf" not in mode["eigenvalue"]:
                 I = identity(b.order)
                 pencil = b.A - scalar(mode["eigenvalue"]) * I
-                whole = stack(pencil, b.C) if seen else Term("beside", (pencil, b.B), (b.order, b.order + columns_of(b.B)))
+                whole = (
+                    stack(pencil, b.C) if seen else Term("beside", (pencil, b.B), (b.order, b.order + columns_of(b.B)))
+                )
                 yield same(f"matrix of mode {k + 1}", matrix(mode["matrix"]), whole)
     elif b.specification.get("meaning") == "lyapunov":
         yield Claim("verdict", "bounded", (A, C), (b.variable, b.verdict == "yes"))
@@ -269,7 +271,9 @@ def _dual(b: Branch) -> Iterator[Claim]:
     yield rank("observability", seen, b.answer["observability_rank"])
     yield rank("controllability", moved, b.answer["controllability_rank"])
     crossed = [b.answer[name] for name in ("dual_controllability_rank", "dual_observability_rank")]
-    yield Claim("ranks change places", "is", (), crossed == [b.answer["observability_rank"], b.answer["controllability_rank"]])
+    yield Claim(
+        "ranks change places", "is", (), crossed == [b.answer["observability_rank"], b.answer["controllability_rank"]]
+    )
 
 
 def _decomposition(b: Branch) -> Iterator[Claim]:
@@ -388,7 +392,15 @@ def _separated(b: Branch) -> Iterator[Claim]:
     control, observer = b.desired("control_"), b.desired("observer_")
     assert control is not None
     assert observer is not None
+    if _is_ill_posed(b):
+        return
     yield Claim("verdict", "separation", (b.A, b.B, b.C, control, observer), b.verdict != "no")
+
+
+def _is_ill_posed(b: Branch) -> bool:
+    """Both gains exist, and the output of a reduced-order loop contains the input before it is known."""
+    reduced_order = b.specification.get("observer") == "minimal" or b.problem["task"] == "tracking"
+    return reduced_order and b.verdict == "no" and b.has("K") and b.has("L") and "D" in b.problem["plant"]
 
 
 def _loops(b: Branch) -> Iterator[Claim]:
@@ -405,6 +417,9 @@ def _compensator(b: Branch) -> Iterator[Claim]:
     yield from _separated(b)
     yield from _loops(b)
     if b.verdict == "no":
+        if _is_ill_posed(b) and b.has("T"):
+            _, _, _, M1, _ = reduced(b, b.field("L"), b.field("T"))
+            yield zero("no loop", (identity(columns_of(b.B)) - b.field("K") @ M1 @ b.D).determinant)
         return
     control, observer = b.desired("control_"), b.desired("observer_")
     assert control is not None
@@ -413,7 +428,8 @@ def _compensator(b: Branch) -> Iterator[Claim]:
     Ac, Bc, Cc, Dc = compensator_of(b)
     minus_u = transfer(b, Ac, Bc, zeros(*shape_of(Cc)) - Cc, zeros(*shape_of(Dc)) - Dc)
     yield same("F", _as_matrix(b, "F"), minus_u)
-    yield Claim("F is stable", "hurwitz_if", (Ac.characteristic(b.s),), (b.variable, b.answer["F_stable"]))
+    if b.answer["F_stable"] in {"yes", "no"}:
+        yield Claim("F is stable", "stable_transfer", (Ac, Bc, Cc), (b.variable, b.answer["F_stable"] == "yes"))
     yield zero("closed-loop polynomial", whole - b.field("closed_loop_polynomial"))
     yield zero("closed-loop matrix", b.field("closed_loop_matrix").characteristic(b.s) - whole)
     yield zero("closed-loop matrix (estimate)", b.field("closed_loop_matrix_estimate").characteristic(b.s) - whole)
@@ -421,7 +437,10 @@ def _compensator(b: Branch) -> Iterator[Claim]:
         plant, F = transfer(b, b.A, b.B, b.C, b.D).entry(0, 0), scalar(b.answer["F"])
         yield zero("closed loop", b.field("closed_loop") * (scalar(1) + F * plant) - plant)
         if b.has("closed_loop_unity"):
-            yield zero("closed loop with F before the plant", b.field("closed_loop_unity") * (scalar(1) + F * plant) - F * plant)
+            yield zero(
+                "closed loop with F before the plant",
+                b.field("closed_loop_unity") * (scalar(1) + F * plant) - F * plant,
+            )
 
 
 def shape_of(term: Term) -> tuple[int, int]:
@@ -453,7 +472,12 @@ def _tracking(b: Branch) -> Iterator[Claim]:
     assert observer is not None
     reference = matrix(rows(b.specification["reference_matrix"]))
     yield Claim("solvable", "contains", (b.B, b.A - reference), b.answer["solvable"])
-    yield Claim("verdict", "separation", (b.A, b.B, b.C, control, observer), b.verdict != "no" or not b.answer["solvable"])
+    if b.answer["solvable"] and _is_ill_posed(b):
+        pass
+    elif b.answer["solvable"]:
+        yield Claim("verdict", "separation", (b.A, b.B, b.C, control, observer), b.verdict != "no")
+    else:
+        yield Claim("verdict", "is", (), b.verdict == "no")
     if b.has("K_d"):
         yield zero("K_d", reference - b.A + b.B @ b.field("K_d"))
     if b.has("error_matrix"):
@@ -479,8 +503,8 @@ def _gramian(b: Branch) -> Iterator[Claim]:
         yield same("finite sum", b.field("finite_sum"), seen.T @ seen)
     horizon = str(b.specification["horizon"])
     if horizon == "inf":
-        yield Claim("verdict", "decays", (A, C), (b.variable, b.has("matrix")))
-    if not b.has("matrix"):
+        yield Claim("verdict", "decays", (A, C), (b.variable, b.has("matrix") and b.verdict != "no"))
+    if not b.has("matrix") or b.verdict == "no":
         return
     W = b.field("matrix")
     yield zero("determinant", W.determinant - b.field("determinant"))
@@ -505,7 +529,6 @@ def _time_varying(b: Branch) -> Iterator[Claim]:
         yield same(f"N{k}", mine, matrix(theirs))
     yield rank("rank", stack(*parts), b.answer["rank"])
     yield Claim("verdict", "is", (), (b.verdict == "yes") == (b.answer["rank"] == b.order))
-
 
 
 def _initial_state(b: Branch) -> Iterator[Claim]:
@@ -557,13 +580,21 @@ def _stability_region(b: Branch) -> Iterator[Claim]:
     """At a point: whether it lies in the region, and whether all roots of the polynomial lie where they should."""
     if b.problem["symbols"]:
         return
-    text = b.specification["polynomial"].replace("^", "**")
     moved = {"margin": f"({b.variable}-{{}})", "radius": f"({b.variable}*{{}})"}
+    text = b.variable
     for name, form in moved.items():
         if name in b.specification:
-            text = re.sub(rf"\b{b.variable}\b", form.format(f"({b.specification[name]})"), text)
+            text = form.format(f"({b.specification[name]})")
+    place = scalar(text)
+    if "polynomial" in b.specification:
+        given = b.specification["polynomial"].replace("^", "**")
+        chi = scalar(re.sub(rf"\b{b.variable}\b", text, given))
+    elif "L" in b.specification:
+        chi = (b.A - matrix(rows(b.specification["L"])) @ b.C).characteristic(place)
+    else:
+        chi = (b.A - b.B @ matrix(rows(b.specification["K"]))).characteristic(place)
     inside = all(holds(relation, {}) for relation in b.answer["stable_if"])
-    yield Claim("inside", "hurwitz", (scalar(text),), (b.variable, inside))
+    yield Claim("inside", "hurwitz", (chi,), (b.variable, inside))
 
 
 _CLAIMS: dict[str, Callable[[Branch], Iterator[Claim]]] = {

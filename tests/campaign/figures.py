@@ -85,7 +85,9 @@ class Figures:
     def table(self) -> str:
         """Return everything as text: task by oracle, kind by oracle, verdicts, and what could not be told and why."""
         oracles = sorted({key[0] for key in self.judged})
-        lines = [f"{self.total} answers in {self.seconds:.0f} s ({self._rate():.0f} a minute), next seed {self.next_seed}"]
+        lines = [
+            f"{self.total} answers in {self.seconds:.0f} s ({self._rate():.0f} a minute), next seed {self.next_seed}"
+        ]
         lines += ["", *self._grid("task", 1, oracles), "", *self._grid("kind of plant", 2, oracles)]
         lines += ["", "verdicts: " + ", ".join(f"{word} {number}" for word, number in self._words().most_common())]
         lines += ["", f"refused: {sum(self.refused.values())}"]

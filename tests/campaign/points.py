@@ -122,25 +122,31 @@ def answer_at(answer: Tables, point: Point) -> Tables | None:
 
     Raises `Uncovered` where a condition fails and no case takes its place.
     """
-    for kind, condition in zip(answer["condition_kinds"], answer["conditions"], strict=True):
-        if kind == "domain" and not holds(condition, point):
-            return None
-    conditions = [c for k, c in zip(answer["condition_kinds"], answer["conditions"], strict=True) if k != "domain"]
-    found = _deeper(answer, point)
-    broken = [condition for condition in conditions if not holds(condition, point)]
-    if found is None and broken:
-        raise Uncovered(f"{broken[0]} fails and no case holds")
-    branch = dict(found or answer)
+    if any(not holds(condition, point) for kind, condition in _conditions(answer) if kind == "domain"):
+        return None
+    branch = _deeper(answer, point)
+    asked = [(kind, condition) for kind, condition in _conditions(branch) if kind != "domain"]
+    broken = [(kind, condition) for kind, condition in asked if not holds(condition, point)]
+    if branch["verdict"] != "conditional":
+        if broken and branch is answer:
+            raise Uncovered(f"{broken[0][1]} fails and no case holds")
+        return branch
     # Where its conditions hold, and no deeper case does, what is said under conditions is said.
-    return branch | ({"verdict": "yes"} if branch["verdict"] == "conditional" else {})
+    if all(kind == "existence" and "=" not in condition.replace(">=", ">") for kind, condition in broken):
+        return branch | {"verdict": "no" if broken else "yes"}
+    raise Uncovered(f"{broken[0][1]} fails and no case holds")
 
 
-def _deeper(outer: Tables, point: Point) -> Tables | None:
+def _conditions(branch: Tables) -> list[tuple[str, str]]:
+    return list(zip(branch.get("condition_kinds", []), branch.get("conditions", []), strict=True))
+
+
+def _deeper(outer: Tables, point: Point) -> Tables:
+    """Return the branch that holds at a point: a case has the fields around it where it does not say otherwise."""
     for case in outer.get("cases", []):
         if all(holds(relation, point) for relation in case["when"]):
-            inner = {**outer, "cases": [], **case}
-            return _deeper(inner, point) or inner
-    return None
+            return _deeper({**outer, "cases": [], "conditions": [], "condition_kinds": [], **case}, point)
+    return outer
 
 
 def texts_at(thing: Any, point: Point) -> Any:

@@ -59,14 +59,17 @@ def _run(system: System, program: str, seconds: float) -> dict[int, str]:
         path = Path(folder) / "program"
         path.write_text(program + "\n", encoding="utf-8")
         command = [*system.command, str(path)] if system.by_file else list(system.command)
-        with path.open(encoding="utf-8") as source, subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL if system.by_file else source,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            cwd=folder,
-            start_new_session=True,
-        ) as process:
+        with (
+            path.open(encoding="utf-8") as source,
+            subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL if system.by_file else source,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                cwd=folder,
+                start_new_session=True,
+            ) as process,
+        ):
             try:
                 text = _read(process, seconds)
             finally:

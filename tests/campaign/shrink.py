@@ -58,7 +58,11 @@ def _smaller(problem: Tables) -> Iterator[Tables]:
 
 
 def _with(problem: Tables, plant: Tables, specification: Tables | None = None) -> Tables:
-    return {**problem, "plant": plant, "specification": problem["specification"] if specification is None else specification}
+    return {
+        **problem,
+        "plant": plant,
+        "specification": problem["specification"] if specification is None else specification,
+    }
 
 
 def _without_parameters(problem: Tables) -> Iterator[Tables]:
@@ -69,7 +73,12 @@ def _without_parameters(problem: Tables) -> Iterator[Tables]:
             signs = {other: sign for other, sign in problem["symbols"].items() if other != name}
             plant, asked = texts_at(problem["plant"], point), texts_at(problem["specification"], point)
             if asked.get("parameters") == problem["specification"].get("parameters"):
-                yield {**problem, "symbols": signs, "plant": {k: _valued(t) for k, t in plant.items()}, "specification": asked}
+                yield {
+                    **problem,
+                    "symbols": signs,
+                    "plant": {k: _valued(t) for k, t in plant.items()},
+                    "specification": asked,
+                }
 
 
 def _valued(text: Any) -> Any:
@@ -99,7 +108,9 @@ def _without_states(problem: Tables) -> Iterator[Tables]:
             smaller["B"] = text_of(_dropped(rows(plant["B"]), state, None))
         if "C" in plant:
             smaller["C"] = text_of(_dropped(rows(plant["C"]), None, state))
-        yield _with(problem, smaller, {name: _fewer(name, text, state) for name, text in problem["specification"].items()})
+        yield _with(
+            problem, smaller, {name: _fewer(name, text, state) for name, text in problem["specification"].items()}
+        )
 
 
 def _fewer(name: str, text: Any, state: int) -> Any:
@@ -142,5 +153,7 @@ def _plainer_entries(problem: Tables) -> Iterator[Tables]:
         for i, row in enumerate(table):
             for j, entry in enumerate(row):
                 for plain in ("0", "1") if entry not in {"0", "1"} else ("0",) if entry == "1" else ():
-                    changed = [[plain if (a, b) == (i, j) else x for b, x in enumerate(line)] for a, line in enumerate(table)]
+                    changed = [
+                        [plain if (a, b) == (i, j) else x for b, x in enumerate(line)] for a, line in enumerate(table)
+                    ]
                     yield _with(problem, {**plant, letter: text_of(changed)})

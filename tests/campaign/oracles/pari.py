@@ -48,16 +48,13 @@ def _scalar(text: str) -> str:
         return text if text.isdigit() else f"({text})"
     if "CRootOf" in text:
         raise Unsupported("a root without a closed form")
-    text = _ROOT_SUM.sub(lambda found: f"rootsum(subst({found.group(1)}, {found.group(2)}, 'x), ({found.group(2)} -> ", text)
-    if "rootsum" in text:
-        text = _closed(text)
+    text = _ROOT_SUM.sub(
+        lambda found: f"rootsum(subst({found.group(1)}, {found.group(2)}, 'x), ({found.group(2)} -> ", text
+    )
+    # The bracket of a Lambda closes that of its function; the variable is named behind it where there are others.
+    text = re.sub(r"\), lam\)", "))", text) if "rootsum" in text else text
     text = re.sub(r"\bpi\b", "Pi", text)
     return f"({_VARIABLE.sub('x', text).replace('**', '^')})"
-
-
-def _closed(text: str) -> str:
-    """Return the text as it is: a Lambda's own bracket closes the one that was opened for the function."""
-    return text
 
 
 def _matrix(table: list[list[str]]) -> str:
@@ -121,7 +118,7 @@ _FUNCTIONS = {
     "unexplained": "unexplained",
     "output_part": "outputpart",
     "input_part": "inputpart",
-    "shifted": "hurwitz",
+    "stable_transfer": "stabletransfer",
 }
 
 
@@ -143,9 +140,6 @@ def _judged(sheet: Sheet, claim: Claim) -> str:
             return f"zero({parts[0]})"
         case "rank":
             return f"(matrank({parts[0]})=={claim.data})"
-        case "hurwitz_if":
-            discrete, word = int(claim.data[0] == "z"), claim.data[1]
-            return "1" if word not in {"yes", "no"} else f"hurwitz({parts[0]},{discrete},{int(word == 'yes')})"
     function = _FUNCTIONS.get(claim.kind)
     if function is None:
         raise Unsupported(claim.kind)
@@ -220,6 +214,15 @@ def _posed(asked: Asked) -> Iterator[tuple[str, list[Claim]]]:
         yield where, found
 
 
+#: What is said beside a verdict with parameters in general position, without the points at which it is otherwise:
+#: ranks of modes where two of them meet, and what is hidden besides where a verdict is no anyhow.
+_IN_GENERAL = {
+    **dict.fromkeys(("detectability", "stabilizability", "pbh"), frozenset({"modes"})),
+    **dict.fromkeys(("state_feedback", "observer", "reduced_order_observer"), frozenset({"fixed modes"})),
+    "gramian": frozenset({"rank", "kernel", "dimension of the kernel", "independent kernel"}),
+}
+
+
 def differences(batch: Sequence[Asked]) -> list[Difference]:
     """Judge a batch in one process."""
     posed: list[tuple[int, str, list[Claim], str]] = []
@@ -244,7 +247,10 @@ def differences(batch: Sequence[Asked]) -> list[Difference]:
             judged[index] = Untold(f"{where} {reply or 'no answer in time'}".strip())
         else:
             wrong = [found[int(k)].name for k in re.findall(r"\d+", reply)]
-            judged[index] = f"{where + ': ' if where else ''}{', '.join(wrong)}"
+            if where and set(wrong) <= _IN_GENERAL.get(batch[index].task, frozenset()):
+                judged[index] = Untold(f"said of parameters in general, not true at a point: {', '.join(wrong)}")
+            else:
+                judged[index] = f"{where + ': ' if where else ''}{', '.join(wrong)}"
     return judged
 
 

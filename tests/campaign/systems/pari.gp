@@ -108,6 +108,7 @@ polepart(A, B, C) =
   Y = matinverseimage(R, A * R);
   charpoly(Y, 'x) \ hiddenpart(Y, C * R)
 };
+stabletransfer(A, B, C, discrete, expected) = isstable(polepart(A, B, C), discrete) == expected;
 minors(G, r) =
 {
   my(found = List(), p = matsize(G)[1], m = matsize(G)[2]);
