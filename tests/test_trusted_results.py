@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import pytest
 import sympy
 
-import symobs
 from symobs import StateSpace, observability, observer
 from symobs.certificate import Certificate, Claim, Statement
 from symobs.convention import STANDARD, convention_named
@@ -37,7 +36,7 @@ from symobs.method import (
 from tests.steps import A, F, said
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from symobs.page import Page
 
@@ -290,7 +289,7 @@ def test_plants_in_time_are_refused_where_matrices_are_constant() -> None:
 @pytest.mark.usefixtures("empty")
 def test_methods_are_found_by_their_task() -> None:
     @method("observer/guess", source="nowhere")
-    def guess() -> None:
+    def guess() -> Any:
         """Guess it."""
 
     found = methods("observer")
@@ -343,7 +342,7 @@ def test_formats_are_found_by_name() -> None:
 def test_only_what_is_asked_for_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a package every module is imported once, and a single one by its name."""
     imported: list[str] = []
-    monkeypatch.setattr(registry.importlib, "import_module", imported.append)
+    monkeypatch.setattr("importlib.import_module", imported.append)
     monkeypatch.setattr(registry, "_DISCOVERED", set())
 
     class Info:
