@@ -241,6 +241,9 @@ def test_rows_that_span_more_or_less_are_not_the_same() -> None:
     for left, right in ((one, two), (two, one), (one, Matrix.of([[0, 1]]))):
         assert verify(said(left, "~", right), Environment()) == FALSE
     assert verify(said(two, "~", Matrix.of([[1, 1], [1, -1]])), Environment()) == EXACTLY
+    left, right = Matrix.of([[b, 1]]), Matrix.of([[0, 1]])
+    assert verify(said(left, "~", right), Environment()) == FALSE
+    assert verify(said(left, "~", right), Environment(relations=(b,))) == EXACTLY
 
 
 THIRD, NEAR, FAR = (Scalar.of(Fraction(*parts)) for parts in ((1, 3), (333, 1000), (334, 1000)))
@@ -352,8 +355,8 @@ def test_every_kind_of_leaf_is_drawn_at_a_point() -> None:
     plant = replace(names, signals=signals, sizes={"x": 1}, dynamics={"x": Product((A, X))}, coefficients={})
     assert is_at_points(said(Derivative(Letter("y")), Product((Literal(a * b), X))), plant)
     assert verify(said(Derivative(Letter("y")), Product((Literal(a), X))), plant) == FALSE
-    for itself in (Letter("y"), Derivative(Letter("y")), Derivative(X)):
-        assert is_at_points(said(itself, itself), plant)
+    for signal in (Letter("y"), Derivative(Letter("y")), Derivative(X)):
+        assert is_at_points(said(signal, signal), plant)
 
 
 def test_a_claim_has_a_point_of_its_own() -> None:

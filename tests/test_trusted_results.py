@@ -289,7 +289,7 @@ def test_plants_in_time_are_refused_where_matrices_are_constant() -> None:
 @pytest.mark.usefixtures("empty")
 def test_methods_are_found_by_their_task() -> None:
     @method("observer/guess", source="nowhere")
-    def guess() -> None:
+    def guess() -> Any:
         """Guess it."""
 
     found = methods("observer")
@@ -342,7 +342,7 @@ def test_formats_are_found_by_name() -> None:
 def test_only_what_is_asked_for_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a package every module is imported once, and a single one by its name."""
     imported: list[str] = []
-    monkeypatch.setattr(registry.importlib, "import_module", imported.append)
+    monkeypatch.setattr("importlib.import_module", imported.append)
     monkeypatch.setattr(registry, "_DISCOVERED", set())
 
     class Info:

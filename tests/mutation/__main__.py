@@ -1,4 +1,7 @@
-"""Mutation testing of the trusted floors: `python -m tests.mutation [--only FILE] [--every N] [--log PATH]`."""
+"""Mutation testing of the trusted floors: `python -m tests.mutation [--only FILE] [--every N] [--log PATH]`.
+
+Every mutant must be found by a test, or stand in `equivalent.toml` with the reason why it says the same.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,10 @@ import os
 import resource
 import signal
 import sys
+import tempfile
 import tomllib
 from collections import Counter
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_loader
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,26 +21,27 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.mutation.mutants import Mutant, mutants_of
-from tests.mutation.trial import HERE, KILLED, MEMORY, SURVIVED, Short, Trial, module_name, run_until_failure
+from tests.mutation.trial import HERE, KILLED, MEMORY, Short, Trial, module_name, run_until_failure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from importlib.machinery import ModuleSpec
     from types import ModuleType
 
-#: The trusted floors, and the tests that stand for them.
+#: The trusted floors.
 TRUSTED = [
     HERE / "symobs" / "certificate.py",
     *sorted((HERE / "symobs" / "derivation").glob("*.py")),
     *sorted((HERE / "symobs" / "method").glob("*.py")),
 ]
-#: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all can be tried.
+#: The tests that stand for each of their files, by its name; small and direct ones, so that all mutants can be tried.
 TESTS = {
     "certificate.py": "certificate trusted_floors",
     "check.py": "derivation trusted_steps trusted_floors",
     "steps.py": "derivation trusted_steps",
-    "strata.py": "derivation trusted_steps trusted_floors",
-    "properties.py": "derivation trusted_steps stability",
-    "region_claims.py": "derivation trusted_steps region_conditions",
+    "strata.py": "derivation trusted_steps",
+    "properties.py": "trusted_properties",
+    "region_claims.py": "trusted_properties",
     "regions.py": "trusted_steps stability_region region_bounds",
     "flows.py": "derivation trusted_steps diagrams",
     "places.py": "pictures trusted_steps",
@@ -51,68 +55,73 @@ TESTS = {
     "result.py": "derivation trusted_results",
 }
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
+OPTIONS = ["-q", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
 
 
 def main(arguments: Sequence[str]) -> int:
     """Try the mutants asked for, and print what became of them; 1 where one survives that is not known to be equal."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
-    parser.add_argument("--only", action="append", default=[], help="a part of a file's name, like check.py")
+    parser.add_argument("--only", action="append", default=[], help="a part of a file's path, like check.py")
     parser.add_argument("--every", type=int, default=1, help="every N-th mutant only")
     parser.add_argument("--match", default="", help="a part of the mutant's text")
     parser.add_argument("--again", type=Path, help="all but those that were found in this log")
     parser.add_argument("--log", type=Path, help="a file to which each mutant is written as it was tried")
-    parser.add_argument("--map", type=Path, default=Path("/tmp/symobs-mutation-map.json"), help="where the map is kept")  # noqa: S108
+    parser.add_argument("--map", type=Path, help="where to keep which tests touch which lines, for the next run")
     chosen = parser.parse_args(arguments)
     paths = [path for path in TRUSTED if not chosen.only or any(part in str(path) for part in chosen.only)]
-    equivalent = known_equivalent()
-    mutants = [m for path in paths for m in mutants_of(path)]
+    mutants = [m for path in paths for m in mutants_of(path) if chosen.match in m.key][:: chosen.every]
     if chosen.again:
         lines = [line.split("\t") for line in chosen.again.read_text(encoding="utf-8").splitlines()]
-        killed = {(where.split(":")[0], key) for outcome, where, key, _ in lines if outcome == KILLED}
-        mutants = [m for m in mutants if (m.path.relative_to(HERE).as_posix(), m.key) not in killed]
-    log = chosen.log.open("a", encoding="utf-8") if chosen.log else sys.stdout
-    counts: dict[str, Counter[str]] = {path.relative_to(HERE).as_posix(): Counter() for path in paths}
-    output = os.dup(1)
-
-    def report(mutant: Mutant, outcome: str, by: str) -> None:
-        name = mutant.path.relative_to(HERE).as_posix()
-        known = (name, mutant.key) in equivalent
-        counts[name]["equivalent" if known and outcome != KILLED else outcome] += 1
-        if known and outcome == KILLED:
-            outcome = "NOT EQUIVALENT"
-            counts[name][outcome] += 1
-        if chosen.log or outcome != KILLED:
-            os.write(
-                output if not chosen.log else log.fileno(),
-                f"{'equivalent' if known and outcome != 'NOT EQUIVALENT' else outcome}\t{name}:{mutant.line}\t{mutant.key}\t{by}\n".encode(),
-            )
-
-    wanted = [m for m in mutants if chosen.match in m.key][:: chosen.every]
+        found = {(where.split(":")[0], key) for outcome, where, key, _ in lines if outcome == KILLED}
+        mutants = [m for m in mutants if (m.file, m.key) not in found]
+    report = Report(chosen.log)
     names = sorted({name for path in paths for name in TESTS.get(path.name, "").split()})
-    tests = [str(path) for name in names if (path := HERE / "tests" / f"test_{name}.py").exists()]
-    trial = Trial(TRUSTED, wanted, report, chosen.map)
-    options = ["-q", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
-    code = pytest.main([*options, *tests], plugins=[Short(), trial])
-    total: Counter[str] = Counter()
-    for name, count in counts.items():
-        total += count
-        if count:
-            print(f"{name}: {_said(count)}")
-    print(f"all: {_said(total)}")
-    return int(code) or int(total[SURVIVED] + total["no test touches it"] + total["NOT EQUIVALENT"] > 0)
+    tests = [str(HERE / "tests" / f"test_{name}.py") for name in names]
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json")
+        code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
+    report.close()
+    return int(code) or int(report.is_bad)
 
 
-def _said(count: Counter[str]) -> str:
-    tried = sum(n for name, n in count.items() if name != "NOT EQUIVALENT")
-    return f"{tried} tried, " + ", ".join(f"{n} {name}" for name, n in sorted(count.items()))
+class Report:
+    """Counts what became of the mutants of each file, and writes down each as it was tried."""
+
+    def __init__(self, log: Path | None) -> None:
+        self.known = {(name, key) for name, keys in known_equivalent().items() for key in keys}
+        self.counts: dict[str, Counter[str]] = {}
+        self.is_all = log is not None
+        self.log = log.open("a", encoding="utf-8") if log else os.fdopen(os.dup(1), "w", encoding="utf-8")
+
+    def __call__(self, mutant: Mutant, outcome: str, by: str) -> None:
+        """Note one; a mutant that was thought to say the same and is found does not."""
+        if (mutant.file, mutant.key) in self.known:
+            outcome = "equivalent" if outcome != KILLED else "found, though thought equivalent"
+        self.counts.setdefault(mutant.file, Counter())[outcome] += 1
+        if self.is_all or outcome not in {KILLED, "equivalent"}:
+            print(f"{outcome}\t{mutant.file}:{mutant.line}\t{mutant.key}\t{by}", file=self.log, flush=True)
+
+    @property
+    def total(self) -> Counter[str]:
+        """What became of all."""
+        return sum(self.counts.values(), Counter())
+
+    @property
+    def is_bad(self) -> bool:
+        """Whether one was neither found nor is equivalent."""
+        return not self.total.keys() <= {KILLED, "equivalent"}
+
+    def close(self) -> None:
+        """Print the figures of each file, and of all."""
+        self.log.close()
+        for name, count in (*self.counts.items(), ("all", self.total)):
+            said = ", ".join(f"{number} {outcome}" for outcome, number in sorted(count.items()))
+            print(f"{name}: {count.total()} tried, {said}")  # noqa: T201 - the report
 
 
-def known_equivalent() -> set[tuple[str, str]]:
-    """Return the mutants that are known to say the same."""
-    if not EQUIVALENT.exists():
-        return set()
-    found = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
-    return {(name, key) for name, keys in found.items() for key in keys}
+def known_equivalent() -> dict[str, dict[str, str]]:
+    """Return the mutants that are known to say the same, with the reasons, by file."""
+    return dict(tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")))
 
 
 # -- a process of its own -----------------------------------------------------------------------------------------------
@@ -156,9 +165,8 @@ def one(path: str, key: str, limit: str) -> int:
     names = sys.stdin.read().split("\n")
     some = _Some(names)
     files = sorted({str(HERE / name.split("::")[0]) for name in names})
-    options = ["-q", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
-    code = pytest.main([*options, *files], plugins=[Short(), some])
-    print(some.found or f"exit {int(code)}")
+    code = pytest.main([*OPTIONS, *files], plugins=[Short(), some])
+    print(some.found or f"exit {int(code)}")  # noqa: T201 - read by the process that called
     return 1 if some.found or code not in {0, 5} else 0
 
 

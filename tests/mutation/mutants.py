@@ -9,11 +9,11 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from pathlib import Path
     from types import CodeType
 
 _COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
@@ -46,6 +46,8 @@ _OTHER_FUNCTIONS = {"all": "any", "any": "all", "min": "max", "max": "min"}
 _NOT_UNWRAPPED = {"list", "tuple", "dict", "iter", "isinstance", "len", "range", "next"}
 #: What only writes the text of an error, or decides how much is kept in memory.
 _TEXTS = {"reject", "lru_cache"}
+#: The order of the arguments does not matter, or makes no sense.
+_SYMMETRICAL = {"isinstance", "max", "min", "agree", "differ", "never_together_zero"}
 _LONGEST = 110
 
 
@@ -64,6 +66,11 @@ class Mutant:
     where: str
     change: str
     is_inside: bool
+
+    @property
+    def file(self) -> str:
+        """The file within the repository."""
+        return self.path.relative_to(Path(__file__).parents[2]).as_posix()
 
     @property
     def key(self) -> str:
@@ -128,7 +135,7 @@ class _Finder:
         for index, statement in enumerate(getattr(owner, field)):
             self.statement(statement, (owner, field, index), where)
 
-    def statement(self, node: ast.stmt, slot: tuple[Any, str, int], where: str) -> None:
+    def statement(self, node: ast.stmt, slot: tuple[Any, str, int], where: str) -> None:  # noqa: PLR0915 - a case a kind
         """Note the mutants of a statement: it left out, and those inside."""
         match node:
             case ast.FunctionDef(name=name):
@@ -214,14 +221,10 @@ class _Finder:
 
     def returned(self, node: ast.Return, where: str) -> None:
         """Note other values to return, by the annotation."""
-        others: list[ast.expr] = {
-            "bool": [_constant(value=True), _constant(value=False)],
-            "str": [_constant("")],
-            "int": [_constant(0)],
-        }.get(self.returns[-1], [_constant(None)])
-        if self.returns[-1].startswith("tuple"):
-            others = [ast.Tuple([], ast.Load())]
-        for other in others:
+        values: dict[str, tuple[object, ...]] = {"bool": (True, False), "str": ("",), "int": (0,)}
+        others = [_constant(value) for value in values.get(self.returns[-1], (None,))]
+        is_tuple = self.returns[-1].startswith("tuple")
+        for other in [ast.Tuple([], ast.Load())] if is_tuple else others:
             if ast.unparse(node.value or other) != ast.unparse(other):
                 self.note((node, "value", None), other, where, f"return {_text(node.value or other)} -> {_text(other)}")
 
@@ -310,7 +313,7 @@ class _Finder:
             if len(node.args) >= least:
                 self.note((node, "args", index), None, where, f"{_text(node)} without {_text(node.args[index])}")
         for index, (first, second) in enumerate(zip(node.args, node.args[1:], strict=False)):
-            if ast.unparse(first) != ast.unparse(second) and name != "isinstance":
+            if ast.unparse(first) != ast.unparse(second) and name not in _SYMMETRICAL:
                 exchanged = [*node.args[:index], second, first, *node.args[index + 2 :]]
                 says = f"{_text(node)}: {_text(second)} before {_text(first)}"
                 self.note((node, "args", None), exchanged, where, says)

@@ -99,7 +99,8 @@ class Trial:
         found = {name for line in touched for name in lines.get(line, ())} & items.keys()
         last = self.lately[mutant.where]
         order = sorted(found, key=lambda name: (-last.index(name) - 1 if name in last else 0, self.seconds[name]))
-        chosen, total = [], 0.0
+        chosen: list[str] = []
+        total = 0.0
         for name in order:
             if self.seconds[name] > LONGEST_TEST:
                 continue
@@ -277,8 +278,6 @@ def _map(items: list[pytest.Item], paths: Sequence[Path], known: dict[str, Any],
         begun = _seconds()
         passed = _passes(item)
         spent = _seconds() - begun
-        if spent > 3 or not passed:
-            os.write(9, f"{item.nodeid} {spent} {passed}\n".encode())
         if passed:
             known["seconds"][item.nodeid] = round(spent, 3)
     tracer.stop()
