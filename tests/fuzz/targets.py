@@ -249,6 +249,11 @@ def _options(source: Random) -> list[str]:
         ("--templates", (".", "none", "")),
     )
     chosen = [(name, source.choice(values)) for name, values in offered if source.random() < 0.2]
+    if source.random() < 0.05:  # each of them asks for a process of its own, where it has a meaning
+        budgets = ("--timeout", "--memory")
+        chosen.append(
+            (source.choice(budgets), source.choice(("60", "2000", "x", "-1", "0", "nan", "inf", "1e999", "", "1")))
+        )
     return [part for option in chosen for part in option]
 
 

@@ -106,13 +106,15 @@ class Watch:
             return ""
         if event == "open":
             return self._fault_of_open(*arguments)
+        if self.works and event in _PROCESSES and "symobs.cli.budget" in frames[:3]:
+            return ""
         if event in _CODE and self.works and any(name.startswith("jinja2") for name in frames[:4]):
             return ""
         return f"{event} {str(arguments)[:80]}"
 
     def _fault_of_open(self, path: object, mode: object, flags: object) -> str:
         is_written = isinstance(flags, int) and bool(flags & _WRITING)
-        if isinstance(path, int) or path is None:
+        if isinstance(path, int) or path is None or (self.works and path == os.devnull):
             return ""
         place = os.path.realpath(os.fsdecode(path))  # type: ignore[arg-type]
         allowed = (self.writes,) if is_written else (*self.reads, self.writes)
@@ -131,6 +133,10 @@ class Watch:
 #: What writing a file whole needs: a name of its own, rights, and its place.
 _FILES = {"os.rename", "os.remove", "os.chmod", "os.mkdir", "os.truncate", "tempfile.mkstemp", "os.unlink", "os.rmdir"}
 _FILES |= {"tempfile.mkdtemp", "shutil.rmtree"}
+
+
+#: What `--timeout` and `--memory` need: a process of their own, and its end.
+_PROCESSES = {"os.fork", "os.kill", "os.killpg", "signal.pthread_kill"}
 
 
 def _modules() -> list[str]:
