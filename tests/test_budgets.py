@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -197,9 +198,9 @@ def test_an_error_of_ours_stays_one() -> None:
 @pytest.mark.parametrize(
     ("text", "option", "amount", "said"),
     [
-        (GENERIC, "--timeout", "2", "2 seconds were not enough, at work on observer"),
-        (GENERIC, "--memory", "300", "300 MB of memory were not enough, at work on observer"),
-        (NUMERIC, "--timeout", "2", "2 seconds were not enough, at work on observer"),
+        (GENERIC, "--timeout", "2", "2 seconds were not enough"),
+        (GENERIC, "--memory", "300", "300 MB of memory were not enough"),
+        (NUMERIC, "--timeout", "2", "2 seconds were not enough"),
     ],
     ids=["generic in time", "generic in memory", "numbers in time"],
 )
@@ -208,7 +209,7 @@ def test_hostile_problems_end_undecided(text: str, option: str, amount: str, sai
     (tmp_path / "page.tex").write_text("before", encoding="utf-8")
     run = unbounded("solve", "hard.toml", "-o", "page.tex", option, amount, folder=tmp_path)
     assert run[0] == 5
-    assert run[1].startswith(f"hard.toml: undecided: {said}; give more with {option}, ")
+    assert re.match(f"hard.toml: undecided: {said}(, at work on observer)?; give more with {option}, ", run[1])
     assert run[1].count("\n") == 1
     assert (tmp_path / "page.tex").read_text(encoding="utf-8") == "before"
     assert {path.name for path in tmp_path.iterdir()} == {"hard.toml", "page.tex"}
@@ -240,9 +241,9 @@ def test_memory_that_ends_without_a_budget_is_undecided_too(monkeypatch: pytest.
 
 
 def test_a_problem_that_takes_too_much_keeps_its_place_with_its_question(hard: Path) -> None:
-    run = inside("sheet", str(SERVO), str(hard), str(SERVO), "--timeout", "10", "--format", "json")
+    run = inside("sheet", str(SERVO), str(hard), str(SERVO), "--timeout", "20", "--format", "json")
     assert run.code == 5
-    assert run.err.startswith(f"{hard}: undecided: 10 seconds were not enough; give more with --timeout")
+    assert run.err.startswith(f"{hard}: undecided: 20 seconds were not enough; give more with --timeout")
     assert run.err.count("\n") == 1
     first, second, third = json.loads(run.out)["problems"]
     assert first["results"] == third["results"]
