@@ -46,7 +46,7 @@ from symobs.formula import (
 )
 from symobs.region.routh import routh_table
 from tests import drawn_by_hand as hand
-from tests.steps import A_IS, C_IS, CHI, START, A, C, F, X, a, c, checked, literal, refused, s, said, slot
+from tests.steps import A_IS, C_IS, CHI, START, A, C, F, X, a, b, c, checked, literal, refused, s, said, slot
 
 if TYPE_CHECKING:
     from symobs.derivation import Step
