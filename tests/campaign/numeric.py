@@ -35,6 +35,7 @@ _WORTH = 1000  # what the numbers may be off by, in units of how far they moved
 _ROUNDING = 2e-13
 _WORTHLESS = 1e-3  # relative to the largest entry
 _ZERO, _NONZERO = 1e-10, 1e-7  # of singular values, relative to the largest
+_NOTHING = 1e-4  # the largest singular value of what is not 0 but for rounding, entries being about 1
 
 
 @dataclass
@@ -83,7 +84,7 @@ def _rank(name: str, claimed: int, singular: Numbers) -> Difference:
     top = sizes.max(initial=0.0)
     if not np.isfinite(top):
         return Untold(f"{name} is not finite")
-    relative = sizes / top if top else sizes
+    relative = sizes / max(top, _NOTHING)
     if np.any((relative > _ZERO) & (relative < _NONZERO)):
         return Untold(f"{name} is not clear")
     there = int(np.sum(relative >= _NONZERO))
@@ -167,11 +168,18 @@ def _rank_test(case: Case, claims: Claims) -> None:
     modes = case.answer["unobservable_modes" if observed else "uncontrollable_modes"]
     claims.values["hidden"] = case.polynomial_of(modes)
     if case.has("determinant"):
-        claims.values["determinant"] = case.row([case.answer["determinant"]])
+        _determinant(case, claims, matrix)
     if len(kernel.T) != order - rank:
         claims.wrong.append(f"{len(kernel.T)} vectors span the kernel of a matrix of rank {rank} and order {order}")
     if case.verdict in {"yes", "no"} and (case.verdict == "yes") != (rank == order):
         claims.wrong.append(f"the verdict is {case.verdict}, the rank {rank}, the order {order}")
+
+
+def _determinant(case: Case, claims: Claims, matrix: Numbers) -> None:
+    """The determinant in units of what rounding is relative to: the norm to the power of the order."""
+    size = max(float(np.linalg.norm(matrix)), 1e-6) ** len(matrix)
+    claims.exact["size"] = np.array([[complex(size)]])
+    claims.values["determinant"] = case.row([case.answer["determinant"]]) / size
 
 
 def _modes(case: Case, claims: Claims) -> None:
@@ -298,7 +306,7 @@ def _gramian(case: Case, claims: Claims) -> None:
         claims.exact["horizon"] = case.row([str(horizon).replace("^", "**")])
     claims.values[f"{kind} gramian"] = case.matrix("matrix")
     if case.has("determinant"):
-        claims.values["determinant"] = case.row([case.answer["determinant"]])
+        _determinant(case, claims, claims.values[f"{kind} gramian"])
     if "rank" in case.answer:
         claims.ranks["rank"] = int(case.answer["rank"])
     if case.has("finite_sum"):
@@ -335,6 +343,7 @@ def _gain(case: Case, claims: Claims) -> None:
     if not case.has(letter):
         if not given:
             claims.values["no gain"] = np.ones((1, 1))
+            _as_desired(case, claims)
         return
     gain = claims.given[letter] = case.matrix(letter)
     claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
@@ -351,6 +360,16 @@ def _gain(case: Case, claims: Claims) -> None:
         claims.wrong.append(f"{letter} has the shape {gain.shape}")
     _member(case, claims, letter)
     _stable(case, claims)
+
+
+def _as_desired(case: Case, claims: Claims) -> None:
+    """Where there is no gain the polynomial and the poles are those that were asked for."""
+    said = [case.polynomial(case.answer["polynomial"])] if case.has("polynomial") else []
+    said += [case.polynomial_of(case.answer["poles"])] if case.answer.get("poles") else []
+    phi = claims.exact["phi"]
+    for each in said:
+        if each.shape != phi.shape or not np.allclose(each, phi, rtol=1e-9, atol=1e-12):
+            claims.wrong.append(f"{each[0]} is said to be asked for, {phi[0]} is")
 
 
 def _member(case: Case, claims: Claims, letter: str) -> None:
@@ -387,6 +406,7 @@ def _reduced_order_observer(case: Case, claims: Claims) -> None:
     claims.exact["phi"] = case.desired()
     if not case.has("L"):
         claims.values["no gain"] = np.ones((1, 1))
+        _as_desired(case, claims)
         return
     outputs = claims.given["C"].shape[0]
     for letter in "LTFGHM":

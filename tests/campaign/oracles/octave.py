@@ -66,7 +66,7 @@ end
 _RANK_TEST = """
 {O} tell("matrix", O); [s, q] = {seen}; tell("rank", s); tell("hidden", q);
 tell("kernel", {kernel}); tell("kernel's rank", svd(N));
-if rows(O) == columns(O), tell("determinant", det(O)); end
+if exist("size_"), tell("determinant", det(O) / size_); end
 """
 
 _MODES = """
@@ -194,7 +194,8 @@ if {finite}
 else
   X = gram(ss(A, {B}, {C}, zeros({size}), tsam), "{which}"); tell("infinite gramian", X);
 end
-tell("determinant", det(X)); tell("rank", seen(Z, {root})); Q = obsv(Z, {root}); tell("finite sum", Q' * Q);
+if exist("size_"), tell("determinant", det(X) / size_); end
+tell("rank", seen(Z, {root})); Q = obsv(Z, {root}); tell("finite sum", Q' * Q);
 """
 
 _PARTS = {
@@ -241,7 +242,7 @@ def _judged(case: Case, claims: Claims, reply: octave.Reply) -> Difference:
 
 # -- questions ---------------------------------------------------------------------------------------------------------
 
-_RENAMED = {"sign": "sign_", "error": "error_"}
+_RENAMED = {"sign": "sign_", "size": "size_"}
 
 
 def question(case: Case, claims: Claims) -> str:

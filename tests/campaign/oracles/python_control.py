@@ -111,8 +111,8 @@ def _rank_test(case: Case, g: Data, exact: Data) -> Found:
     if "N" in exact:
         found["kernel"] = (matrix if observed else matrix.T) @ exact["N"]
         found["kernel's rank"] = _singular(exact["N"])
-    if matrix.shape[0] == matrix.shape[1]:
-        found["determinant"] = _row(np.linalg.det(matrix))
+    if "size" in exact:
+        found["determinant"] = _row(np.linalg.det(matrix)) / exact["size"]
     return found
 
 
@@ -297,7 +297,9 @@ def _gramian(case: Case, g: Data, exact: Data) -> Found:
     else:
         horizon, name = exact["horizon"][0, 0].real, "finite gramian"
         matrix = _sum(A, C, round(horizon)) if case.discrete else _integral(A, C, horizon)
-    found = {name: matrix, "determinant": _row(np.linalg.det(matrix)), "finite sum": _sum(A, C, len(A))}
+    found = {name: matrix, "finite sum": _sum(A, C, len(A))}
+    if "size" in exact:
+        found["determinant"] = _row(np.linalg.det(matrix)) / exact["size"]
     return found | {"rank": _hidden(A, C)[0]}
 
 
