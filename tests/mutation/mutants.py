@@ -157,7 +157,8 @@ class _Finder:
                 self.expression(node.iter, (node, "iter", None), where)
                 self.statements(node, "body", where)
             case ast.Return():
-                self.note(slot, ast.Pass(), where)
+                if not (isinstance(node.value, ast.Constant) and node.value.value is None):
+                    self.note(slot, ast.Pass(), where)
                 if node.value is not None:
                     self.returned(node, where)
                     self.expression(node.value, (node, "value", None), where)
