@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from symobs import StateSpace, observer
+from symobs.derivation import pole_paths
 from symobs.derivation.pictures import faults, is_faithful
 from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.responses import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Complex, Matrix, Scalar
 from symobs.formula import Environment, Letter, Literal, Product
 from symobs.picture import Course, End, LinePicture, Mark, PoleMap, RegionPicture, TimeResponse
 from tests import drawn_by_hand as hand
@@ -235,9 +237,86 @@ def test_all_poles_are_drawn_each_once() -> None:
 
 def test_a_pole_drawn_roughly_is_near_enough_and_no_more() -> None:
     good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
-    for off, is_near in ((Fraction(1, 21), True), (Fraction(1, 19), False)):
+    for off, is_near in ((Fraction(1, 20), True), (Fraction("0.0501"), False)):
         path = ((off, Fraction(0)), *good.paths[0][1:])
         assert (poles(replace(good, paths=(path,)), s + k) == []) == is_near
+
+
+def test_every_path_is_looked_at_and_the_narrower_side_counts() -> None:
+    first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
+    polynomial = (s + k) * (s + k + 1)
+    for paths in ((first, ((-1, 0), (-2, 0), (-4, 0))), (((0, 0), (-1, 0), (-4, 0)), second)):
+        assert poles(straight(*paths, along=((0, 1, 2),) * 2), polynomial)[0] == "(-4, 0) is a pole at k = 2"
+    assert poles(straight(first, second, along=((0, 1, 2), (0, 2))), polynomial) == ["k goes from 0 to 2"]
+    good = straight(first, along=((0, 1, 2),))
+    flat = replace(good, window=(good.window[0], (Fraction(-1), Fraction(1))))
+    for off, is_near in ((Fraction(1, 100), True), (Fraction(1, 50), False)):
+        path = ((off, Fraction(0)), *good.paths[0][1:])
+        assert (poles(replace(flat, paths=(path,)), s + k) == []) == is_near
+
+
+def test_poles_may_meet_at_one_value() -> None:
+    """s² + 2 s + k has 0 and −2, and at k = 1 twice −1."""
+    meeting = straight(((0, 0), (-1, 0)), ((-2, 0), (-1, 0)), along=((0, 1),) * 2)
+    assert poles(replace(meeting, values=(Fraction(0), Fraction(1))), s**2 + 2 * s + k) == []
+
+
+def test_a_root_is_surely_near() -> None:
+    """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
+
+    def is_near(*coefficients: Any, within: Any) -> bool:
+        shifted = [Complex(Scalar.of(Fraction(c)), Scalar.of(0)) for c in coefficients]
+        return pole_paths._has_root_near(shifted, Fraction(within))
+
+    assert is_near(1, 2, 0, within=1)
+    assert not is_near(1, 2, 0, within="0.99")
+    assert is_near(1, 0, 1, within=1)
+    assert not is_near(1, 0, 1, within="1/2")
+    assert is_near("2/5", 1, within="1/2")
+    assert not is_near("3/5", 1, within="1/2")
+    assert not is_near(1, 1, 0, within=1)
+    assert not is_near(0, 0, within=1)
+    assert is_near(0, 1, within=1)
+
+
+def test_moduli_and_distances() -> None:
+    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(4))) == 25
+    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(-1))) == 10
+    assert pole_paths._distance(at(1, 2), at(4, 6)) == 25
+    assert pole_paths._distance(at(1, 3), at(0, -2)) == 26
+
+
+def test_values_that_all_paths_share_are_taken_from_the_middle_on() -> None:
+    along = [tuple(map(Fraction, values)) for values in ((0, 1, 2, 3, 4), (0, 1, 2, 3, 4, 5))]
+    assert list(pole_paths._common(SimpleNamespace(along=along))) == [2, 3, 1, 4, 0]  # type: ignore[arg-type]
+    along[1] = tuple(map(Fraction, (0, 1, 9, 3, 4)))
+    assert list(pole_paths._common(SimpleNamespace(along=along))) == [3, 1, 4, 0]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("places", "are_all"),
+    [
+        (("1", "-1"), True),
+        (("0.75", "-0.75"), True),
+        (("0.74", "-0.74"), True),
+        (("0.7", "-0.7"), False),
+        (("1", "0.99"), False),
+        (("0", "-1"), False),
+        (("1", "1"), False),
+    ],
+)
+def test_discs_that_hold_a_root_lie_apart(places: tuple[str, str], *, are_all: bool) -> None:
+    """Of s² − 1: each disc has the square of its radius 4 |c₀/c₁|²."""
+    drawn = SimpleNamespace(paths=[(at(x, 0),) for x in places], along=((Fraction(0),),) * 2, moved="k")
+    assert pole_paths._are_all(drawn, s**2 - 1, "s", 0) == are_all  # type: ignore[arg-type]
+
+
+def test_discs_grow_with_the_degree() -> None:
+    """Of s³ − s: the square of the radius is 9 |c₀/c₁|²."""
+    for place, are_all in (("0.85", False), ("0.9", True)):
+        paths = [(at(x, 0),) for x in ("0", place, f"-{place}")]
+        drawn = SimpleNamespace(paths=paths, along=((Fraction(0),),) * 3, moved="k")
+        assert pole_paths._are_all(drawn, s**3 - s, "s", 0) == are_all  # type: ignore[arg-type]
 
 
 # -- courses ------------------------------------------------------------------------------------------------------------
