@@ -121,7 +121,21 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         return own == [K, L] and (found if isinstance(found, list) else [[found]]) == F
     if isinstance(part, TrackingDesign):
         return _is_followed(part, answer, A, B, world)
-    return False
+    return part.task in HOLDS and _holds_by_definition(part, answer, world)
+
+
+def _holds_by_definition(part: Result, answer: Mapping[str, Any], world: World) -> bool:
+    """Hold what a result would say with these answers to the plant, and to the polynomial asked for, at a point."""
+    told = replace(part, answer=answer)
+    values = [value for value in answer.values() if isinstance(value, (Matrix, Scalar))]
+    names = set(part.plant.field.names).union(*(value.names for value in values)) - {part.plant.variable}
+    desired = getattr(part, "desired", None)
+    wanted = {} if desired is None else {"polynomial": desired.polynomial}
+    try:
+        HOLDS[part.task](told, Setting.of(part.plant, wanted, {name: world.number(name) for name in names}))
+    except AssertionError:
+        return False
+    return True
 
 
 def _is_region(part: StabilityRegion, answer: Mapping[str, Any], world: World) -> bool:

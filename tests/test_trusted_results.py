@@ -17,6 +17,7 @@ from symobs.errors import CertificateRejected, DerivationRejected, InputError, U
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Letter
 from symobs.method import (
+    Case,
     Document,
     Method,
     Result,
@@ -92,6 +93,8 @@ def test_a_result_cannot_be_changed() -> None:
         found.answer["number"] = Scalar.of(4)  # type: ignore[index]
     with pytest.raises(FrozenInstanceError):
         found.answer = given  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError):
+        Case((), {}, found).result = None  # type: ignore[misc]
     assert found != replace(found)
     assert hash(found) == hash(found)
 
@@ -153,6 +156,14 @@ def test_a_page_is_checked() -> None:
         _ = lying.derivation
     assert squared(Scalar.of(3), Scalar.of(9)).derivation.steps == (Define(said(F, 9)),)
 
+    class Driven(Squared):
+        free_signals = {"v": 1}  # noqa: RUF012 - a property there
+
+        def write(self, page: Page) -> None:
+            page.steps = [Define(said(Letter("y"), Letter("v")))]
+
+    assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().knows("y")
+
 
 # -- conditions ---------------------------------------------------------------------------------------------------------
 
@@ -199,7 +210,19 @@ def test_answers_leave_as_sympy_objects() -> None:
     assert own.L.free_symbols == {x}
     case = observability(PLANT)
     assert [stratum.result for stratum in case.cases] == [inner.result for inner in case.case_tree]
-    assert all(isinstance(when, sympy.Basic) for stratum in case.cases for when in stratum.when)
+    for stratum, inner in zip(case.cases, case.case_tree, strict=True):
+        assert len(stratum.when) == len(inner.when) > 0
+        assert all(isinstance(when, sympy.Basic) for when in stratum.when)
+    with pytest.raises(AttributeError, match="has no attribute '_own'"):
+        _ = object.__new__(Squared)._own
+
+    class Fieldless(Squared):
+        @property
+        def fields(self) -> Any:
+            raise AttributeError
+
+    with pytest.raises(AttributeError, match="has no attribute 'fields'"):
+        _ = Fieldless(SERVO, "m", dict(found.answer)).fields
     assert {"square", "conditions", "cases", "to", "derivation"} <= set(dir(found))
 
 
@@ -220,6 +243,11 @@ def test_a_document_is_told_in_its_convention() -> None:
     L = found.answer["L"]
     assert derivation.check().values["L"] == -L
     assert found.derivation.check().values["L"] == L
+    told: list[Any] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("symobs.method.result.render", lambda *asked: told.append(asked))
+        found.to("text", convention="S1", detail="outline")
+    assert told == [(Document("", "", (found,), convention_named("S1"), detail="outline"), "text")]
     assert found.to("latex", convention="S1") != found.to("latex") == found.to("latex", detail="full")
     assert len(found.to("latex", detail="answer")) < len(found.to("latex"))
     with pytest.raises(FrozenInstanceError):

@@ -1,5 +1,6 @@
 """Lies about random designs: `python -m tests.mutation.claims --designs 1000 [--lines 60] [--log PATH]`.
 
+With `--examples` about the worked examples instead; with `--match NAME` about some of them.
 Every entry of every answer and witness is changed in every way of `tests.mutations`, and of the lines of the page as many
 as are asked for, at even distances (all with `--lines 0`).  What is not rejected must be true as well by other means.
 """
@@ -7,6 +8,7 @@ as are asked for, at even distances (all with `--lines 0`).  What is not rejecte
 from __future__ import annotations
 
 import argparse
+import itertools
 import random
 import sys
 from collections import defaultdict
@@ -17,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from symobs import StateSpace
 from symobs.errors import SymobsError
 from symobs.method import tasks
+from symobs.problem import read
 from tests.asking import is_for, specification
 from tests.lies import Count, try_answers, try_lines, try_witnesses
 from tests.mutations import parts_of
@@ -114,10 +117,8 @@ def _poles(generator: random.Random, order: int, *, small: bool) -> list[str]:
     return [generator.choice(reals) for _ in range(order)]
 
 
-def try_design(design: Drawn, answers: Count, lines: Count, most_lines: int) -> None:
-    """Tell all lies about one design."""
-    result = design.solve()
-    label = f"design {design.number} ({design.asked}, {design.kind})"
+def try_result(result: Result, label: str, answers: Count, lines: Count, most_lines: int) -> None:
+    """Tell all lies about one result."""
     for where, part in parts_of(result, f"{label} "):
         try_answers(part, where, answers, ALL)
         try_witnesses(part, where, answers, ALL)
@@ -131,11 +132,24 @@ def tried(numbers: Sequence[int], most_lines: int) -> Iterator[tuple[Drawn, Coun
     for number in numbers:
         design, answers, lines = drawn(number), Count(), Count()
         try:
-            design.solve()
+            result = design.solve()
         except SymobsError:
             continue
-        try_design(design, answers, lines, most_lines)
+        label = f"design {design.number} ({design.asked}, {design.kind})"
+        try_result(result, label, answers, lines, most_lines)
         yield design, answers, lines
+
+
+def tried_examples(match: str, most_lines: int) -> Iterator[tuple[str, Count, Count]]:
+    """Yield each worked example with what became of the lies about it, the shortest first."""
+    files = sorted(
+        (Path(__file__).parents[2] / "worked_examples").glob(f"*{match}*.toml"), key=lambda p: p.stat().st_size
+    )
+    for path in files:
+        answers, lines = Count(), Count()
+        for result in read(path.read_text(encoding="utf-8")).solve():
+            try_result(result, path.stem, answers, lines, most_lines)
+        yield path.stem, answers, lines
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -143,35 +157,51 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.mutation.claims", description=__doc__)
     parser.add_argument("--designs", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--examples", action="store_true", help="the worked examples instead")
+    parser.add_argument("--match", default="", help="a part of an example's name")
     parser.add_argument("--lines", type=int, default=0, help="how many changes of the lines of a page, 0 for all")
     parser.add_argument("--log", type=Path, help="a file for the figures as they grow")
     chosen = parser.parse_args(arguments)
-    total: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0, 0])
-    survived: list[str] = []
-    designs, number = 0, chosen.first
-    while designs < chosen.designs:
-        for design, answers, lines in tried([number], chosen.lines):
-            designs += 1
-            for key, count in ((f"{design.asked}, answers", answers), (f"{design.asked}, lines", lines)):
-                _add(total[key], count)
-                _add(total["all answers" if count is answers else "all lines"], count)
-                survived += count.lies
-        number += 1
-        if chosen.log and (designs % 10 == 0 or designs == chosen.designs):
-            chosen.log.write_text(_said(designs, total, survived), encoding="utf-8")
-    print(_said(designs, total, survived))  # noqa: T201 - the report
-    return int(bool(survived))
+    table = Table(chosen.log)
+    if chosen.examples:
+        for name, answers, lines in tried_examples(chosen.match, chosen.lines):
+            table.add(name, answers, lines)
+    else:
+        numbers = itertools.count(chosen.first)
+        while table.designs < chosen.designs:
+            for design, answers, lines in tried([next(numbers)], chosen.lines):
+                table.add(design.asked, answers, lines)
+    print(table)  # noqa: T201 - the report
+    return int(bool(table.survived))
 
 
-def _add(row: list[int], count: Count) -> None:
-    for index, number in enumerate((1, count.tried, count.rejected, count.true, len(count.lies))):
-        row[index] += number
+class Table:
+    """The figures as they grow: by what was asked, and all together."""
 
+    def __init__(self, log: Path | None) -> None:
+        self.log = log
+        self.rows: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0, 0, 0])
+        self.survived: list[str] = []
 
-def _said(designs: int, total: dict[str, list[int]], survived: list[str]) -> str:
-    head = f"{designs} designs\n{'':40}{'designs':>9}{'tried':>9}{'rejected':>9}{'true':>9}{'survived':>9}\n"
-    rows = [f"{key:40}" + "".join(f"{number:9}" for number in row) for key, row in sorted(total.items())]
-    return head + "\n".join(rows) + "\n" + "\n".join(survived[:500]) + "\n"
+    @property
+    def designs(self) -> int:
+        """How many designs were lied about."""
+        return self.rows["all answers"][0]
+
+    def add(self, name: str, answers: Count, lines: Count) -> None:
+        """Add what became of the lies about one design, and write all down."""
+        for kind, count in (("answers", answers), ("lines", lines)):
+            for key in (f"{name}, {kind}", f"all {kind}"):
+                numbers = (1, count.tried, count.rejected, count.true, len(count.lies))
+                self.rows[key] = [old + new for old, new in zip(self.rows[key], numbers, strict=True)]
+            self.survived += count.lies
+        if self.log:
+            self.log.write_text(f"{self}\n", encoding="utf-8")
+
+    def __str__(self) -> str:
+        head = "".join(f"{word:>10}" for word in ("designs", "tried", "rejected", "true", "survived"))
+        rows = [f"{key:50}" + "".join(f"{number:10}" for number in row) for key, row in sorted(self.rows.items())]
+        return "\n".join([" " * 50 + head, *rows, *self.survived])
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ _NOT_UNWRAPPED = {"list", "tuple", "dict", "iter", "isinstance", "len", "range",
 #: What only writes the text of an error, or decides how much is kept in memory.
 _TEXTS = {"reject", "lru_cache"}
 #: The order of the arguments does not matter, or makes no sense.
-_SYMMETRICAL = {"isinstance", "max", "min", "agree", "differ", "never_together_zero"}
+_SYMMETRICAL = {"isinstance", "max", "min", "agree", "differ", "never_together_zero", "_distance"}
 _LONGEST = 110
 
 
@@ -157,7 +157,8 @@ class _Finder:
                 self.expression(node.iter, (node, "iter", None), where)
                 self.statements(node, "body", where)
             case ast.Return():
-                self.note(slot, ast.Pass(), where)
+                if not (isinstance(node.value, ast.Constant) and node.value.value is None):
+                    self.note(slot, ast.Pass(), where)
                 if node.value is not None:
                     self.returned(node, where)
                     self.expression(node.value, (node, "value", None), where)
