@@ -137,14 +137,14 @@ def test_what_reaches_a_template_of_the_user_is_escaped(require_tool: RequireToo
     own.mkdir()
     (own / "article.tex").write_text(article([body]).replace(r"\begin{document}", _COMMANDS), encoding="utf-8")
     pages: list[str] = []
-    texts = part(tmp_path, 301)
+    head, texts = "", part(tmp_path, 301)
     for text in texts:
         (tmp_path / "p.toml").write_text(problem(text, text), encoding="utf-8")
         run = inside("solve", "p.toml", "--templates", "own", folder=tmp_path)
         assert run.code == 0, run.err
-        pages.append(run.out.partition(r"\begin{document}")[2].rpartition(r"\end{document}")[0])
-    head = run.out.partition(r"\begin{document}")[0] + r"\begin{document}"
-    words = injection.words_of(compiled("\n\n".join([head, *pages, r"\end{document}"])))
+        head, _, rest = run.out.partition(r"\begin{document}")
+        pages.append(rest.rpartition(r"\end{document}")[0])
+    words = injection.words_of(compiled("\n\n".join([head, r"\begin{document}", *pages, r"\end{document}"])))
     assert SECRET not in words
     assert injection.lost(texts, words) == []
 
