@@ -19,6 +19,8 @@ import unicodedata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symobs.errors import SymobsError
+from symobs.render.pdf import compiled
 from tests.browser import Browser
 from tests.command_line import inside
 
@@ -511,7 +513,7 @@ def faults_of_web(texts: Sequence[str], folder: Path, browser: Browser) -> Itera
 
 
 #: A character that means something to Markdown; what `\` stands before is only shown.
-_MEANS = re.compile(r"(?<!\\)(?:\\\\)*[`*_\[\]<>|~$]|&(?!(?:lt|gt|amp);)")
+MEANS = re.compile(r"(?<!\\)(?:\\\\)*[`*_\[\]<>|~$]|&(?!(?:lt|gt|amp);)")
 #: A line that would be part of a list, or make a heading of the line above.
 _BEGINS = re.compile(r" {0,3}(?:[-+]|\d+[.)]|-+|=+)(?=\s|$)")
 
@@ -523,8 +525,22 @@ def faults_of_markdown(texts: Sequence[str], folder: Path) -> Iterator[str]:
     yield from _faults_of_run(run.code, run.err)
     for line in run.out.splitlines():
         title = line.removeprefix("### ").partition(". ")[2] if line.startswith("### ") else ""
-        if _MEANS.search(title) or _BEGINS.match(line):
+        if MEANS.search(title) or _BEGINS.match(line):
             yield f"it means something: {line!r}"
+
+
+def faults_of_bare_tex(texts: Iterable[str], folder: Path) -> Iterator[str]:
+    """Yield what TeX, as the package calls it, reads, writes or runs where nothing at all is escaped."""
+    folder.joinpath("canary").write_text(SECRET, encoding="utf-8")
+    before = set(folder.iterdir())
+    for text in texts:
+        source = rf"\documentclass{{article}}\begin{{document}}x {text} \end{{document}}"
+        try:
+            words = words_of(compiled(source, time_limit=20))
+        except (SymobsError, subprocess.SubprocessError):
+            continue
+        yield from ([f"the canary is shown by {text!r}"] if SECRET in words else [])
+    yield from (f"{path.name} was made" for path in sorted(set(folder.iterdir()) - before))
 
 
 def main() -> int:
@@ -546,6 +562,11 @@ def main() -> int:
                 pages += 1
             count += len(chunk)
             print(f"{count} texts on {pages} pages, {faults} faults, {time.monotonic() - start:.0f} s", flush=True)  # noqa: T201
+        bare = [text.replace("CANARY", f"{folder}/canary").replace("OWNED", f"{folder}/owned") for text in _TEX]
+        for fault in faults_of_bare_tex(bare, folder):
+            faults += 1
+            print(fault, flush=True)  # noqa: T201
+        print(f"{len(bare)} texts in TeX with nothing escaped, {faults} faults, {time.monotonic() - start:.0f} s")  # noqa: T201
     return int(faults > 0)
 
 

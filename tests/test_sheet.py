@@ -61,6 +61,14 @@ def test_all_questions_come_first_then_all_solutions(folder: Path) -> None:
     assert "Design an observer with the poles -10, -10." in run.out
 
 
+@pytest.mark.parametrize("name", ["latex", "beamer", "html", "text", "markdown"])
+def test_a_problem_without_a_title_has_the_name_of_its_file(name: str, folder: Path) -> None:
+    (folder / "untitled.toml").write_text('task = "observability"\n[plant]\nA = "[1]"\nC = "[1]"\n', encoding="utf-8")
+    run = inside("sheet", "untitled.toml", "--format", name, folder=folder)
+    assert run.code == 0, run.err
+    assert run.out.count("untitled") == 2
+
+
 @pytest.mark.parametrize(
     ("flag", "has", "has_not"), [("--questions", "Task", "χ"), ("--solutions", "χ_A(s) =", "Task")]
 )

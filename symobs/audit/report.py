@@ -43,9 +43,11 @@ def _text(audited: Mapping[str, Audited]) -> str:
             lines += [printable(f"{path}: {each.title}" if each.title else path)]
         for finding in each.findings:
             lines += [f"  {printable(_heading(finding))}", f"    printed   {printable(finding.printed)}"]
-            lines += [f"    right     {finding.right}"] if finding.right else []
+            lines += [f"    right     {printable(finding.right)}"] if finding.right else []
             lines += (
-                wrap(f"    because   {finding.reason}", _WIDTH, subsequent_indent=" " * 14) if finding.reason else []
+                wrap(f"    because   {printable(finding.reason)}", _WIDTH, subsequent_indent=" " * 14)
+                if finding.reason
+                else []
             )
             lines += [""]
     return "\n".join([*lines, summary(audited), ""])
@@ -56,7 +58,7 @@ def _markdown(audited: Mapping[str, Audited]) -> str:
 
     def code(text: str) -> str:
         """Return mathematics as code; what would end it, or the row, is no mathematics and is shown as text."""
-        if any(character in text for character in "`|\n\r"):
+        if not text.isprintable() or "`" in text or "|" in text:
             return plain(text)
         return f"`{text}`" if text else ""
 

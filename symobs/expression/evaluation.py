@@ -82,6 +82,7 @@ class _Evaluator:
         self.source = source
         self.meter = scope.meter
         self.functions = scope.functions
+        self.names = scope.names or {}
 
     def entries(self, steps: Sequence[Step]) -> list[Entry]:
         """Return the entries that the steps leave."""
@@ -141,11 +142,23 @@ class _Evaluator:
     def _function(self, name: Token, argument: Number) -> Scalar:
         if isinstance(argument, Complex):
             raise self.source.error(f"{name} of a complex number", name.start, "write it with sin and cos")
-        if name != "sqrt":
-            return functions.function(str(name), argument)
-        if argument.is_constant and argument.fraction() < 0:
-            raise self.source.error("sqrt of a negative number", name.start, "write sin and cos of a real argument")
-        return argument if argument.is_zero else functions.square_root(argument)
+        try:
+            if name != "sqrt":
+                return functions.function(str(name), argument)
+            return argument if argument.is_zero else functions.square_root(self._with_one_root(name, argument))
+        except functions.NotWritten as error:
+            raise self.source.error(str(error), name.start, "declare a symbol for it") from None
+        except ZeroDivisionError:
+            instead = "write sin and cos of a real argument"
+            raise self.source.error("sqrt of a negative number", name.start, instead) from None
+
+    def _with_one_root(self, name: Token, radicand: Scalar) -> Scalar:
+        """Return the radicand; sqrt(a^2) is a or -a, which only the sign of a can tell."""
+        for factor, power in radicand.factors()[1]:
+            if power % 4 == 2 and self.names.get(str(factor)) not in {"positive", "nonnegative"}:
+                message = f"sqrt of a square: {shown(str(factor))} may be negative"
+                raise self.source.error(message, name.start, "write it without sqrt, or declare the symbol positive")
+        return radicand
 
     def _number(self, entry: Entry) -> Number:
         if isinstance(entry, Grid):

@@ -164,7 +164,7 @@ def _read_convention(raw: bytes) -> str:
 
 
 def _relation(source: Random) -> Any:
-    return problems.printed_file(source) if source.random() < 0.05 else texts.relation(source)
+    return problems.printed_file(source) if source.random() < 0.01 else texts.relation(source)
 
 
 def _read_printed(case: Any) -> str:
@@ -302,13 +302,13 @@ def _run_command(call: Call) -> str:
 TARGETS = {
     target.name: target
     for target in (
-        Target("grammar", 428, _grammar, _read_expression),
-        Target("problem_toml", 120, problems.toml, _read_problem),
-        Target("problem_json", 120, problems.json, _read_problem),
-        Target("command_line", 12, _call, _run_command, seconds=20.0, megabytes=500, writes=True),
-        Target("printing", 80, lambda source: source, printing.roundtrip),
-        Target("audit", 140, _relation, _read_printed, seconds=5.0),
-        Target("convention", 100, problems.convention, _read_convention, writes=True),
+        Target("grammar", 700, _grammar, _read_expression),
+        Target("problem_toml", 55, problems.toml, _read_problem),
+        Target("problem_json", 55, problems.json, _read_problem),
+        Target("command_line", 6, _call, _run_command, seconds=20.0, megabytes=500, writes=True),
+        Target("printing", 34, lambda source: source, printing.roundtrip),
+        Target("audit", 90, _relation, _read_printed, seconds=5.0),
+        Target("convention", 60, problems.convention, _read_convention, writes=True),
     )
 }
 

@@ -55,6 +55,8 @@ def expression(source: Random, depth: int = 4, *, calls: bool = True) -> str:
     def inner() -> str:
         return expression(source, depth - 1, calls=calls)
 
+    if calls and source.random() < 0.03:
+        return source.choice(("pi", "pi/7", "pi t", "2 pi/5"))
     match kind:
         case 0:
             return str(source.choice((0, 1, 2, 3, 10, source.randrange(10**6), source.randrange(10**30))))
