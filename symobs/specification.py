@@ -171,7 +171,9 @@ def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ..
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
-        raise InputError(message, where=where, repair=f"give as many poles as the order asks for, {degree}")
+        raise InputError(
+            message, where=where, repair=f"give as many as the order asks for, {degree}, with commas between them"
+        )
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
     )

@@ -120,7 +120,11 @@ WRONG = {
         "specification.control_polynomial",
         "unknown key … belongs to the task compensator",
     ),
-    "task": (problem(top='task = "observe"'), "task", '"observe" is not a task … observability'),
+    "task": (
+        problem(top='task = "observe"'),
+        "task",
+        '"observe" is not a task; did you mean observer? known tasks are … observability',
+    ),
     "one of the tasks": (problem(top='tasks = ["observer", "hug"]'), "tasks[1]", '"hug" is not a task'),
     "the same task twice": (problem(top='tasks = ["observer", "observer"]'), "tasks[1]", "twice"),
     "a number for a task": (problem(top="task = 5"), "task", "a number came"),

@@ -81,8 +81,8 @@ def test_a_budget_that_is_enough_changes_nothing(arguments: list[str]) -> None:
 def test_what_is_no_budget_is_2(option: str, amount: str) -> None:
     run = inside("solve", str(SERVO), option, amount)
     assert (run.code, run.out) == (2, "")
-    assert run.err.startswith(f'{option}: "{amount}" is no amount')
-    assert run.err.endswith("give a positive number of seconds\n" if option == "--timeout" else "64 or more\n")
+    expected = "a positive number of seconds" if option == "--timeout" else "a number of megabytes, 64 or more"
+    assert run.err.startswith(f'{option}: "{amount}" is not {expected}; write for example {option} ')
 
 
 def test_without_child_processes_a_budget_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

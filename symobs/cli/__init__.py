@@ -87,6 +87,8 @@ class Tasks(click.Group):
         if not name.startswith("-") and self.get_command(ctx, name) is None:
             nearest = get_close_matches(name, self.list_commands(ctx), 1)
             meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
+            if Path(name).suffix in {".toml", ".json"}:
+                meant = f"; write symobs solve {name[:40]}"
             ctx.fail(f"there is no command {name[:40]!r}{meant}")
         return super().resolve_command(ctx, args)
 
@@ -137,10 +139,9 @@ def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> 
         number = float(value)
         if 0 < number < float("inf") and number >= least:
             return number
-    repair = f"give a number of megabytes, {least} or more" if least else "give a positive number of seconds"
-    raise UsageError(
-        f"{_quoted(value)} is no amount that work can be done in", where=f"--{parameter.name}", repair=repair
-    )
+    amount = f"a number of megabytes, {least} or more" if least else "a positive number of seconds"
+    example = f"write for example --{parameter.name} {2000 if least else 60}"
+    raise UsageError(f"{_quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
 
 
 def limits(command: Limited) -> Limited:
@@ -377,7 +378,11 @@ def main() -> NoReturn:
     except click.exceptions.Exit as leaving:
         code = leaving.exit_code
     except click.ClickException as error:
+        from symobs.cli.hints import hint  # noqa: PLC0415 - only where the command line is not understood
+
         error.show()
+        if found := hint(error):
+            _say(found)
         code = UsageError.exit_code
     except MemoryError:
         _say(NOT_ENOUGH_MEMORY)

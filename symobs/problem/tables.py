@@ -78,4 +78,6 @@ def _toml_repair(message: str, line: str, text: str) -> str:
     brackets = re.search(r"""=\s*\[([^"']*)""", line)
     if brackets and re.search(r"""[^,;\s\[][ ;]+[-+\w(]""", brackets[1]):
         return 'write commas between the entries, or the matrix in quotes: "[0 1; 0 -1]"'
+    if brackets and re.search(r"[A-Za-z]", brackets[1]):
+        return 'write what has letters in quotes: [-2, "-1+i", "-omega"]'
     return "write `key = value` lines under [tables], texts in quotes"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import field
+from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
@@ -240,7 +241,7 @@ def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple
         if not isinstance(name, str):
             errors.note(f"the name of a task is expected, but {_came(name)} came", where, _listed())
         elif (task := task_named(name)) is None:
-            errors.note(f'"{shown(name, 40)}" is not a task', where, _listed())
+            errors.note(f'"{shown(name, 40)}" is not a task', where, _listed(name))
         elif name in found:
             errors.note(f"the task {name} is named twice", where, "keep one of them")
         else:
@@ -248,8 +249,9 @@ def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple
     return tuple(found.values())
 
 
-def _listed() -> str:
-    return f"known tasks are {', '.join(sorted(tasks()))}"
+def _listed(name: str = "") -> str:
+    near = get_close_matches(name, tasks(), 1)
+    return f"{f'did you mean {near[0]}? ' if near else ''}known tasks are {', '.join(sorted(tasks()))}"
 
 
 def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:

@@ -345,7 +345,10 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
     numerator = value.numerator.coefficients(variable)
     if order < 1:
         message = f"{value} has no pole, so it has no state"
-        raise InputError(message, where=where, repair="give a proper rational function such as 1/(s*(s+1))")
+        example = f"1/({variable}*({variable}+1))"
+        raise InputError(
+            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
+        )
     if len(numerator) > order + 1:
         message = f"{value} is not proper: degree {len(numerator) - 1} over degree {order}"
         raise InputError(message, where=where, repair="the degree of the numerator may not exceed the denominator's")
