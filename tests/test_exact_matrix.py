@@ -301,6 +301,24 @@ class TestPolynomialsOfMatrices:
         found = apply_polynomial(polynomials, "s", x, v)
         assert [entry.fraction() for entry in found.entries] == vector
 
+    @given(
+        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=4, max_size=4), min_size=6, max_size=6),
+    )
+    @few
+    def test_the_gain_from_a_power_series_is_that_of_ackermann(self, rows: list[list[Fraction]]) -> None:
+        *table, row, numbers = rows
+        A, c = parse_matrix(table), parse_matrix([row])
+        coefficients = [Fraction(1), *numbers]
+        krylov = Krylov.of(A, c)
+        if krylov.is_singular:
+            with pytest.raises(ZeroDivisionError):
+                krylov.placing(coefficients)
+            return
+        phi = from_coefficients([Scalar.of(number) for number in coefficients], "s")
+        gain = krylov.placing(coefficients)
+        assert gain == apply_polynomial([phi], "s", A, krylov.solve_last())
+        assert (A - gain @ c).characteristic_polynomial("s") == phi
+
     @given(square(4))
     @few
     def test_every_matrix_is_a_zero_of_its_characteristic_polynomial(self, drawn: list[Pair]) -> None:

@@ -88,6 +88,9 @@ class Pair:
     def gain(self, desired: DesiredPolynomial) -> Matrix | None:
         """Return l with det(sI − A + l c) = φ(s), or None where φ cannot be assigned."""
         if self.is_observable:
+            if not self.krylov.field.names and desired.is_numeric:
+                coefficients = desired.polynomial.coefficients(self.variable)
+                return self.krylov.placing([coefficient.fraction() for coefficient in coefficients])
             vector = self.krylov.solve_last()
             return modulo(apply_polynomial(desired.factors, desired.variable, self.A, vector).normal(), self.ideal)
         quotient, rest = self.divided(desired.polynomial)
