@@ -9,6 +9,7 @@ PHRASES: dict[str, str] = {
     "its_transfer_function": "Adjugate over determinant gives",
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
     "its_poles": "The poles are {roots}.",
+    "nothing_cancels": "In general no pole cancels a zero and the numerator keeps its degree. From here on we assume {condition}.",
     "its_zeros": "The zeros are {roots}.",
     "stable_continuous": "All roots lie in the open left half plane: the polynomial is stable.",
     "stable_discrete": "All roots lie inside the unit circle: the polynomial is stable.",
