@@ -231,6 +231,8 @@ def _transfer_function(case: Case, claims: Claims) -> None:
 def _canonical_form(case: Case, claims: Claims) -> None:
     order = _plant(case, claims)
     kind = case.specification["kind"]
+    if case.has("polynomial"):
+        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if not case.has("T"):
         if kind in {"controllable", "observable"} and case.verdict == "yes":
             claims.wrong.append("the verdict is yes, and there is no T")
@@ -241,8 +243,6 @@ def _canonical_form(case: Case, claims: Claims) -> None:
     for letter in "ABCD":
         claims.values[f"new {letter}"] = case.matrix(letter, 1)
     claims.ranks["rank of T"] = order
-    if case.has("polynomial"):
-        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if kind == "controllable":
         claims.values["controllable companion"] = claims.values["new A"]
         claims.values["controllable input"] = claims.values["new B"]
@@ -409,6 +409,8 @@ def _reduced_order_observer(case: Case, claims: Claims) -> None:
     if not case.has("L"):
         claims.values["no gain"] = np.ones((1, 1))
         _as_desired(case, claims)
+        if case.has("T") and not case.point:
+            claims.values["T"] = case.matrix("T")
         return
     outputs = claims.given["C"].shape[0]
     for letter in "LTFGHM":
