@@ -7,10 +7,11 @@ from fractions import Fraction
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import pytest
 
 from symobs import StateSpace, observer
-from symobs.derivation import pole_paths
+from symobs.derivation import pole_paths, responses
 from symobs.derivation.pictures import faults, is_faithful
 from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
@@ -377,6 +378,81 @@ def test_a_course_that_stays_is_drawn_so() -> None:
     assert courses(course(1, 1, 1), other) == ["y at other instants"]
     with pytest.raises(ValueError, match="not all components of x"):
         courses(course(1, 1, 1, component=1))
+
+
+def test_a_course_may_be_drawn_as_roughly_as_cannot_be_seen() -> None:
+    """A 500th of the height at the points, a 100th between them."""
+    for off, is_near in (("0.008", True), ("-0.00799", True), ("0.00801", False), ("-0.00801", False)):
+        for index in range(3):
+            points = tuple(at(t, 1 + Fraction(off) * (t == index)) for t in range(3))
+            assert (courses(replace(course(1, 1, 1), points=points)) == []) == is_near
+    high = (WIDE[0], (Fraction(-250), Fraction(250)))
+    assert courses(course(1, 1, 2), window=high) == []
+    for bend, is_near in ((8, True), (-8, True), (Fraction("8.1"), False), (-Fraction("8.1"), False)):
+        values = [(bend * Fraction(t * t) / 2, Fraction(bend * t), Fraction(bend)) for t in range(3)]
+        rows = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+        drawn = tuple(
+            Course("x", j + 1, tuple(map(Fraction, rows[j])), tuple((Fraction(t), values[t][j]) for t in range(3)))
+            for j in range(3)
+        )
+        window = (WIDE[0], (Fraction(-50), Fraction(50)))
+        for order in ((0, 1, 2), (2, 0, 1)):
+            response = TimeResponse(("x",), (values[0],), tuple(drawn[j] for j in order), window)
+            assert (list(faults_of_response(response, Letter("A"), PARABOLA)) == []) == is_near
+        with pytest.raises(ValueError, match="not all components of x"):
+            list(faults_of_response(replace(response, courses=drawn[:2]), Letter("A"), PARABOLA))
+
+
+PARABOLA = replace(DECAY, values={"A": Matrix.of([[0, 1, 0], [0, 0, 1], [0, 0, 0]])}, sizes={"x": 3})
+
+
+def test_no_point_of_a_course_leaves_the_window() -> None:
+    known = replace(DECAY, values={"A": Matrix.of([[0, 1], [0, 0]])}, sizes={"x": 2})
+    ramp = (course(0, 1, 2, component=1, row=(1, 0)), course(1, 1, 1, component=2, row=(0, 1)))
+    for low, high, expected in (
+        (0, 2, []),
+        ("1/2", 2, ["x, which leaves the window,"]),
+        (0, "3/2", ["x, which leaves the window,"]),
+    ):
+        window = (WIDE[0], (Fraction(low), Fraction(high)))
+        response = TimeResponse(("x",), ((Fraction(0), Fraction(1)),), ramp, window)
+        assert list(faults_of_response(response, Letter("A"), known)) == expected
+
+
+def test_courses_fill_a_window_at_equal_steps() -> None:
+    assert courses(course(1, 1), window=((Fraction(0), Fraction(1)), WIDE[1])) == []
+    point = replace(course(1), points=(at(0, 1),))
+    assert courses(point, window=((Fraction(0), Fraction(0)), WIDE[1])) == [
+        "a window that begins at 0 and that courses fill"
+    ]
+    for step in (0, Fraction(-1, 2)):
+        still = replace(course(1, 1, 1), points=tuple((t * Fraction(step), Fraction(1)) for t in range(3)))
+        window = ((Fraction(0), 2 * Fraction(step)), WIDE[1])
+        assert courses(still, window=window)[:1] == ["instants at equal distances"]
+
+
+def test_every_signal_is_held_to_the_page() -> None:
+    third = ["an equation of x with this matrix"]
+    assert courses(course(1, 1, 1), course(3, 3, 3, signal="y", row=(3,))) == third
+    assert courses(course(2, 2, 2, signal="y", row=(2,)), course(1, 1, 1, row=(3,))) == third
+    half = replace(course(1, 1, 1, signal="w"), row=(Fraction(1, 2),))
+    known = replace(DECAY, signals={**DECAY.signals, "w": Product((Literal(Scalar.rational(1, 2)), Letter("x")))})
+    response = TimeResponse(("x",), ((Fraction(2),),), (half,), WIDE)
+    assert list(faults_of_response(response, Letter("A"), known)) == []
+    response = replace(response, starts=((Fraction(1),),))
+    assert list(faults_of_response(response, Letter("A"), known)) == ["the course of w"]
+    with pytest.raises(ValueError, match="not all components of A"):
+        courses(course(1, 1, 1, signal="A"))
+
+
+def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
+    """e^{200 t} up to t = 2, which takes 578 bits, beside a constant."""
+    table = Matrix.of([[0, 0], [0, 200]])
+    found = responses._stepped(table, (Fraction(1), Fraction(1)), Fraction(1, 10), 21)
+    with mpmath.workprec(1000):
+        for k, (constant, growing) in enumerate(found):
+            assert abs(constant - 2**64) <= 1
+            assert abs(growing - mpmath.exp(20 * k) * 2**64) <= 2
 
 
 def test_courses_are_of_continuous_time() -> None:
