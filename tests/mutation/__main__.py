@@ -42,7 +42,7 @@ TESTS = {
     "strata.py": "derivation trusted_steps",
     "properties.py": "trusted_properties",
     "region_claims.py": "trusted_properties",
-    "regions.py": "trusted_steps stability_region region_bounds",
+    "regions.py": "trusted_regions",
     "flows.py": "trusted_flows",
     "places.py": "trusted_pictures",
     "pictures.py": "pictures trusted_pictures",
