@@ -253,7 +253,7 @@ def test_a_document_is_told_in_its_convention() -> None:
     with pytest.raises(FrozenInstanceError):
         document.title = "other"  # type: ignore[misc]
     with pytest.raises(TypeError):
-        Document("", "", (found,), STANDARD, "", "full")  # type: ignore[misc]
+        Document("", "", (found,), STANDARD, "", "full")  # type: ignore[call-arg]
 
 
 # -- registries ---------------------------------------------------------------------------------------------------------
