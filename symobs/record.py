@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
     from dataclasses import dataclass
 
 __all__ = ["dataclass"]
@@ -66,30 +66,27 @@ def _parts(cls: Any) -> dict[str, Any]:
 
 def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Callable[..., None]:
     """Return `__init__`, which takes the parts by place, as `names` go, or by name."""
-    taken = [name for name, part in parts.items() if part.init]
+    taken = (*names, *(name for name, part in parts.items() if part.init and part.kw_only))
     defaults = {name: part.default for name, part in parts.items() if part.default is not _MISSING}
-    factories = {name: part.default_factory for name, part in parts.items() if part.default_factory is not _MISSING}
-    needed = set(taken) - defaults.keys() - factories.keys()
-    put = object.__setattr__
-    count, finish = len(names), getattr(cls, "__post_init__", None)
-    all_by_place = count == len(parts)
-
-    def complete(values: tuple[Any, ...], named: dict[str, Any]) -> Iterable[tuple[str, Any]]:
-        given = dict(zip(names, values, strict=False))
-        twice = given.keys() & named.keys()
-        given |= named
-        if len(values) > count or twice or given.keys() - set(taken) or needed - given.keys():
-            raise TypeError(f"{cls.__qualname__} takes {', '.join(taken)}, not {', '.join(given)}")
-        made = {name: make() for name, make in factories.items() if name not in given}
-        return (defaults | made | given).items()
+    made = [(name, part.default_factory) for name, part in parts.items() if part.default_factory is not _MISSING]
+    most, total = len(names), len({*taken, *defaults, *(name for name, _ in made)})
+    open_to_names = [frozenset(taken) - set(names[:count]) for count in range(most + 1)]
+    finish = getattr(cls, "__post_init__", None)
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
-        if all_by_place and len(values) == count and not named:
-            given: Iterable[tuple[str, Any]] = zip(names, values, strict=True)
-        else:
-            given = complete(values, named)
-        for name, value in given:
-            put(self, name, value)
+        own = self.__dict__  # a frozen class refuses to be written to in any other way
+        if defaults:
+            own.update(defaults)
+        for name, value in zip(names, values):  # noqa: B905 - how many there are is looked at below
+            own[name] = value
+        if named:
+            own.update(named)
+        for name, make in made:
+            if name not in own:
+                own[name] = make()
+        if len(values) > most or len(own) != total or not named.keys() <= open_to_names[len(values)]:
+            given = ", ".join((*map(repr, values), *named))
+            raise TypeError(f"{cls.__qualname__} takes {', '.join(taken)}, not {given}")
         if finish is not None:
             finish(self)
 

@@ -104,6 +104,13 @@ def test_a_family_grows_in_every_size_asked_for() -> None:
     assert growth.region(2, 1) > 0
 
 
+def test_a_sheet_is_timed_in_every_format() -> None:
+    sheets = benchmarks.groups()["sheets"]
+    spent = sheets.spent_on(other_systems.TOP / "worked_examples" / "servo_observer.toml")
+    assert set(spent) == {"html", "text", "json", "latex"}
+    assert all(seconds > 0 for seconds in spent.values())
+
+
 def test_memory_is_told_where_the_system_tells_it() -> None:
     memory = benchmarks.groups()["memory"]
     little, much = memory.peak("pass", 60), memory.peak("x = bytearray(10**8)", 60)

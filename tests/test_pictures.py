@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.derivation import Derivation, Plot
+from symobs.errors import DerivationRejected
 from symobs.exact import Scalar
 from symobs.exact.functions import square_root
 from symobs.formula import Apply, Environment, Letter, Literal, Negative, Relation, Sum
@@ -18,9 +19,12 @@ from tests.drawn_by_hand import ALL, equation, h1, h2, k, s
 from tests.steps import checked, refused
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from symobs.picture import Picture, Place
 
 CHI = Letter("chi")
+Z, LINE, END = Scalar.symbol("z"), (Fraction(-4), Fraction(4)), End(Fraction(-2), Scalar.of(-2))
 
 
 def start(chi: Scalar, *, discrete: bool = False) -> Environment:
@@ -79,6 +83,22 @@ def test_other_symbols_have_values_that_their_signs_allow() -> None:
     refuse(replace(picture, drawn_for=(("b", h1), ("omega", Scalar.of(1)))), hand.PENDULUM, "b = h1")
     other = (("b", Scalar.of(2)), ("omega", Scalar.of(1)))
     refuse(replace(picture, drawn_for=other), hand.PENDULUM, "h2 = -b")
+
+
+@pytest.mark.parametrize("make", [hand.pendulum, lambda: LinePicture("k", LINE, ((END, None),))])
+def test_what_was_true_of_one_polynomial_is_asked_anew_of_another(make: Callable[[], Picture]) -> None:
+    """The same picture, found true twice, is no truer of what it was not found true of."""
+    picture = make()
+    chi = hand.PENDULUM if isinstance(picture, RegionPicture) else s + 2 + k
+    for _ in range(2):
+        accept(picture, chi)
+    refuse(picture, chi + k + h1, "depends on")
+    refuse(picture, chi - Scalar.of(1), "in a picture")
+    mirrored = chi.substitute({"s": -s})
+    refuse(picture, -mirrored if mirrored.coefficients("s")[0] == Scalar.of(-1) else mirrored, "stable")
+    with pytest.raises(DerivationRejected):
+        Derivation((Plot(picture, CHI),), start(chi.substitute({"s": Z}), discrete=True), discrete=True).check()
+    accept(picture, chi)
 
 
 # -- regions ----------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ curve passes by is seen from a change of sign.
 
 from __future__ import annotations
 
+from collections import deque
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
@@ -36,6 +37,9 @@ _NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200
 _SMALLER = 16
 #: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
 _PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
+#: The last pictures in which nothing was false, and of what: a page asks before it shows one, and again when it is
+#: checked.  A picture cannot be changed, so the same one shows the same; another one of equal parts is looked at anew.
+_FAITHFUL: deque[tuple[Picture, tuple[object, ...]]] = deque(maxlen=4)
 _NOWHERE = (Fraction(0), Fraction(0))
 _ON_SEGMENT = (Fraction(2, 7), Fraction(5, 9), Fraction(3, 4))
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
@@ -75,14 +79,24 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
     if not polynomial.names <= {variable, *axes}:
         yield f"the polynomial {polynomial} depends on {', '.join(axes)} alone"
         return
+    equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
+    of = polynomial, variable, discrete, dict(environment.signs), equations
+    if any(seen is picture and held == of for seen, held in _FAITHFUL):
+        return
+    told = False
+    test = _Test(polynomial, variable, axes, discrete, environment.signs)
     match picture:
         case RegionPicture():
-            equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
-            yield from _of_region(picture, equations, _Test(polynomial, variable, axes, discrete, environment.signs))
+            found = _of_region(picture, equations, test)
         case LinePicture():
-            yield from _of_line(picture, _Test(polynomial, variable, axes, discrete, environment.signs))
+            found = _of_line(picture, test)
         case _:
-            yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
+            found = faults_of_poles(picture, polynomial, variable, discrete=discrete)
+    for fault in found:
+        told = True
+        yield fault
+    if not told:
+        _FAITHFUL.append((picture, of))
 
 
 def is_faithful(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> bool:
