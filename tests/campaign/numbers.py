@@ -195,15 +195,15 @@ def ratio(text: object, point: Mapping[str, Any], variable: str) -> Ratio:
     return Ratio.of(value(text, {**point, variable: Ratio([real(1), real(0)])}))
 
 
-def polynomial(text: object, point: Mapping[str, Any], variable: str) -> list[Any]:
-    """Return the coefficients of a monic polynomial, or of one made so."""
+def polynomial(text: object, point: Mapping[str, Any], variable: str, *, monic: bool = False) -> list[Any]:
+    """Return the coefficients of a polynomial, on request of its monic multiple."""
     found = ratio(text, point, variable)
     if len(found.under) > 1:
         raise UnreadableError(f"no polynomial: {text}")
     over = list(found.over)
     while len(over) > 1 and abs(over[0]) < TINY:
         over.pop(0)
-    return [c / over[0] for c in over]
+    return [c / (over[0] if monic else found.under[0]) for c in over]
 
 
 def from_roots(roots: Sequence[Any]) -> list[Any]:

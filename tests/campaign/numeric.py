@@ -32,9 +32,10 @@ SHAKEN = 1e-13
 COPIES = 1
 
 _WORTH = 1000  # what the numbers may be off by, in units of how far they moved
-_ROUNDING = 1e-12
+_ROUNDING = 2e-13
 _WORTHLESS = 1e-3  # relative to the largest entry
 _ZERO, _NONZERO = 1e-10, 1e-7  # of singular values, relative to the largest
+_NOTHING = 1e-4  # the largest singular value of what is not 0 but for rounding, entries being about 1
 
 
 @dataclass
@@ -83,7 +84,7 @@ def _rank(name: str, claimed: int, singular: Numbers) -> Difference:
     top = sizes.max(initial=0.0)
     if not np.isfinite(top):
         return Untold(f"{name} is not finite")
-    relative = sizes / top if top else sizes
+    relative = sizes / max(top, _NOTHING)
     if np.any((relative > _ZERO) & (relative < _NONZERO)):
         return Untold(f"{name} is not clear")
     there = int(np.sum(relative >= _NONZERO))
@@ -97,16 +98,16 @@ def _same(name: str, ours: Numbers, theirs: Numbers, shaken: Sequence[Numbers]) 
         return f"{name} has the shape {theirs.shape}, not {ours.shape}"
     if not ours.size:
         return None
-    moved = max(float(np.abs(copy - theirs).max()) for copy in shaken)
+    moved = np.max([np.abs(copy - theirs) for copy in shaken], axis=0)
     size = float(np.abs(theirs).max())
-    bar = _WORTH * moved + _ROUNDING * (1 + size)
-    if not bar < _WORTHLESS * max(1.0, size):
+    bars = _WORTH * np.maximum(moved, moved.max() / 100) + _ROUNDING * (1 + size)
+    if not bars.max() < _WORTHLESS * max(1.0, size):
         return Untold(f"{name} is ill-conditioned")
-    off = np.abs(ours - theirs)
-    if np.all(off <= bar):
+    excess = np.abs(ours - theirs) / bars
+    if np.all(excess <= 1):
         return None
-    i, j = np.unravel_index(int(off.argmax()), off.shape)
-    return f"{name}[{i}, {j}] is {theirs[i, j]:.12g}, not {ours[i, j]:.12g} (within {bar:.1g})"
+    i, j = np.unravel_index(int(excess.argmax()), excess.shape)
+    return f"{name}[{i}, {j}] is {theirs[i, j]:.12g}, not {ours[i, j]:.12g} (within {bars[i, j]:.1g})"
 
 
 # -- what is claimed ---------------------------------------------------------------------------------------------------
@@ -167,11 +168,18 @@ def _rank_test(case: Case, claims: Claims) -> None:
     modes = case.answer["unobservable_modes" if observed else "uncontrollable_modes"]
     claims.values["hidden"] = case.polynomial_of(modes)
     if case.has("determinant"):
-        claims.values["determinant"] = case.row([case.answer["determinant"]])
+        _determinant(case, claims, matrix)
     if len(kernel.T) != order - rank:
         claims.wrong.append(f"{len(kernel.T)} vectors span the kernel of a matrix of rank {rank} and order {order}")
     if case.verdict in {"yes", "no"} and (case.verdict == "yes") != (rank == order):
         claims.wrong.append(f"the verdict is {case.verdict}, the rank {rank}, the order {order}")
+
+
+def _determinant(case: Case, claims: Claims, matrix: Numbers) -> None:
+    """The determinant in units of what rounding is relative to: the norm to the power of the order."""
+    size = max(float(np.linalg.norm(matrix)), 1e-6) ** len(matrix)
+    claims.exact["size"] = np.array([[complex(size)]])
+    claims.values["determinant"] = case.row([case.answer["determinant"]]) / size
 
 
 def _modes(case: Case, claims: Claims) -> None:
@@ -183,6 +191,9 @@ def _modes(case: Case, claims: Claims) -> None:
     claims.exact["modes"] = np.array([[complex(number) for number in numbers]]).reshape(1, -1)
     claims.values["polynomial"] = case.polynomial_of([mode["eigenvalue"] for mode in modes])
     claims.values["hidden"] = case.polynomial(case.answer["fixed_polynomial"])
+    claims.values["polynomial as said"] = case.polynomial(case.answer["polynomial"])
+    if "rank" in case.answer:
+        claims.ranks["rank"] = int(case.answer["rank"])
     flag = "observable" if observed else "controllable"
     fixed_stable = True
     for k, (mode, number) in enumerate(zip(modes, numbers, strict=True)):
@@ -228,6 +239,8 @@ def _canonical_form(case: Case, claims: Claims) -> None:
     for letter in "ABCD":
         claims.values[f"new {letter}"] = case.matrix(letter, 1)
     claims.ranks["rank of T"] = order
+    if case.has("polynomial"):
+        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if kind == "controllable":
         claims.values["controllable companion"] = claims.values["new A"]
         claims.values["controllable input"] = claims.values["new B"]
@@ -265,6 +278,7 @@ def _decomposition(case: Case, claims: Claims) -> None:
     )
     if co != int(case.answer["minimal_order"]) or co + c_no + nc_o + nc_no != order:
         claims.wrong.append(f"the sizes {sizes} do not fit")
+        return
     kinds = np.repeat(["co", "c_no", "nc_o", "nc_no"], [co, c_no, nc_o, nc_no])
     A, B, C = (claims.values[f"new {letter}"] for letter in "ABC")
     moved, seen = np.isin(kinds, ["co", "c_no"]), np.isin(kinds, ["co", "nc_o"])
@@ -292,7 +306,9 @@ def _gramian(case: Case, claims: Claims) -> None:
         claims.exact["horizon"] = case.row([str(horizon).replace("^", "**")])
     claims.values[f"{kind} gramian"] = case.matrix("matrix")
     if case.has("determinant"):
-        claims.values["determinant"] = case.row([case.answer["determinant"]])
+        _determinant(case, claims, claims.values[f"{kind} gramian"])
+    if "rank" in case.answer:
+        claims.ranks["rank"] = int(case.answer["rank"])
     if case.has("finite_sum"):
         claims.values["finite sum"] = case.matrix("finite_sum")
 
@@ -327,6 +343,7 @@ def _gain(case: Case, claims: Claims) -> None:
     if not case.has(letter):
         if not given:
             claims.values["no gain"] = np.ones((1, 1))
+            _as_desired(case, claims)
         return
     gain = claims.given[letter] = case.matrix(letter)
     claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
@@ -343,6 +360,16 @@ def _gain(case: Case, claims: Claims) -> None:
         claims.wrong.append(f"{letter} has the shape {gain.shape}")
     _member(case, claims, letter)
     _stable(case, claims)
+
+
+def _as_desired(case: Case, claims: Claims) -> None:
+    """Where there is no gain the polynomial and the poles are those that were asked for."""
+    said = [case.polynomial(case.answer["polynomial"])] if case.has("polynomial") else []
+    said += [case.polynomial_of(case.answer["poles"])] if case.answer.get("poles") else []
+    phi = claims.exact["phi"]
+    for each in said:
+        if each.shape != phi.shape or not np.allclose(each, phi, rtol=1e-9, atol=1e-12):
+            claims.wrong.append(f"{each[0]} is said to be asked for, {phi[0]} is")
 
 
 def _member(case: Case, claims: Claims, letter: str) -> None:
@@ -379,6 +406,7 @@ def _reduced_order_observer(case: Case, claims: Claims) -> None:
     claims.exact["phi"] = case.desired()
     if not case.has("L"):
         claims.values["no gain"] = np.ones((1, 1))
+        _as_desired(case, claims)
         return
     outputs = claims.given["C"].shape[0]
     for letter in "LTFGHM":
@@ -386,6 +414,7 @@ def _reduced_order_observer(case: Case, claims: Claims) -> None:
         claims.values[letter] = claims.given[letter]
     claims.values["assigned"] = claims.exact["phi"]
     claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
+    claims.values["poles"] = case.polynomial_of(case.answer["poles"])
     claims.ranks["rank of T"] = order
     if outputs > 1 or case.answer.get("fixed_modes"):
         del claims.values["L"]
@@ -397,18 +426,19 @@ def _loop(case: Case, claims: Claims) -> bool:
     """What compensators and the designs that stand on them share; tell whether both gains are there."""
     _plant(case, claims)
     claims.exact["phi_c"], claims.exact["phi_o"] = case.desired("control_"), case.desired("observer_")
-    if not case.has("K") or not case.has("L"):
+    there = [letter for letter in "KL" if case.has(letter)]
+    minimal = case.specification.get("observer") == "minimal" or case.task == "tracking"
+    if len(there) < 2:
         for letter in "KL":
-            claims.values[f"no {letter}"] = np.array([[complex(not case.has(letter))]])
-        return False
+            claims.values[f"no {letter}"] = np.array([[complex(letter not in there)]])
     if case.has("T"):
         claims.given["T"] = case.matrix("T")
-    elif case.specification.get("observer") == "minimal" and _coordinates_unsaid(case):
-        return False
-    claims.given["K"], claims.given["L"] = case.matrix("K"), case.matrix("L")
-    claims.values["assigned by K"] = claims.exact["phi_c"]
-    claims.values["assigned by L"] = claims.exact["phi_o"]
-    return True
+    elif minimal and _coordinates_unsaid(case):
+        there = there[: there.count("K")]
+    for letter in there:
+        claims.given[letter] = case.matrix(letter)
+        claims.values[f"assigned by {letter}"] = claims.exact["phi_c" if letter == "K" else "phi_o"]
+    return len(there) == 2
 
 
 def _coordinates_unsaid(case: Case) -> bool:
@@ -428,12 +458,10 @@ def _compensator(case: Case, claims: Claims) -> None:
     claims.values["closed loop"] = case.values(case.answer["closed_loop"], PLACES)
     if case.has("closed_loop_unity"):
         claims.values["unity loop"] = case.values(case.answer["closed_loop_unity"], PLACES)
-    claims.given["own"] = case.matrix("compensator_matrix")
-    claims.values["compensator's polynomial"] = _polynomial(claims.given["own"])
-    for name in ("closed_loop_matrix", "closed_loop_matrix_estimate"):
-        claims.given[name] = case.matrix(name)
-        claims.values[f"assigned by {name}"] = _both(claims)
-    claims.values["closed-loop polynomial"] = case.polynomial(case.answer["closed_loop_polynomial"])
+    claims.values["own"] = case.matrix("compensator_matrix")
+    claims.values["in the error"] = case.matrix("closed_loop_matrix")
+    claims.values["in the estimate"] = case.matrix("closed_loop_matrix_estimate")
+    claims.values["polynomial"] = case.polynomial(case.answer["closed_loop_polynomial"])
     table = case.answer["F"] if isinstance(case.answer["F"], list) else [[case.answer["F"]]]
     under = [np.array(case.ratio(entry).under, dtype=complex) for row in table for entry in row]
     stable = _inside(case, np.concatenate([np.roots(each) for each in under]))
@@ -441,14 +469,12 @@ def _compensator(case: Case, claims: Claims) -> None:
         claims.wrong.append(f"F_stable is {case.answer['F_stable']}, and the denominators are {under}")
 
 
-def _polynomial(matrix: Numbers) -> Numbers:
-    """Return the characteristic polynomial in doubles."""
-    return np.atleast_1d(np.poly(matrix))[None, :].astype(complex) if matrix.size else np.ones((1, 1), dtype=complex)
-
-
 def _feedforward(case: Case, claims: Claims) -> None:
     if not _loop(case, claims):
         return
+    if case.has("closed_loop_matrix"):
+        claims.values["in the error"] = case.matrix("closed_loop_matrix")
+        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if not case.has("F"):
         if claims.given["D"].size == 1:
             claims.values["nothing at rest"] = np.zeros((1, 1))
@@ -459,24 +485,16 @@ def _feedforward(case: Case, claims: Claims) -> None:
 
 
 def _tracking(case: Case, claims: Claims) -> None:
-    _plant(case, claims)
-    claims.exact["phi_c"], claims.exact["phi_o"] = case.desired("control_"), case.desired("observer_")
-    reference = array(rows(case.specification["reference_matrix"]), 0, case.point)
-    claims.given["Ad"] = reference
+    both = _loop(case, claims)
+    reference = claims.given["Ad"] = array(rows(case.specification["reference_matrix"]), 0, case.point)
     if case.answer["solvable"] in {True, False}:
         claims.values["solvable"] = np.array([[complex(case.answer["solvable"])]])
     if case.has("K_d"):
         claims.given["Kd"] = case.matrix("K_d")
         claims.values["A - Ad"] = claims.given["A"] - reference
-    if case.has("K"):
-        claims.given["K"] = case.matrix("K")
-        claims.values["assigned by K"] = claims.exact["phi_c"]
-    if case.has("L") and not _coordinates_unsaid(case):
-        claims.given["L"] = case.matrix("L")
-        claims.values["assigned by L"] = claims.exact["phi_o"]
-    if case.has("error_matrix") and case.has("K"):
-        claims.given["error"] = case.matrix("error_matrix")
-        claims.values["assigned by the error matrix"] = _both(claims)
+    if both and case.has("error_matrix"):
+        claims.values["error matrix"] = case.matrix("error_matrix")
+        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
 
 
 _CLAIMS: Mapping[str, Callable[[Case, Claims], None]] = {

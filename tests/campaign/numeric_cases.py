@@ -88,7 +88,7 @@ class Case:
         return vector([value(text, self.point) for text in texts])
 
     def polynomial(self, text: object) -> Numbers:
-        """Return the coefficients of a polynomial in s or z made monic."""
+        """Return the coefficients of a polynomial in s or z."""
         return vector(polynomial(text, self.point, self.variable))
 
     def polynomial_of(self, roots: Sequence[object]) -> Numbers:
@@ -108,7 +108,8 @@ class Case:
         """Return the desired polynomial, from the specification alone."""
         asked = self.specification
         if f"{prefix}polynomial" in asked:
-            return self.polynomial(str(asked[f"{prefix}polynomial"]).replace("^", "**"))
+            text = str(asked[f"{prefix}polynomial"]).replace("^", "**")
+            return vector(polynomial(text, self.point, self.variable, monic=True))
         poles = asked.get(f"{prefix}poles") or ""
         return self.polynomial_of(listed(poles) if poles else [])
 

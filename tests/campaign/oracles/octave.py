@@ -66,11 +66,11 @@ end
 _RANK_TEST = """
 {O} tell("matrix", O); [s, q] = {seen}; tell("rank", s); tell("hidden", q);
 tell("kernel", {kernel}); tell("kernel's rank", svd(N));
-if rows(O) == columns(O), tell("determinant", det(O)); end
+if exist("size_"), tell("determinant", det(O) / size_); end
 """
 
 _MODES = """
-tell("polynomial", poly(A)); [s, q] = {seen}; tell("hidden", q);
+tell("polynomial", poly(A)); tell("polynomial as said", poly(A)); [s, q] = {seen}; tell("hidden", q); tell("rank", s);
 for k = 1:columns(modes)
   M = {matrix}; tell(sprintf("matrix at mode %d", k), M); tell(sprintf("rank at mode %d", k), svd(M));
 end
@@ -86,57 +86,58 @@ if {width} == 1 && rcond({O}) > 1e-8, tell("gain", {acker}); end
 """
 _NO_GAIN = '[s, q] = {seen}; tell("no gain", whether_left(phi, q));'
 
-#: The estimate's part of the loop: E from y to −u as a state-space system (Ae, Be, Ce, De).
-_FULL = "Ae = A - B*K - L*C + L*D*K; Be = L; Ce = K; De = zeros(columns(B), rows(C));"
-_MINIMAL = """
-m = 1:rows(C); r = rows(C)+1:rows(A); At = T*A/T; Bt = T*B;
-Fz = At(r, r) - L*At(m, r); H = At(r, m) - L*At(m, m) + Fz*L; G = Bt(r, :) - L*Bt(m, :) - H*D;
-M = T \\ [eye(rows(C)), zeros(rows(C), numel(r)); L, eye(numel(r))];
-N1 = K*M(:, m); N2 = K*M(:, r); W = inv(eye(columns(B)) - N1*D);
-Ae = Fz - G*W*N2; Be = H - G*W*N1; Ce = W*N2; De = W*N1;
+#: The estimate's part of the loop: E from y to −u as a state-space system (Ae, Be, Ce, De), and what the error drives.
+_FULL = """
+if exist("L"), Fo = A - L*C; end
+if exist("K") && exist("L")
+  Ae = Fo - B*K + L*D*K; Be = L; Ce = K; De = zeros(columns(B), rows(C)); Ke = K; G = B - L*D; W = eye(columns(B));
+end
 """
-_NO_GAINS = """
-[~, q] = seen(A', B'); tell("no K", whether_left(phi_c, q)); [~, q] = seen(A, C); tell("no L", whether_left(phi_o, q));
+_MINIMAL = """
+if !exist("T"), if copy == 0, R = unit_rows(C); end, T = [C; R]; end
+m = 1:rows(C); r = rows(C)+1:rows(A); At = T*A/T; Bt = T*B;
+if exist("L"), Fo = At(r, r) - L*At(m, r); end
+if exist("K") && exist("L")
+  H = At(r, m) - L*At(m, m) + Fo*L; G = Bt(r, :) - L*Bt(m, :) - H*D;
+  M = T \\ [eye(rows(C)), zeros(rows(C), numel(r)); L, eye(numel(r))];
+  N1 = K*M(:, m); Ke = K*M(:, r); W = inv(eye(columns(B)) - N1*D);
+  Ae = Fo - G*W*Ke; Be = H - G*W*N1; Ce = W*Ke; De = W*N1;
+end
+"""
+_ASSIGNED_BY = """
+if exist("K"), tell("assigned by K", poly(A - B*K)); else, [~, q] = seen(A', B'); tell("no K", whether_left(phi_c, q)); end
+if exist("L"), tell("assigned by L", poly(Fo)); else, [~, q] = seen(A, C); tell("no L", whether_left(phi_o, q)); end
+if exist("K"), tell("no K", 0); end
+if exist("L"), tell("no L", 0); end
+if !exist("K") || !exist("L"), continue; end
+Z = zeros(rows(Fo), rows(A)); X = [A - B*K, B*Ke; Z, Fo]; tell("in the error", X); tell("polynomial", poly(X));
 """
 _NOTHING_AT_REST = """
 if tsam, X = eye(rows(A)) - A + B*K; else, X = B*K - A; end
 tell("nothing at rest", (C - D*K) * (X \\ B) + D);
 """
-_ASSIGNED_BY = 'tell("assigned by K", poly(A - B*K)); tell("assigned by L", poly({observer}));'
 
 _COMPENSATOR = """
-P = ss(A, B, C, D, tsam); E = ss(Ae, Be, Ce, De, tsam);
-tell("loop", poly(pole(feedback(P, E)))); tell("compensator's polynomial", poly(Ae));
+tell("own", Ae); V = inv(eye(columns(B)) + De*D);
+tell("in the estimate", [A - B*V*De*C, -B*V*Ce; Be*(C - D*V*De*C), Ae - Be*D*V*Ce]);
+tell("loop", poly(pole(feedback(ss(A, B, C, D, tsam), ss(Ae, Be, Ce, De, tsam)))));
 E = values(Ae, Be, Ce, De, places); P = values(A, B, C, D, places);
 tell("values of F", E); tell("closed loop", loop_values(P, E, columns(B), places));
 if columns(B) == 1 && rows(C) == 1, tell("unity loop", P .* E ./ (1 + P .* E)); end
-tell("closed-loop polynomial", poly([A - B*K, B*K; zeros(size(A)), A - L*C](1:0, 1:0)));
-tell("assigned by closed_loop_matrix", poly(closed_loop_matrix));
-tell("assigned by closed_loop_matrix_estimate", poly(closed_loop_matrix_estimate));
-""".replace('tell("closed-loop polynomial", poly([A - B*K, B*K; zeros(size(A)), A - L*C](1:0, 1:0)));\n', "")
+"""
 
-#: From v to y with u = −K x̂ + F v and the observer in the loop.
+#: From v to y with u = −K x̂ + F v and the observer in the loop: u = V (W F v − Cₑ xₑ − Dₑ C x).
 _FEEDFORWARD = """
-Av = [A, -B*K; L*C, A - B*K - L*C]; Bv = [B*F; B*F]; Cv = [C, -D*K]; Dv = D*F;
-"""
-_FEEDFORWARD_MINIMAL = """
-Av = [A - B*De*inv(eye(rows(C)) + D*De)*C, -B*inv(eye(columns(B)) + De*D)*Ce];
-V = inv(eye(columns(B)) + De*D); V0 = V*inv(eye(columns(B)) - N1*D)*F;
+V = inv(eye(columns(B)) + De*D); V0 = V*W*F;
 Cv = [C - D*V*De*C, -D*V*Ce]; Dv = D*V0;
-Av = [A - B*V*De*C, -B*V*Ce; Be*(C - D*V*De*C), Ae - Be*D*V*Ce]; Bv = [B*V0; Be*D*V0 + G*inv(eye(columns(B)) - N1*D)*F];
+Av = [A - B*V*De*C, -B*V*Ce; Be*(C - D*V*De*C), Ae - Be*D*V*Ce]; Bv = [B*V0; Be*D*V0 + G*W*F];
+S = ss(Av, Bv, Cv, Dv, tsam); tell("gain at rest", dcgain(S)); tell("from v to y", values(Av, Bv, Cv, Dv, places));
 """
-_AT_REST = 'S = ss(Av, Bv, Cv, Dv, tsam); tell("gain at rest", dcgain(S)); tell("from v to y", values(Av, Bv, Cv, Dv, places));'
 
 _TRACKING = """
 X = Ad - A; if copy == 0, tell0 = double(rank([divided(B), divided(X)], 1e-8) == rank(divided(B), 1e-8)); end
 tell("solvable", tell0);
 if exist("Kd"), tell("A - Ad", B*Kd); end
-if exist("K"), tell("assigned by K", poly(A - B*K)); end
-if exist("L")
-  if copy == 0, R = unit_rows(C); end
-  T = [C; R]; m = 1:rows(C); r = rows(C)+1:rows(A); At = T*A/T; tell("assigned by L", poly(At(r, r) - L*At(m, r)));
-end
-if exist("error_"), tell("assigned by the error matrix", poly(error_)); end
 """
 
 _REDUCED = """
@@ -146,7 +147,7 @@ m = 1:rows(C); r = rows(C)+1:rows(A); At = T*A/T; Bt = T*B;
 if rows(C) == 1 && rcond(obsv(divided(At(r, r)), divided(At(m, r)))) > 1e-8
   tell("L", acker(At(r, r)', At(m, r)', roots(phi))');
 end
-X = At(r, r) - L*At(m, r); tell("F", X); tell("assigned", poly(X)); tell("polynomial", poly(F));
+X = At(r, r) - L*At(m, r); tell("F", X); tell("assigned", poly(X)); tell("polynomial", poly(F)); tell("poles", poly(X));
 H = At(r, m) - L*At(m, m) + X*L; tell("H", H); tell("G", Bt(r, :) - L*Bt(m, :) - H*D);
 tell("M", inv([C; T(r, :) - L*C]));
 """
@@ -159,7 +160,7 @@ S = minreal(ss(A, B, C, D, tsam), 1e-8); tell("poles", poly(pole(S))); tell("zer
 _CANONICAL = """
 if exist("T")
   tell("rank of T", svd(T)); tell("new A", T*A/T); tell("new B", T*B); tell("new C", C/T); tell("new D", D);
-  X = [zeros(rows(A)-1, 1), eye(rows(A)-1); -fliplr(poly(A)(2:end))];
+  tell("polynomial", poly(A)); X = [zeros(rows(A)-1, 1), eye(rows(A)-1); -fliplr(poly(A)(2:end))];
   tell("controllable companion", X); tell("observable companion", X');
   e = eye(rows(A)); tell("controllable input", e(:, end)); tell("observable output", e(end, :));
 else
@@ -193,7 +194,8 @@ if {finite}
 else
   X = gram(ss(A, {B}, {C}, zeros({size}), tsam), "{which}"); tell("infinite gramian", X);
 end
-tell("determinant", det(X)); Q = obsv(Z, {root}); tell("finite sum", Q' * Q);
+if exist("size_"), tell("determinant", det(X) / size_); end
+tell("rank", seen(Z, {root})); Q = obsv(Z, {root}); tell("finite sum", Q' * Q);
 """
 
 _PARTS = {
@@ -207,7 +209,6 @@ _PARTS = {
 Y = []; for t = times, Y = [Y, C * expm(A * t) * x0]; end
 tell("output", Y); tell("rank", seen(A, C));""",
     "reduced_order_observer": _REDUCED,
-    "tracking": _TRACKING,
 }
 
 
@@ -241,7 +242,7 @@ def _judged(case: Case, claims: Claims, reply: octave.Reply) -> Difference:
 
 # -- questions ---------------------------------------------------------------------------------------------------------
 
-_RENAMED = {"sign": "sign_", "error": "error_"}
+_RENAMED = {"sign": "sign_", "size": "size_"}
 
 
 def question(case: Case, claims: Claims) -> str:
@@ -293,20 +294,15 @@ def _part(case: Case, claims: Claims) -> str:
                 size="rows(C), 1" if observed else "1, columns(B)",
                 which="o" if observed else "c",
             )
-        case "compensator" | "feedforward":
-            minimal = case.specification.get("observer") == "minimal"
-            parts = [_MINIMAL if minimal else _FULL]
-            if minimal and "T" not in given:
-                parts.insert(0, "if copy == 0, R = unit_rows(C); end\nT = [C; R];")
-            if "K" not in given:
-                return _NO_GAINS
-            parts.append(_ASSIGNED_BY.format(observer="Fz" if minimal else "A - L*C"))
-            if task == "compensator":
-                parts.append(_COMPENSATOR if "own" in given else "")
-            elif "F" not in given:
-                parts.append(_NOTHING_AT_REST)
-            else:
-                parts.append((_FEEDFORWARD_MINIMAL if minimal else _FEEDFORWARD) + _AT_REST)
+        case "compensator" | "feedforward" | "tracking":
+            minimal = task == "tracking" or case.specification.get("observer") == "minimal"
+            parts = [_TRACKING if task == "tracking" else "", _MINIMAL if minimal else _FULL, _ASSIGNED_BY]
+            if task == "compensator" and "own" in claims.values:
+                parts.append(_COMPENSATOR)
+            if task == "feedforward":
+                parts.append(_FEEDFORWARD if "F" in given else _NOTHING_AT_REST)
+            if task == "tracking":
+                parts.append('tell("error matrix", [A - B*K, -B*Ke; Z, Fo]);')
             return "\n".join(parts)
         case "reduced_order_observer" if "L" not in given:
             return _NO_GAIN.format(seen="seen(A, C)")

@@ -111,17 +111,17 @@ def _rank_test(case: Case, g: Data, exact: Data) -> Found:
     if "N" in exact:
         found["kernel"] = (matrix if observed else matrix.T) @ exact["N"]
         found["kernel's rank"] = _singular(exact["N"])
-    if matrix.shape[0] == matrix.shape[1]:
-        found["determinant"] = _row(np.linalg.det(matrix))
+    if "size" in exact:
+        found["determinant"] = _row(np.linalg.det(matrix)) / exact["size"]
     return found
 
 
 def _modes(_: Case, g: Data, exact: Data) -> Found:
     observed = "C" in g
     A, C = (g["A"], g["C"]) if observed else (g["A"].T, g["B"].T)
-    hidden = _hidden(A, C)[1]
-    found = {"polynomial": _row(control.ss(A, A[:, :1], C[:1], 0).poles()), "hidden": hidden}
-    found["polynomial"] = _row(np.poly(found["polynomial"][0]))
+    s, hidden = _hidden(A, C)
+    found = {"polynomial": _row(np.poly(control.ss(A, A[:, :1], C[:1], 0).poles())), "hidden": hidden, "rank": s}
+    found["polynomial as said"] = found["polynomial"]
     for k, mode in enumerate(exact["modes"][0]):
         shifted = A - mode * np.eye(len(A))
         matrix = np.vstack([shifted, C])
@@ -183,7 +183,7 @@ def _placed(A: Any, B: Any, phi: Any) -> Any:
     return np.atleast_2d(control.acker(A, B, poles))
 
 
-def _reduced(_: Case, g: Data, exact: Data) -> Found:
+def _reduced(case: Case, g: Data, exact: Data) -> Found:
     if "L" not in g:
         return {"no gain": _left(exact["phi"], g["A"], g["C"])}
     p = len(g["C"])
@@ -194,6 +194,8 @@ def _reduced(_: Case, g: Data, exact: Data) -> Found:
         "F": F,
         "assigned": _polynomial(F),
         "polynomial": _polynomial(g["F"]),
+        "poles": _polynomial(F),
+        "T": np.vstack([g["C"], _unit_rows(case.plant("C").real)]),
         "H": A21 - L @ A11 + F @ L,
         "G": Bt[p:] - L @ Bt[:p] - (A21 - L @ A11 + F @ L) @ g["D"],
         "M": np.linalg.inv(np.vstack([g["C"], g["T"][p:] - L @ g["C"]])),
@@ -248,11 +250,14 @@ def _connected(case: Case, g: Data, gain: Any) -> Any:
 
 
 def _compensator(case: Case, g: Data, exact: Data) -> Found:
-    if "K" not in g:
-        return {
-            "no K": _left(exact["phi_c"], g["A"].T, g["B"].T),
-            "no L": _left(exact["phi_o"], g["A"], g["C"]),
+    if "K" not in g or "L" not in g:
+        found = {
+            "no K": _row(0) if "K" in g else _left(exact["phi_c"], g["A"].T, g["B"].T),
+            "no L": _row(0) if "L" in g else _left(exact["phi_o"], g["A"], g["C"]),
         }
+        if "K" in g:
+            found["assigned by K"] = _polynomial(g["A"] - g["B"] @ g["K"])
+        return found
     inner, assigned = _estimator(case, g)
     found = {"assigned by K": _polynomial(g["A"] - g["B"] @ g["K"]), "assigned by L": assigned}
     if case.task == "feedforward":
@@ -260,27 +265,22 @@ def _compensator(case: Case, g: Data, exact: Data) -> Found:
             whole = _connected(case, g, g["F"])
             found["gain at rest"] = np.atleast_2d(whole.dcgain()).astype(complex)
             found["from v to y"] = _values(whole)
+            found["polynomial"] = _row(np.poly(whole.poles()))
         else:
             A, B, C, D, K = (g[letter] for letter in "ABCDK")
             found["nothing at rest"] = np.atleast_2d(_system(case, A - B @ K, B, C - D @ K, D).dcgain()).astype(complex)
         return found
-    if "own" not in g:
-        return found
     m, p = g["B"].shape[1], len(g["C"])
     plant = _system(case, *(g[letter] for letter in "ABCD"))
     around = np.hstack([np.eye(m), np.zeros((m, p))]).T  # the estimator's u is what it puts out itself
-    closed = control.feedback(inner, control.ss([], [], [], around, inner.dt), 1) * np.vstack(
-        [np.zeros((m, p)), np.eye(p)]
-    )
-    own = -closed
+    entering = np.vstack([np.zeros((m, p)), np.eye(p)])
+    own = -control.feedback(inner, control.ss([], [], [], around, inner.dt), 1) * entering
     loop = control.feedback(plant, own)
-    found["loop"] = _row(np.poly(loop.poles()))
-    found["compensator's polynomial"] = _polynomial(closed.A)
+    found["loop"] = found["polynomial"] = _row(np.poly(loop.poles()))
+    found["own"], found["in the estimate"] = own.A, loop.A
     found["values of F"], found["closed loop"] = _values(own), _values(loop)
     if m == p == 1:
         found["unity loop"] = _values(control.feedback(plant * own, 1))
-    for name in ("closed_loop_matrix", "closed_loop_matrix_estimate"):
-        found[f"assigned by {name}"] = _polynomial(g[name])
     return found
 
 
@@ -297,7 +297,10 @@ def _gramian(case: Case, g: Data, exact: Data) -> Found:
     else:
         horizon, name = exact["horizon"][0, 0].real, "finite gramian"
         matrix = _sum(A, C, round(horizon)) if case.discrete else _integral(A, C, horizon)
-    return {name: matrix, "determinant": _row(np.linalg.det(matrix)), "finite sum": _sum(A, C, len(A))}
+    found = {name: matrix, "finite sum": _sum(A, C, len(A))}
+    if "size" in exact:
+        found["determinant"] = _row(np.linalg.det(matrix)) / exact["size"]
+    return found | {"rank": _hidden(A, C)[0]}
 
 
 def _sum(A: Any, C: Any, steps: int) -> Any:
@@ -354,7 +357,7 @@ def _canonical_form(case: Case, g: Data, _: Data) -> Found:
         theirs, _ = control.reachable_form(plant)  # the same with the states in the other order
         found["controllable companion"], found["controllable input"] = theirs.A[::-1, ::-1], theirs.B[::-1]
         found["new C"] = theirs.C[:, ::-1]
-    return found | {"rank of T": _singular(g["T"])}
+    return found | {"rank of T": _singular(g["T"]), "polynomial": _polynomial(g["A"])}
 
 
 _FINDERS: Mapping[str, Callable[[Case, Data, Data], Found]] = {
