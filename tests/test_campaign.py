@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.campaign import __main__ as campaign
-from tests.campaign import discovery
+from tests.campaign import discovery, shrink
 from tests.campaign.asked import Asked, Untold, rows, to_toml
 from tests.campaign.figures import AGREES, DIFFERS, UNTOLD, Figures
 from tests.campaign.plants import KINDS, drawn
@@ -77,7 +77,7 @@ LIES = [
     ("dual", "A", "A"),
     ("decomposition", "T", "A"),
     ("state_feedback", "K", "closed-loop polynomial"),
-    ("observer", "L", "closed loop"),
+    ("observer", "L", "B_y"),
     ("observer", "verdict", "verdict"),
     ("reduced_order_observer", "H", "P A − F P = H C"),
     ("compensator", "F", "F"),
@@ -110,19 +110,13 @@ def wrong(value: Any) -> Any:
 
 @cache
 def answer_with(task: str, field: str) -> Asked:
-    """The first answer without parameters that has the field."""
-    for seed in range(5000):
+    """The first answer about a plant without parameters that has the field, and is not a no already."""
+    for seed in range(200):
         kind, problem = drawn(seed, [task])
-        answer = solved(kind, seed, problem)
-        if (
-            isinstance(answer, Asked)
-            and answer.answer.get(field)
-            and (task == "stability_region" or not problem["symbols"])
-        ):
-            if field != "verdict" or answer.verdict == "yes":
-                return answer
+        if set(problem["symbols"]) - {"T", "q", "r", "h1", "h2"}:
             continue
-        if isinstance(answer, Asked) and task == "initial_state_covariance" and answer.answer.get(field):
+        answer = solved(kind, seed, problem, 2)
+        if isinstance(answer, Asked) and answer.answer.get(field) and (field != "verdict" or answer.verdict == "yes"):
             return answer
     raise LookupError(task)
 
@@ -161,11 +155,11 @@ def test_a_wrong_answer_is_seen_with_parameters(
 
 
 def test_a_seed_draws_the_same_problem_of_any_kind_and_task() -> None:
-    problems = [drawn(seed) for seed in range(1500)]
+    problems = [drawn(seed) for seed in range(4000)]
     assert problems[:50] == [drawn(seed) for seed in range(50)]
     assert {kind for kind, _ in problems} == set(KINDS)
     assert {problem["task"] for _, problem in problems} == set(TASKS)
-    assert {problem["task"] for _, problem in map(lambda seed: drawn(seed, ["dual"]), range(20))} == {"dual"}
+    assert {drawn(seed, ["dual"])[1]["task"] for seed in range(20)} == {"dual"}
     sizes = {len(rows(problem["plant"]["A"])) for kind, problem in problems if "A" in problem["plant"]}
     assert {1, 2, 3, 4} < sizes
     assert max(sizes) <= 12
@@ -237,15 +231,13 @@ def test_a_failure_shrinks_to_what_matters() -> None:
     assert kind == "several"
     smaller = shrunk(problem, lambda tried: "3" in tried["plant"]["A"])
     plant = smaller["plant"]
-    assert plant == {"A": "[3]", "B": "[0]", "C": "[0]"}
+    assert plant in ({"A": "[3]", "B": "[0]", "C": "[0]"}, {"A": "[-3]", "B": "[0]", "C": "[0]"})
 
 
 def test_a_bug_of_ours_is_found_shrunk_and_written_down(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, require_tool: Callable[[str], str]
 ) -> None:
     require_tool("gp")
-    from symobs.design import gain  # noqa: PLC0415 - only this test breaks it
-    from tests.campaign import shrink  # noqa: PLC0415
 
     def lying(*arguments: Any) -> Any:
         found = solved(*arguments)
@@ -253,10 +245,9 @@ def test_a_bug_of_ours_is_found_shrunk_and_written_down(
             return replace(found, answer={**found.answer, "rank": found.answer["rank"] - 1})
         return found
 
-    assert gain is not None
     monkeypatch.setattr(campaign, "solved", lying)
     monkeypatch.setattr(shrink, "solved", lying)
-    asked = ["--designs", "3", "--seed", "3", "--task", "observability", "--oracle", "PARI", "--out", str(tmp_path)]
+    asked = ["--designs", "2", "--seed", "3", "--task", "observability", "--oracle", "PARI", "--out", str(tmp_path)]
     assert campaign.main(asked) == 1
     small = sorted((tmp_path / "failures").glob("PARI-*-small.toml"))
     assert small
@@ -266,13 +257,13 @@ def test_a_bug_of_ours_is_found_shrunk_and_written_down(
         assert len(rows(tomllib.loads(text)["plant"]["A"])) == 2
 
     monkeypatch.undo()
-    assert campaign.main([*asked[:1], "4", *asked[2:]]) == 0
+    assert campaign.main([*asked[:1], "3", *asked[2:]]) == 0
     assert not list((tmp_path / "failures").glob("*.toml"))
     figures = Figures.load(tmp_path / "figures.json")
-    assert figures.next_seed == 7
+    assert figures.next_seed == 6
     assert figures.count("PARI", DIFFERS) == 0
-    assert figures.count("PARI", AGREES) == figures.total == 4
-    assert "4/0/0" in (tmp_path / "table.txt").read_text(encoding="utf-8")
+    assert figures.count("PARI", AGREES) == figures.total == 3
+    assert "3/0/0" in (tmp_path / "table.txt").read_text(encoding="utf-8")
 
 
 def test_what_could_not_be_told_is_counted_with_its_reason() -> None:

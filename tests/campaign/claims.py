@@ -507,7 +507,8 @@ def _gramian(b: Branch) -> Iterator[Claim]:
     if not b.has("matrix") or b.verdict == "no":
         return
     W = b.field("matrix")
-    yield zero("determinant", W.determinant - b.field("determinant"))
+    if b.has("determinant"):
+        yield zero("determinant", W.determinant - b.field("determinant"))
     if horizon == "inf" and b.variable == "s":
         yield zero("Lyapunov's equation", A.T @ W + W @ A + C.T @ C)
     elif horizon == "inf":
