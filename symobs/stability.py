@@ -245,12 +245,14 @@ def _number(generator: random.Random, sign: str) -> Fraction:
 
 
 def no_stable_compensator(transfer_function: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
-    """Tell whether P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
+    """Tell whether a strictly proper P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
 
-    With F = n/δ the loop's polynomial is χδ + Nn.  It is positive at z, being stable, so δ(z) < 0, although δ(s) tends
-    to +∞: δ has a root beyond z.  (Half of the parity interlacing property of Youla, Bongiorno and Lu, 1974.)  Zeros
-    are seen where a factor of N is s − z, or s² − z².
+    With F = n/δ the loop's polynomial is χδ + Nn, which is monic as χδ is.  It is positive at z, being stable, so
+    δ(z) < 0, although δ(s) tends to +∞: δ has a root beyond z.  (Half of the parity interlacing property of Youla,
+    Bongiorno and Lu, 1974.)  Zeros are seen where a factor of N is s − z, or s² − z².
     """
+    if transfer_function.numerator.degree(variable) >= transfer_function.denominator.degree(variable):
+        return False
     characteristic = monic(transfer_function.denominator, variable)
     for factor, _ in transfer_function.numerator.factors()[1]:
         lead, *rest = factor.coefficients(variable)

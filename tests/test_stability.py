@@ -301,6 +301,12 @@ def test_monic() -> None:
         ((s - 1) * (s - 3), (s - 2) * (s - 4) * (s + 1), True),  # 1 has two poles beyond it, 3 has one
         (s**2 - 2, s**2 * (s**2 - 9), True),  # zeros ±√2, poles 0, 0, ±3
         (s**2 + 2, s**2 * (s**2 - 9), False),  # zeros on the axis
+        (
+            -(s**2) - 4 * s + 2,
+            s**2 - 3 * s - 1,
+            False,
+        ),  # u = -8/7 y: what enters y at once may change the sign at infinity
+        (-(s - 1) * (s + 4), (s - 2) * (s + 3), False),  # u = -8/7 y stabilises it, as the polynomial of the loop shows
     ],
 )
 def test_a_stable_compensator_is_ruled_out_by_the_parity_of_poles_beyond_a_zero(

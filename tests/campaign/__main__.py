@@ -14,7 +14,7 @@ from tests.campaign.asked import Asked, Tables, to_toml
 from tests.campaign.figures import DIFFERS, Figures
 from tests.campaign.plants import drawn
 from tests.campaign.shrink import disagrees, shrunk
-from tests.campaign.solving import solved
+from tests.campaign.solving import Refused, solved
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,6 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     kept = folder / "figures.json"
     figures = Figures.load(kept) if kept.exists() else Figures(options.seed)
+    look_again(figures, chosen, folder, options.task)
     while figures.total + sum(figures.refused.values()) < options.designs:
         left = options.designs - figures.total - sum(figures.refused.values())
         run_batch(figures, chosen, folder, min(options.batch, left), options.task, options.seconds)
@@ -71,17 +72,30 @@ def run_batch(
     answers: list[Asked] = []
     for seed in range(figures.next_seed, figures.next_seed + count):
         kind, problem = drawn(seed, tasks)
-        try:
-            answer = solved(kind, seed, problem, seconds)
-        except Exception:  # noqa: BLE001 - whatever it is, it is a bug of ours, and the campaign goes on
-            _write(folder, f"crash-{seed}", problem, traceback.format_exc(limit=-3))
+        answer = _answered(folder, kind, seed, problem, seconds)
+        if answer is None:
             figures.refused[str(problem["task"]), "crashed"] += 1
-            continue
-        if isinstance(answer, Asked):
+        elif isinstance(answer, Asked):
             answers.append(answer)
             figures.answered(answer)
         else:
             figures.gave_up(answer)
+    _judge(figures, oracles, answers, folder)
+    figures.next_seed += count
+    figures.seconds += time.perf_counter() - begun
+
+
+def _answered(folder: Path, kind: str, seed: int, problem: Tables, seconds: float) -> Asked | Refused | None:
+    """Return our answer; None where there was an exception that is no refusal, which is written down."""
+    try:
+        return solved(kind, seed, problem, seconds)
+    except Exception:  # noqa: BLE001 - whatever it is, it is a bug of ours, and the campaign goes on
+        _write(folder, f"crash-{seed}", problem, traceback.format_exc(limit=-3))
+        return None
+
+
+def _judge(figures: Figures, oracles: Mapping[str, Oracle], answers: Sequence[Asked], folder: Path) -> None:
+    """Let every oracle judge what it covers."""
     for name, oracle in oracles.items():
         covered = [answer for answer in answers if oracle.covers(answer.problem)]
         judgements = oracle.differences(covered) if covered else []
@@ -89,8 +103,33 @@ def run_batch(
             figures.judge(name, answer, judgement)
             if isinstance(judgement, str):
                 report(folder, name, oracle, answer, judgement)
-    figures.next_seed += count
-    figures.seconds += time.perf_counter() - begun
+
+
+def look_again(figures: Figures, oracles: Mapping[str, Oracle], folder: Path, tasks: Sequence[str]) -> None:
+    """Judge again what an earlier run of the same seeds found wrong; what is mended is counted as it is now."""
+    mended = folder / "failures" / "mended"
+    for path in sorted((folder / "failures").glob("*.toml")):
+        name, _, number = path.stem.rpartition("-")
+        if not number.isdigit():
+            continue
+        kind, problem = drawn(int(number), tasks)
+        answer = _answered(folder, kind, int(number), problem, 30)
+        if not isinstance(answer, Asked):
+            continue
+        if name == "crash":
+            figures.refused[answer.task, "crashed"] -= 1
+            figures.answered(answer)
+            _judge(figures, oracles, [answer], folder)
+        elif (oracle := oracles.get(name.replace("-", " "), oracles.get(name))) is not None:
+            (judgement,) = oracle.differences([answer])
+            if isinstance(judgement, str):
+                continue
+            figures.judge(oracle.NAME, answer, judgement)
+            figures.withdraw(oracle.NAME, answer)
+        mended.mkdir(exist_ok=True)
+        for each in (path, path.with_stem(f"{path.stem}-small")):
+            if each.exists():
+                each.replace(mended / each.name)
 
 
 def report(folder: Path, name: str, oracle: Oracle, answer: Asked, judgement: str) -> Tables:

@@ -28,8 +28,8 @@ from tests.campaign.algebra import (
     zero,
     zeros,
 )
-from tests.campaign.points import holds
 from tests.campaign.asked import Tables, is_discrete, listed, rows
+from tests.campaign.points import holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

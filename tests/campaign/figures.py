@@ -49,6 +49,10 @@ class Figures:
             word = DIFFERS
         self.judged[oracle, asked.task, asked.kind, word] += 1
 
+    def withdraw(self, oracle: str, asked: Asked) -> None:
+        """Take back a disagreement that is none any more."""
+        self.judged[oracle, asked.task, asked.kind, DIFFERS] -= 1
+
     @property
     def total(self) -> int:
         return sum(self.drawn.values())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 from contextlib import contextmanager
 from dataclasses import dataclass
+from threading import Event
 from typing import TYPE_CHECKING
 
 from symobs.errors import SymobsError
@@ -34,21 +35,26 @@ class _TooSlow(Exception):
 
 def solved(kind: str, seed: int, problem: Tables, seconds: float = 20) -> Asked | Refused:
     """Solve a problem through the text of its file; any exception but `SymobsError` is a bug and is not caught."""
+    over = Event()
     try:
-        with _at_most(seconds):
+        with _at_most(seconds, over):
             (result,) = validate(parse(to_toml(problem), "problem")).solve()
             return Asked(kind, seed, problem, result_object(result))
     except SymobsError as error:
         return Refused(kind, seed, problem, " ".join(str(error).split()))
-    except _TooSlow:
-        return Refused(kind, seed, problem, f"no answer within {seconds:g} s")
+    except Exception:
+        # An end in the middle of a property may come out as an AttributeError.
+        if over.is_set():
+            return Refused(kind, seed, problem, f"no answer within {seconds:g} s")
+        raise
 
 
 @contextmanager
-def _at_most(seconds: float) -> Iterator[None]:
+def _at_most(seconds: float, happened: Event) -> Iterator[None]:
     """Give up after so many seconds; a call into FLINT ends first."""
 
     def over(_number: int, _frame: FrameType | None) -> None:
+        happened.set()
         raise _TooSlow
 
     before = signal.signal(signal.SIGALRM, over)
