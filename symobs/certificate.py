@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import itertools
 import random
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
@@ -43,6 +43,7 @@ from symobs.formula import (
 from symobs.formula.calculus import TIME
 from symobs.formula.plain import plain_relation
 from symobs.pointwise import Pointwise, never_together_zero
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -58,7 +59,7 @@ SENSELESS = (ArithmeticError, AssertionError, AttributeError, LookupError, Recur
 _AT_POINTS = {"=", "!=="}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Claim:
     """A relation that must hold in an environment; `says` is its text for the reader."""
 
@@ -70,7 +71,7 @@ class Claim:
         return self.says or plain_relation(self.relation, self.environment.variable)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Statement:
     """What no equation says: `shown` returns how it was found true, "" where it is not."""
 
@@ -78,7 +79,7 @@ class Statement:
     shown: Callable[[], str]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Certificate:
     """A claim that was checked: how, and the probability with which a false one would have passed."""
 
@@ -125,17 +126,17 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
         return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
     free = replace(environment, coefficients={}) if environment.coefficients else environment
     pointwise = not set(relation.operators) <= _AT_POINTS
-    exactly = pointwise or environment.relations != () or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
+    exactly = pointwise or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO
     if exactly and (free is environment or "!==" not in relation.operators) and _holds_exactly(relation, free):
         return "exact", 0.0
-    if exactly and (pointwise or environment.relations or not environment.coefficients):
+    if exactly and (pointwise or not environment.coefficients):
         return "", 0.0
     return _holds_at_points(relation, environment, leaves)
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
     """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
-    if environment.relations and environment.coefficients:
+    if environment.relations:
         return True
     formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
     if any(contains(formula, (At, Integral)) for formula in formulas):
@@ -170,7 +171,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         return _is_rounding(left, right)
     if operator == "!=":
         difference = left - right
-        entries = difference.entries if isinstance(difference, Matrix) else (as_scalar(difference),)
+        entries = difference.entries if isinstance(difference, Matrix) else (difference,)
         sure = any(_excluded_from_zero(entry, environment) for entry in entries)
         return sure or never_together_zero(entries, environment.relations, environment.signs)
     sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.above)
@@ -188,15 +189,16 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
 def _is_rounding(exact: Any, shown: Any) -> bool:
     """Tell whether every entry is rounded to the decimals shown."""
     if not isinstance(exact, Matrix):
-        return is_rounding(as_scalar(exact), as_scalar(shown))
-    pairs = zip(exact.entries, shown.entries, strict=True)
-    return bool(exact.shape == shown.shape) and all(is_rounding(entry, near) for entry, near in pairs)
+        return is_rounding(exact, as_scalar(shown))
+    if exact.shape != shown.shape:
+        return False
+    return all(is_rounding(entry, near) for entry, near in zip(exact.entries, shown.entries, strict=True))
 
 
 def as_scalar(value: Any) -> Scalar:
     """Read a 1×1 matrix as its entry; raises TypeError for what is not a scalar."""
     if isinstance(value, Matrix) and value.shape == (1, 1):
-        return value[0, 0]
+        (value,) = value.entries
     if not isinstance(value, Scalar):
         message = f"{type(value).__name__} is not a scalar"
         raise TypeError(message)
@@ -209,10 +211,10 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
         return False
     if never_zero(value, environment.signs):
         return True
-    if environment.relations or value.size > FACTORED_UP_TO:
+    if value.size > FACTORED_UP_TO:
         return False
-    assumed = set(environment.assumed)
-    return all(factor in assumed or never_zero(factor, environment.signs) for factor, _ in value.numerator.factors()[1])
+    factors = (factor for factor, _ in value.numerator.factors()[1])
+    return all(factor in environment.assumed or never_zero(factor, environment.signs) for factor in factors)
 
 
 def _holds_at_points(
@@ -294,4 +296,4 @@ def _seed(relation: Relation, environment: Environment, leaves: Sequence[Scalar 
     digest = hashlib.sha256(plain_relation(relation, environment.variable).encode())
     for leaf in leaves:
         digest.update(leaf.fingerprint().encode())
-    return int.from_bytes(digest.digest(), "big")
+    return int.from_bytes(digest.digest())

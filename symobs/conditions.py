@@ -9,12 +9,12 @@ not repeated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.enclosure import sign_of_number
 from symobs.exact.functions import PI, known
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -34,7 +34,7 @@ _OPPOSITE = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Condition:
     """expression operator 0, of the given kind."""
 

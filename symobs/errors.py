@@ -107,6 +107,12 @@ class UsageError(SymobsError):
     exit_code = 2
 
 
+class OutOfBudget(SymobsError):
+    """The time or the memory that was allowed ran out; `facts["reached"]` is what was reached by then, if anything."""
+
+    exit_code = 5
+
+
 class TypesettingError(SymobsError):
     """TeX is missing, failed, or ran out of time."""
 

@@ -15,12 +15,13 @@ mathematics comes with the labels, their signs too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, TypeAlias, overload
 
 from symobs.exact import Scalar
 from symobs.formula import Formula, Letter, Literal, Negative, Together
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,7 +31,7 @@ Label: TypeAlias = Formula | Together
 Labels: TypeAlias = "Mapping[str, Label]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Wire:
     """A line from one node to another; `turn` is `>`, `-|` or `|-`, `gain` the label of a sign or empty."""
 

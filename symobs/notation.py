@@ -7,14 +7,15 @@ polynomial; x̂ estimate, e = x − x̂ error.  A polynomial's letter carries it
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LetterForm:
     """How a letter is written: in LaTeX, on a terminal, and in words.  `{v}` stands for the polynomial's variable."""
 
@@ -325,7 +326,7 @@ def _split(name: str) -> tuple[str, str, list[str]]:
     return stem, digits, [part for part in rest.split("_") if part]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Theorem:
     """A statement that a step rests on: its short name and where it is proved."""
 

@@ -1,54 +1,69 @@
-"""Writing what was asked for: whole or not at all, to standard output or to a file."""
+"""Writing what was asked for: whole or not at all, to standard output or to files; of several results all or none."""
 
 from __future__ import annotations
 
 import errno
 import os
 import sys
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError, UsageError
+from symobs.errors import InputError, SymobsError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    #: A complete file, the place it waits for, and how that was named.
+    Prepared = tuple[Path, Path, str]
+
+_ELSEWHERE = "name a file in a folder that can be written"
+#: What helps against reasons of the system; the others are helped by another file.
+_REPAIRS = {
+    errno.ENOSPC: "make room there, or name a file elsewhere with -o",
+    errno.EDQUOT: "make room there, or name a file elsewhere with -o",
+    errno.EFBIG: "raise the limit on the size of files (ulimit -f), or name a file elsewhere with -o",
+}
 
 
 def write(content: str | bytes, target: str | None = None) -> None:
     """Write the whole result or nothing; without a target, or to `-`, to standard output."""
-    data = content.encode() if isinstance(content, str) else content
+    write_all(((content, target),))
+
+
+def write_all(outputs: Sequence[tuple[str | bytes, str | None]]) -> None:
+    """Write all results or none: files take their places when each is complete and the streams are served."""
+    files: list[Prepared] = []
     try:
-        if target is not None and target != "-":
-            _write_file(data, Path(os.path.realpath(target)))
-            return
-        stream = binary(sys.stdout)
-        if isinstance(content, bytes) and stream.isatty():
-            raise UsageError("this format is not text", repair="name a file with -o")
-        stream.write(data)
-        stream.flush()
-    except BrokenPipeError:  # whoever read this has read enough; what is left in the buffer goes nowhere
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        where = "standard output" if target is None else target[:200]
-        raise InputError(reason, where=where, repair="name a file in a folder that can be written") from None
-
-
-def _write_file(data: bytes, target: Path) -> None:
-    """Put a file in its place when it is complete; what is no regular file (/dev/stdout) is written to directly."""
-    import tempfile  # noqa: PLC0415 - only with -o
-
-    if target.exists() and not target.is_file():
-        target.write_bytes(data)
-        return
-    mode = target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask()
-    with tempfile.NamedTemporaryFile(dir=target.parent, prefix=".symobs-", delete=False) as stream:
-        temporary = Path(stream.name)
-        try:
-            stream.write(data)
-            stream.close()
-            temporary.chmod(mode)
-            temporary.replace(target)
-        except BaseException:
+        for content, target in outputs:
+            if _is_file(target):
+                files.append(_prepared(_bytes(content), str(target)))
+        for content, target in outputs:
+            if not _is_file(target):
+                _send(content, target)
+        _put_in_place(files)
+    finally:
+        for temporary, _, _ in files:
             temporary.unlink(missing_ok=True)
-            raise
+
+
+def check_target(target: str | None) -> None:
+    """Raise `InputError`, before any work, where a result could not be written."""
+    if target is None or target == "-":
+        return
+    with _explained(target):
+        path = Path(os.path.realpath(target))
+        folder = path.parent
+        if path.is_dir():
+            raise InputError("this is a folder", where=_shown(target), repair=_ELSEWHERE)
+        if not folder.is_dir():
+            repair = f"make it, or {_ELSEWHERE}"
+            raise InputError(f"there is no folder {_shown(str(folder))}", where=_shown(target), repair=repair)
+        if path.exists() and not os.access(path, os.W_OK):
+            repair = f"make it writable (chmod u+w), or {_ELSEWHERE}"
+            raise InputError("the file is read-only", where=_shown(target), repair=repair)
+        if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
+            raise InputError("the folder cannot be written", where=_shown(target), repair=_ELSEWHERE)
 
 
 def binary(stream: Any) -> Any:
@@ -58,7 +73,121 @@ def binary(stream: Any) -> Any:
     return stream.buffer
 
 
+# -- streams ----------------------------------------------------------------------------------------------------------
+
+
+def _is_file(target: str | None) -> bool:
+    """Whether a target is a file or will be one; what is no regular file (/dev/stdout, a pipe) is a stream."""
+    if target is None or target == "-":
+        return False
+    with _explained(target):
+        path = Path(os.path.realpath(target))
+        return path.is_file() or not path.exists()
+
+
+def _send(content: str | bytes, target: str | None) -> None:
+    """Write to a stream, and be content where its reader has read enough."""
+    try:
+        with _explained(target):
+            if target is not None and target != "-":
+                check_target(target)
+                Path(target).write_bytes(_bytes(content))
+                return
+            stream = binary(sys.stdout)
+            if isinstance(content, bytes) and stream.isatty():
+                raise UsageError("this format is not text", repair="name a file with -o")
+            stream.write(_bytes(content))
+            stream.flush()
+    except BrokenPipeError:  # what is left in the buffer goes nowhere
+        if target is None or target == "-":
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _bytes(content: str | bytes) -> bytes:
+    return content.encode() if isinstance(content, str) else content
+
+
+# -- files ------------------------------------------------------------------------------------------------------------
+
+
+def _prepared(data: bytes, target: str) -> Prepared:
+    """Write a file beside its place."""
+    import tempfile  # noqa: PLC0415 - only with -o
+
+    check_target(target)
+    place = Path(os.path.realpath(target))
+    with _explained(target):
+        mode = place.stat().st_mode & 0o777 if place.exists() else 0o666 & ~_umask()
+        with tempfile.NamedTemporaryFile(dir=place.parent, prefix=".symobs-", delete=False) as stream:
+            temporary = Path(stream.name)
+            try:
+                stream.write(data)
+                stream.close()
+                temporary.chmod(mode)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
+    return temporary, place, target
+
+
+def _put_in_place(files: Sequence[Prepared]) -> None:
+    """Move complete files to their places; where one cannot go there, those that went before it are taken back."""
+    new = {place for _, place, _ in files if not place.exists()}
+    kept: dict[Path, Path] = {}
+    moved: list[Path] = []
+    try:
+        for temporary, place, name in files:
+            if len(files) > 1 and place not in new:
+                kept |= _kept(temporary, place)
+            with _explained(name):
+                temporary.replace(place)
+            moved.append(place)
+    except BaseException:
+        for place in moved:
+            if place in new:
+                place.unlink(missing_ok=True)
+            elif place in kept:
+                kept[place].replace(place)
+        raise
+    finally:
+        for before in kept.values():
+            before.unlink(missing_ok=True)
+
+
+def _kept(temporary: Path, place: Path) -> dict[Path, Path]:
+    """Give what stands in a place a second name; return that, or nothing where the file system has no second names."""
+    before = temporary.with_suffix(".before")
+    with suppress(OSError):
+        before.hardlink_to(place)
+        return {place: before}
+    return {}
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+# -- reasons ----------------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _explained(target: str | None) -> Iterator[None]:
+    """Tell what the system refuses as an `InputError`, but not that a reader has read enough."""
+    try:
+        yield
+    except (BrokenPipeError, SymobsError):
+        raise
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte, a closed stream
+        reason = getattr(error, "strerror", None) or str(error)
+        is_stream = target is None or target == "-"
+        where, other = ("standard output", "name a file with -o") if is_stream else (_shown(target), _ELSEWHERE)
+        repair = _REPAIRS.get(getattr(error, "errno", 0) or 0, other)
+        raise InputError(reason, where=where, repair=repair) from None
+
+
+def _shown(target: str | None) -> str:
+    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+
+    return shown(str(target), 200)

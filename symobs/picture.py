@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
-if TYPE_CHECKING:
-    from fractions import Fraction
+from symobs.record import dataclass
 
+if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.formula import Relation
 
@@ -16,7 +16,7 @@ Place: TypeAlias = "tuple[Fraction, Fraction]"
 Interval: TypeAlias = "tuple[Fraction, Fraction]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Curve:
     """A piece of the set where `equation` holds; a `boundary` is an edge of the region, other curves only divide the plane."""
 
@@ -25,7 +25,7 @@ class Curve:
     boundary: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mark:
     """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
@@ -33,7 +33,7 @@ class Mark:
     kind: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RegionPicture:
     """A region of two parameters inside a window: filled areas (closed polygons), curves, marks.
 
@@ -48,7 +48,7 @@ class RegionPicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class End:
     """An end of an interval on a line: where it is drawn, and the formula or text that is written there."""
 
@@ -56,7 +56,7 @@ class End:
     label: Scalar | str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class LinePicture:
     """Intervals of one parameter, open at both ends; an end that is missing lies beyond the window."""
 
@@ -67,7 +67,7 @@ class LinePicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PoleMap:
     """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
 
@@ -87,29 +87,40 @@ class PoleMap:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Course:
     """One component of a signal over time; it is `row` times the state that the picture starts from.
 
     `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
+    `heights` are its values, in whole parts of one, at equal distances from the begin of the window to its end.
     """
 
     signal: str
     component: int
     row: tuple[Fraction, ...]
-    points: tuple[Place, ...]
+    heights: tuple[int, ...]
     dashed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimeResponse:
-    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`."""
+    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
+
+    Heights of courses are counted in `parts` of one.
+    """
 
     states: tuple[str, ...]
     starts: tuple[tuple[Fraction, ...], ...]
     courses: tuple[Course, ...]
     window: tuple[Interval, Interval]
+    parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+    def points(self, course: Course) -> list[Place]:
+        """Return the places in the plane of one of the courses."""
+        begin, end = self.window[0]
+        step = (end - begin) / (len(course.heights) - 1)
+        return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(course.heights)]
 
 
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse

@@ -6,8 +6,9 @@ question or solution, and `sheet(sheet)` returns the whole.  Parts are made one 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path

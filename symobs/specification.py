@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, TypeAlias
 
@@ -16,6 +15,7 @@ from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import parse_matrix, parse_poles, parse_polynomial
+from symobs.record import dataclass
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
@@ -171,7 +171,9 @@ def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ..
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
-        raise InputError(message, where=where, repair=f"give as many poles as the order asks for, {degree}")
+        raise InputError(
+            message, where=where, repair=f"give as many as the order asks for, {degree}, with commas between them"
+        )
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
     )

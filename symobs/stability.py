@@ -7,12 +7,12 @@ determinants Δₙ₋₁, Δₙ₋₃, … are positive.  For |z| < 1 the same i
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, sign_of, sign_where
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ _COMPARED_UP_TO = 12
 _SOLVED_UP_TO = 200
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stability:
     """`verdict` yes, no or conditional; `positive` are the polynomials that must be > 0 where it is conditional."""
 

@@ -6,11 +6,11 @@ A name of the standard convention that a convention uses for nothing else keeps 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import Matrix
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.conditions import Condition

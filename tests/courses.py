@@ -22,10 +22,11 @@ def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) 
     start = mpmath.matrix([_real(part) for start in picture.starts for part in start])
     table = mpmath.matrix([[_real(entry) for entry in row] for row in matrix])
     for course in picture.courses:
-        assert course.points[0][0] == 0
-        assert course.points[-1][0] == end
-        assert all(b[0] - a[0] <= end / 100 for a, b in pairwise(course.points))
-        for instant, height in course.points[:: len(course.points) // _ASKED]:
+        points = picture.points(course)
+        assert points[0][0] == 0
+        assert points[-1][0] == end
+        assert all(b[0] - a[0] <= end / 100 for a, b in pairwise(points))
+        for instant, height in points[:: len(points) // _ASKED]:
             state = mpmath.expm(table * _real(instant)) * start
             value = sum(_real(part) * state[k] for k, part in enumerate(course.row))
             if abs(value - _real(height)) > _real(top - bottom) / 1000:

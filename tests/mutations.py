@@ -69,6 +69,8 @@ _OTHER_WORDS = [
 ]
 #: Sentences whose counting words are made, and checked, by what they count.
 _COUNTING = {"points_decide", "cells_decide", "pieces", "number_is_root", "routh_changes", "routh_changes_axis"}
+#: Sentences that say of a value only that nothing is decided where it vanishes.
+_UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
 #: Words that count something: another of the same row says another number.
 _NUMBERS = (
     ("none", "one", "two", "three", "four", "all"),
@@ -127,7 +129,8 @@ def changes(item: Any) -> Iterator[Change]:
             yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
         if item.key in _COUNTING:
             yield from _of_counts(item)
-        yield from _of_parts(item)
+        if item.key not in _UNDECIDED:
+            yield from _of_parts(item)
     elif isinstance(item, RouthRow):
         yield from (Change(f".origin {o}", "structure", replace(item, origin=o)) for o in ORIGINS if o != item.origin)
         yield Change(".entries shortened", "structure", replace(item, entries=item.entries[:-1]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.derivation import (
@@ -40,6 +39,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.method import Document
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from symobs.audit import audit, report
 from symobs.audit.differences import decimal_of
 from symobs.audit.grammar import every, read_relation
-from symobs.errors import CertificateRejected, ProblemErrors, SymobsError
+from symobs.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
 from tests.command_line import ROOT, SERVO, inside
 from tests.printed import finding, findings, problem
@@ -284,6 +284,7 @@ def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPa
         ({"relation": "L = [19; 81"}, 'printed[0].relation: this "[" is never closed'),
         ({"relation": "L = M"}, 'printed[0]: the letter "M" means nothing'),
         ({"relation": "x_het = x"}, 'did you mean "x_hat"?'),
+        ({"relation": "L = 1", "where": "p. \x1b[2J"}, "printed[0].where: the character U+001B cannot be printed"),
         ({"relation": "L = 1", "convention": "S9"}, "printed[0].convention"),
         ({"relation": "L = 1", "let": 3}, "printed[0].let: a table is expected"),
         ({"relation": "L = W", "let": {"W": "A = B"}}, "printed[0].let.W: one expression is expected"),
@@ -297,6 +298,12 @@ def test_an_entry_that_cannot_be_read_says_where_and_what_to_write(entry: dict[s
     with pytest.raises(ProblemErrors) as raised:
         audit(read(problem(printed=[entry])))
     assert says in str(raised.value)
+
+
+@pytest.mark.parametrize("relation", ["A" + "'" * 1990, "2*" + "-" * 1990 + "A", "A" + "^2" * 990, "1" + "-1" * 990])
+def test_a_deep_equation_is_refused(relation: str) -> None:
+    with pytest.raises(BudgetExceeded, match="more than 200 parts"):
+        read_relation(relation, "")
 
 
 def test_all_entries_that_cannot_be_read_are_told_together() -> None:
@@ -399,6 +406,20 @@ def test_a_bar_in_a_table_does_not_end_its_cell() -> None:
     found = audit(read(problem(printed=[entry])))
     row = report({"x": found}, "markdown").splitlines()[2]
     assert row.replace("\\|", "").count("|") == 6
+
+
+def test_a_report_shows_texts_and_does_nothing_else() -> None:
+    entry = {
+        "relation": "L = [19; 82]",
+        "where": "<script>x</script>\n# [a](javascript:b) \u202e`c`",
+        "erratum": "**E**",
+    }
+    found = audit(read(problem(printed=[entry], title="\u202e<b>")))
+    row = report({"x_<b>.json": found}, "markdown").splitlines()[2]
+    shown = r"| &lt;script&gt;x&lt;/script&gt; \# \[a\](javascript:b) \`c\`, x\_&lt;b&gt;.json | \*\*E\*\* |"
+    assert row.startswith(shown)
+    assert row.endswith(" |")
+    assert "\u202e" not in report({"x": found}, "text")
 
 
 def test_the_servo_of_the_first_source_has_nothing_wrong() -> None:

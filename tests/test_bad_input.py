@@ -94,6 +94,23 @@ WRONG = {
     "no sign": (problem(symbols='omega = "plus"'), "symbols.omega", "'plus' is not a sign … positive"),
     "no key of a symbol": (problem(symbols='b = { sgn = "real" }'), "symbols.b", "'sgn' … sign and latex"),
     "hostile letter": (problem(symbols='b = { latex = "\\\\input{x}" }'), "symbols.b.latex", "not a printed form"),
+    **{
+        f"letter {form}": (problem(symbols=f"b = {{ latex = '''{form}''' }}"), "symbols.b.latex", "not a printed form")
+        for form in (
+            r"^^5cinput{x}",
+            "b^^41",
+            "a^1^2",
+            "a_1_2",
+            "a^2'x'_1",
+            r"\bar",
+            r"x_\bar a",
+            "}{",
+            "b_",
+            "1",
+            ", ",
+            "a ",
+        )
+    },
     # keys and their values
     "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
     "key of the plant": (problem(E="1"), "plant.E", "unknown key … known keys are A, B, C, D"),
@@ -103,7 +120,11 @@ WRONG = {
         "specification.control_polynomial",
         "unknown key … belongs to the task compensator",
     ),
-    "task": (problem(top='task = "observe"'), "task", '"observe" is not a task … observability'),
+    "task": (
+        problem(top='task = "observe"'),
+        "task",
+        '"observe" is not a task; did you mean observer? known tasks are … observability',
+    ),
     "one of the tasks": (problem(top='tasks = ["observer", "hug"]'), "tasks[1]", '"hug" is not a task'),
     "the same task twice": (problem(top='tasks = ["observer", "observer"]'), "tasks[1]", "twice"),
     "a number for a task": (problem(top="task = 5"), "task", "a number came"),
@@ -269,6 +290,8 @@ HOSTILE = {
     "headers": ("\n".join(f"[a.b{i}.c.d.e.f]" for i in range(10_000)), "problem.toml", "more than 1000 tables"),
     "size": ("#" * 300_000, "problem.toml", "larger than 256 kB"),
     "quotes": ('"""\n' + '\\"""\n' * 50_000, "problem.toml, line 1, column 3", "not TOML"),
+    "semicolons": ("a = [" + ";" * 250_000, "problem.toml, line 1, column 6", "not TOML"),
+    "empty lines": ("\n" * 250_000 + "#\n]", "problem.toml, line 250002, column 1", "not TOML"),
     "code for an entry": (problem(A=f'[["{CODE}", 1], [0, -1]]'), "plant.A[0][0]", '"_" belongs to no expression'),
     "code for poles": (problem(f'poles = "{CODE}"'), "specification.poles", '"_" belongs to no expression'),
     "code for a name": (problem(symbols=f'"{CODE}" = "real"'), f"symbols.{CODE[:39]}…", "is not a name"),

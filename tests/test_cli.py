@@ -142,6 +142,25 @@ def test_wrong_usage_is_2(arguments: list[str], tmp_path: Path) -> None:
     assert not any(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["problem.toml"], "there is no command 'problem.toml'; write symobs solve problem.toml"),
+        (["solve", "a.toml", "b.toml"], "For several files there is `symobs sheet FILE...`."),
+        (["observer", "-A", "[0]"], "No such option '-A'.\nWrite --A."),
+        (["observer", "--a", "[0]"], "Write --A."),
+        (["observer", "--A", "0", "1"], 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]"'),
+        (["observer", "--A", "[0]", "--poles", "-10,", "-10"], "A value with spaces stands in quotes"),
+        (["observer", "--transfer_functio", "1"], "--transfer_function"),
+        (["stability_region", "--polynomial", "s+k", "--Format", "text"], "Write --format."),
+    ],
+)
+def test_what_may_have_been_meant_is_said(arguments: list[str], said: str, tmp_path: Path) -> None:
+    run = inside(*arguments, folder=tmp_path)
+    assert (run.code, run.out) == (2, "")
+    assert said in run.err
+
+
 # -- files that cannot be read --------------------------------------------------------------------------------------
 
 
@@ -200,7 +219,7 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
         patch.setattr(Path, "replace", fail)
         run = inside("solve", str(SERVO), "-o", str(target))
     assert (run.code, run.out) == (3, "")
-    assert "No space left on device; name a file in a folder that can be written" in run.err
+    assert "No space left on device; make room there, or name a file elsewhere with -o" in run.err
     assert [path.name for path in tmp_path.iterdir()] == ["page.tex"]
     assert target.read_text(encoding="utf-8") == "before"
 
@@ -294,7 +313,7 @@ def test_ctrl_c_is_130() -> None:
             out, err = process.communicate(timeout=SAFETY)  # the end of the file wakes a reader that missed the signal
         finally:
             process.kill()
-    assert (process.returncode, out, err.strip()) == (130, b"", b"interrupted")
+    assert (process.returncode, out, err) == (130, b"", b"interrupted\n")
 
 
 # -- one command a task ---------------------------------------------------------------------------------------------

@@ -379,9 +379,29 @@ def test_a_convention_that_does_not_exist(tmp_path: Path) -> None:
     (tmp_path / "evil.toml").write_text("x = " + "[" * 10_000, encoding="utf-8")
     with pytest.raises(ProblemErrors):
         convention_named(str(tmp_path / "evil.toml"))
+    (tmp_path / "dots.toml").write_text("a." * 9_000 + "a = 1", encoding="utf-8")
+    with pytest.raises(ProblemErrors, match="a dotted key has more than 10 parts"):  # tomllib would take 400 MB
+        convention_named(str(tmp_path / "dots.toml"))
     (tmp_path / "secret.toml").write_text(OWN, encoding="utf-8")
-    with pytest.raises(ProblemErrors, match="is not a convention"):
-        read('convention = "../secret"\n' + DESIGN, folder=tmp_path / "inner")
+    for named in ("../secret", f"{tmp_path}/secret.toml.toml", "../secret.toml"):
+        with pytest.raises(ProblemErrors, match="is not a convention"):
+            read(f'convention = "{named}"\n' + DESIGN, folder=tmp_path / "inner")
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"feedback": "u = K\N{GREEK SMALL LETTER LAMDA} x_hat"},
+        {"feedback": f"u = {'K' * 41} x_hat"},
+        {"observer": "A - K__ C"},
+        {"observer": "A - 2 C"},
+        {"observer": "A - \N{FULLWIDTH LATIN CAPITAL LETTER L} C"},
+    ],
+)
+def test_the_letter_of_a_gain_is_a_letter(law: dict[str, str]) -> None:
+    """What TeX cannot set, and what would not fit on a line, is no letter in a law either."""
+    with pytest.raises(ProblemErrors, match="this cannot be read"):
+        read_convention({"name": "own"} | law, "own.toml")
 
 
 def test_messages_name_the_letter_of_the_file() -> None:

@@ -29,6 +29,7 @@ from symobs.exact import (
 from symobs.exact.krylov import Krylov
 from symobs.exact.modular import Point, VanishingDenominator, random_prime
 from symobs.exact.sympy_border import matrix_from_sympy, matrix_to_sympy, scalar_to_sympy
+from symobs.expression import parse_matrix
 from tests.plain import matrix_at, seeded, value_at
 from tests.strategies import (
     Twin,
@@ -278,6 +279,45 @@ class TestPolynomialsOfMatrices:
             powers = reversed(sympy.Poly(factor.expression, SYMBOL).all_coeffs())
             expected = sum((c * X**k for k, c in enumerate(powers)), sympy.zeros(*X.shape)) * expected
         assert same(apply_polynomial([f.scalar for f in factors], "s", x, v), expected)
+
+    @given(
+        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=3, max_size=3), min_size=4, max_size=4),
+        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=1, max_size=4), max_size=4),
+    )
+    @few
+    def test_horner_on_numbers(self, rows: list[list[Fraction]], factors: list[list[Fraction]]) -> None:
+        """Plain fractions on the other side; the matrix is read as what a user gives."""
+        *table, start = rows
+        vector = start
+        for factor in factors:
+            image = [Fraction(0)] * 3
+            for coefficient in factor:
+                image = [sum((a * b for a, b in zip(row, image, strict=True)), Fraction(0)) for row in table]
+                image = [entry + coefficient * old for entry, old in zip(image, vector, strict=True)]
+            vector = image
+        x, v = parse_matrix(table), parse_matrix([[entry] for entry in start])
+        assert x.rows == Matrix.of(table).rows
+        polynomials = [from_coefficients([Scalar.of(number) for number in factor], "s") for factor in factors]
+        found = apply_polynomial(polynomials, "s", x, v)
+        assert [entry.fraction() for entry in found.entries] == vector
+
+    @given(
+        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=4, max_size=4), min_size=6, max_size=6),
+    )
+    @few
+    def test_the_gain_from_a_power_series_is_that_of_ackermann(self, rows: list[list[Fraction]]) -> None:
+        *table, row, numbers = rows
+        A, c = parse_matrix(table), parse_matrix([row])
+        coefficients = [Fraction(1), *numbers]
+        krylov = Krylov.of(A, c)
+        if krylov.is_singular:
+            with pytest.raises(ZeroDivisionError):
+                krylov.placing(coefficients)
+            return
+        phi = from_coefficients([Scalar.of(number) for number in coefficients], "s")
+        gain = krylov.placing(coefficients)
+        assert gain == apply_polynomial([phi], "s", A, krylov.solve_last())
+        assert (A - gain @ c).characteristic_polynomial("s") == phi
 
     @given(square(4))
     @few

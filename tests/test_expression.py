@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import time
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -701,6 +699,34 @@ def test_name_that_cannot_be_declared(name: object, message: str) -> None:
     assert_safe(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("sqrt(p^2)", "p"), ("sqrt(12 p^2 b)", "p*sqrt(12*b)"), ("sqrt(a^4)", "a**2"), ("sqrt(a^3)", "a*sqrt(a)")],
+)
+def test_a_root_of_a_square_has_the_sign_that_is_known(text: str, expected: str) -> None:
+    found = parse_scalar(text, {"a": "real", "b": "real", "p": "positive"}, functions=True)
+    assert found == parse_scalar(expected, functions=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("sqrt(a^2)", "a may be negative"),
+        ("sqrt(-a^2)", "a may be negative"),
+        ("sqrt(b (a - p)^2)", "a - p may be negative"),
+        ("sqrt(b/a^2)", "a may be negative"),
+        ("sqrt(-p^2)", "sqrt of a negative number"),
+        ("sqrt(-4)", "sqrt of a negative number"),
+        ("1 + cos(pi/7)", "is not written with square roots here, at column 5"),
+        ("sin(2 pi/11)", "is not written with square roots here"),
+    ],
+)
+def test_functions_without_a_value_are_refused(text: str, message: str) -> None:
+    with pytest.raises(ExpressionError, match=message) as caught:
+        parse_scalar(text, {"a": "real", "b": "real", "p": "positive"}, functions=True)
+    assert_safe(caught.value)
+
+
 # -- properties ---------------------------------------------------------------------------------------------------
 
 names = st.sampled_from(["a", "b", "s", "omega", "h1", "x_1"])
@@ -873,22 +899,6 @@ def test_any_text_ends_soon_in_a_value_or_in_an_error_of_symobs(text: str) -> No
 
 
 # -- cost ---------------------------------------------------------------------------------------------------------
-
-
-def test_parser_is_built_when_the_first_text_that_needs_a_grammar_is_read() -> None:
-    program = (
-        "from symobs.expression import parse_matrix, evaluation\n"
-        "parse_matrix([[0, 1], [0, -1]])\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -1]')\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -1/2*a]')\n"
-        "assert evaluation._parser.cache_info().currsize == 0\n"
-        "parse_matrix('[0 1; 0 -(1/2)]')\n"
-        "parse_matrix('[0 1; 0 -(1/2)]')\n"
-        "assert evaluation._parser.cache_info().misses == 1\n"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def test_all_undeclared_names_of_a_text_are_told_together() -> None:

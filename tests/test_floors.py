@@ -22,6 +22,8 @@ LONGEST = 400
 FLOORS = {
     "errors": 0,
     "contents": 0,
+    "record": 0,
+    "bounds": 1,
     "exact": 1,
     "notation": 1,
     "convention": 2,

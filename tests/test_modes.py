@@ -415,3 +415,15 @@ def test_pages_of_every_kind_render() -> None:
     )
     for name in ("latex", "text", "json"):
         assert render(Document("all", "", results), name)
+
+
+@pytest.mark.parametrize(
+    ("A", "rest"), [("[m 0; 0 -2]", "[0; k]"), ("[m 0; 0 -2]", "[0; 1]"), ("[1 0; 0 -k]", "[0; 1]")]
+)
+def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest: str) -> None:
+    """What the input never moves has a letter of its own in the rank test, and the page speaks of both."""
+    result = symobs.stabilizability(symobs.StateSpace(A, rest))
+    assert result.derivation.check().knows("N")
+    dual = symobs.detectability(symobs.StateSpace(A, None, rest.replace(";", "")))
+    assert dual.derivation.check().knows("N")
+    assert dual.verdict == result.verdict

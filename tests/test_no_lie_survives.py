@@ -6,51 +6,31 @@ default a stratified sample of the changes is tried, the same in every run; with
 
 from __future__ import annotations
 
-import os
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
-from functools import cache, partial
-from math import prod
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from symobs import StateSpace, compensator, observability, observer
-from symobs.analysis.observability import RankResult
-from symobs.analysis.stability_region import StabilityRegion
-from symobs.design.compensator import CompensatorDesign
 from symobs.design.gain import GainDesign
 from symobs.design.output_feedback import OutputFeedback
-from symobs.design.tracking import TrackingDesign
 from symobs.errors import CertificateRejected, DerivationRejected
-from symobs.exact import Matrix, Scalar
-from symobs.exact.functions import symbols_in
+from symobs.exact import Matrix
 from symobs.page import Page
 from symobs.problem import read
-from symobs.region.proof import Combined, Opposite
-from tests.claims import HOLDS, Setting
-from tests.claims_in_time import FUNCTIONS_OF_TIME
-from tests.mutations import Change, answer_changes, changes, lines_of, parts_of
-from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
-from tests.plain_fractions import World, determinant, identity, inverse, plus, times
-from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
-from tests.truth import is_true, still_true
+from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
+from tests.mutations import parts_of
+from tests.truth import is_true
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
 
-    from symobs.design.assignment import Pair
     from symobs.method import Result
-    from tests.plain import Rows
 
 FILES = sorted((Path(__file__).parents[1] / "worked_examples").glob("*.toml"))
 EXAMPLES = FILES
-WHOLE = os.environ.get("SYMOBS_FULL") == "1"
-#: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
-OF_AN_ANSWER, OF_LINES = 12, 130
-#: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
-LEAST = 110
 #: Pages of nothing but ranks and modes: a rank, a product that is 0 and a property say the same when they are doubled or
 #: negated, and b >= 0 is as true as b > 0, so a larger share of the changes of their lines is true.
 OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabilizability"}
@@ -64,252 +44,8 @@ def results(path: Path) -> tuple[Result, ...]:
     return read(path.read_text(encoding="utf-8")).solve()
 
 
-def sample(found: Sequence[Change], most: int) -> Sequence[Change]:
-    """Return all, or some at even distances."""
-    if WHOLE or len(found) <= most:
-        return found
-    return [found[index * len(found) // most] for index in range(most)]
-
-
 #: Examples whose answer leaves entries free: K_d beside one trajectory, the row that shows there is none.
 NOT_UNIQUE = {"cart_tracking", "cart_tracking_impossible"}
-
-
-@dataclass
-class Count:
-    """What became of the changes that were tried."""
-
-    tried: int = 0
-    rejected: int = 0
-    true: int = 0
-    lies: list[str] = field(default_factory=list)
-
-    def attempt(self, where: str, make: Callable[[], object], is_so: Callable[[], bool]) -> None:
-        """Make what was changed; where nothing objects, it must be so."""
-        self.tried += 1
-        try:
-            make()
-        except (CertificateRejected, DerivationRejected):
-            self.rejected += 1
-            return
-        if is_so():
-            self.true += 1
-        else:
-            self.lies.append(where)
-
-
-# -- answers -----------------------------------------------------------------------------------------------------------
-
-
-def try_answers(part: Result, where: str, count: Count) -> None:
-    for name, value in part.answer.items():
-        for change in sample(list(answer_changes(value)), OF_AN_ANSWER):
-            answer = {**part.answer, name: change.value}
-            make = partial(replace, part, answer=answer)
-            count.attempt(f"{where}: {name}{change.where}", make, partial(holds, part, answer))
-
-
-def holds(part: Result, answer: Mapping[str, Any]) -> bool:
-    """Tell in plain fractions whether an answer is right at random points."""
-    worlds = [World(seed, part.plant.variable, part.plant.symbols.signs) for seed in range(3)]
-    try:
-        return all(_holds_at(part, answer, world) for world in worlds)
-    except (ArithmeticError, LookupError, TypeError, ValueError):
-        return False
-
-
-def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
-    if part.task in FUNCTIONS_OF_TIME:
-        return _holds_in_time(part, answer, world)
-    m = part.plant.matrices
-    A, B, C, D = (world.value(matrix) for matrix in (m.A, m.B, m.C, m.D))
-    s = world.number(part.plant.variable)
-    if isinstance(part, RankResult):
-        if part.task == "controllability":
-            A, C = transposed(A), transposed(B)
-        return _is_rank(A, C, answer, world)
-    if isinstance(part, StabilityRegion):
-        return _is_region(part, answer, world)
-    if isinstance(part, GainDesign):
-        gain = world.value(answer[part.letter])
-        moved = multiply(gain, C) if part.letter == "L" else multiply(B, gain)
-        wanted = [world.value(answer["polynomial"])]
-        wanted += [world.value(part.desired.polynomial)] if part.desired is not None else []
-        return {determinant(pencil(s, plus(A, times(Fraction(-1), moved))))} == set(wanted)
-    if isinstance(part, CompensatorDesign):
-        K, L = world.value(answer["K"]), world.value(answer["L"])
-        own = [world.value(part.feedback.answer["K"]), world.value(part.estimator.answer["L"])]
-        moved = plus(plus(multiply(B, K), multiply(L, C)), times(Fraction(-1), multiply(L, multiply(D, K))))
-        F = multiply(K, multiply(inverse(plus(pencil(s, A), moved)), L))
-        found = world.value(answer["F"])
-        return own == [K, L] and (found if isinstance(found, list) else [[found]]) == F
-    if isinstance(part, TrackingDesign):
-        return _is_followed(part, answer, A, B, world)
-    return False
-
-
-def _is_region(part: StabilityRegion, answer: Mapping[str, Any], world: World) -> bool:
-    """Tell whether χ is that of the loop, the table its own, and the inequalities hold where its roots are stable."""
-    chi = answer["polynomial"]
-    if chi is None or answer["routh"] is None or world.value(chi) != loop_polynomial(part, world):
-        return False
-    discrete, signs = part.plant.is_discrete, part.plant.symbols.signs
-    samples = points(sorted(chi.names - {part.plant.variable}), signs, world.seed, 200)
-    bounds = answer["bounds"]
-    return (
-        is_table(part, answer["routh"], world)
-        and all(inside(bounds, point) == is_stable(moved_at(part, point), discrete=discrete) for point in samples)
-        and proof_holds(answer["proof"], world)
-    )
-
-
-def inside(bounds: Sequence[Any] | None, point: Mapping[str, Fraction]) -> bool:
-    """Tell whether inequalities hold at a point; nowhere, where there are none."""
-    if bounds is None:
-        return False
-    values = [(value_at(bound.polynomial, point), bound.operator) for bound in bounds]
-    return all(value > 0 if operator == ">" else value != 0 for value, operator in values)
-
-
-def proof_holds(proof: Any, world: World) -> bool:
-    """Tell whether every product in a proof is equal to what it is compared with, and no coefficient is negative."""
-    steps = [] if proof is None else [*proof.forward, *proof.backward]
-    while steps:
-        step = steps.pop()
-        if isinstance(step, Opposite):
-            steps += step.steps
-        elif isinstance(step, Combined):
-            left, right = (_products(terms, world) for terms in (step.multiplier, step.total))
-            if world.value(step.value) * sum(left) != sum(right):
-                return False
-            if any(world.value(c) < 0 for c, _ in (*step.multiplier, *step.total)):
-                return False
-    return True
-
-
-def _products(terms: Sequence[Any], world: World) -> list[Fraction]:
-    return [world.value(c) * prod((world.value(f) for f in factors), start=Fraction(1)) for c, factors in terms]
-
-
-def _is_followed(part: TrackingDesign, answer: Mapping[str, Any], A: Rows, B: Rows, world: World) -> bool:
-    """Tell whether B K_d = A − A_d on what the reference passes through, or a row annuls B and not A − A_d there."""
-    difference = plus(A, times(Fraction(-1), world.value(part.reference)))
-    wanted = multiply(difference, world.value(part.passed))
-    if answer["K_d"] is not None:
-        followed: Rows = multiply(multiply(B, world.value(answer["K_d"])), world.value(part.passed))
-        return bool(followed == wanted)
-    row = world.value(answer["w"])
-    return not any(map(any, multiply(row, B))) and any(map(any, multiply(row, wanted)))
-
-
-def _holds_in_time(part: Result, answer: Mapping[str, Any], world: World) -> bool:
-    """Hold what a result would say with these answers to the plant; a closed form left out says less, not another thing."""
-    told = replace(part, answer=answer)
-    values = [value for value in answer.values() if isinstance(value, (Matrix, Scalar))]
-    names = {"t", "t0", "T"}.union(part.plant.field.names, *map(symbols_in, values))
-    point = {name: world.number(name) for name in names - set("s")}
-    at = Setting.of(part.plant, {}, point)
-    try:
-        HOLDS[part.task](told, at)
-    except AssertionError:
-        return False
-    if "rank" in answer and not isinstance(answer["rank"], int):
-        dual = answer.get("of") == "controllability"
-        return _is_rank(*at.pair(dual=dual), answer["rank"], world)
-    return True
-
-
-def _is_rank(A: Rows, C: Rows, answer: Mapping[str, Any], world: World) -> bool:
-    O = observability_rows(A, C)
-    N, X = world.value(answer["kernel"]), world.value(answer["restricted"])
-    minor = [[O[i][j] for j in answer["columns"]] for i in answer["rows"]]
-    return (
-        world.value(answer["matrix"]) == O
-        and answer["rank"] == rank_of(O) == len(minor) == len(answer["columns"])
-        and determinant(minor) != 0
-        and len(answer["free"]) == len(N[0]) == len(A) - rank_of(O)
-        and determinant([N[i] for i in answer["free"]]) != 0
-        and not any(map(any, multiply(O, N)))
-        and multiply(A, N) == multiply(N, X)
-    )
-
-
-def pencil(s: Fraction, table: Rows) -> Rows:
-    found: Rows = plus(times(s, identity(len(table))), times(Fraction(-1), table))
-    return found
-
-
-# -- witnesses ---------------------------------------------------------------------------------------------------------
-
-
-def tampered(thing: Any, name: str, value: object) -> Any:
-    """Return a copy of something whose attribute was computed once, with another value for it."""
-    copy = object.__new__(type(thing))
-    copy.__dict__.update(thing.__dict__)
-    copy.__dict__[name] = value
-    return copy
-
-
-def try_witnesses(part: Result, where: str, count: Count) -> None:
-    """Change the family of gains, and where no gain exists the subspace that proves it."""
-    if not isinstance(part, GainDesign):
-        return
-    if part.gain_family is not None:
-        for change in sample(list(changes(part.gain_family[part.letter])), OF_AN_ANSWER):
-            family = {**part.gain_family, part.letter: change.value}
-            make = tampered(part, "gain_family", family).__post_init__
-            count.attempt(f"{where}: family{change.where}", make, partial(_is_family, part, family))
-    if part.answer[part.letter] is None:
-        for name in ("kernel", "restricted", "fixed_polynomial"):
-            for change in sample(list(changes(getattr(part._pair, name))), OF_AN_ANSWER):
-                pair = tampered(part._pair, name, change.value)
-                make = tampered(part, "_pair", pair).__post_init__
-                count.attempt(f"{where}: {name}{change.where}", make, partial(_is_hidden, part, pair))
-
-
-def _is_family(part: GainDesign, family: Mapping[str, Any]) -> bool:
-    """Tell whether every member meets φ, and the members fill a space of the dimension of ker 𝒪.
-
-    For several outputs the members fill no linear space: that φ is met at random points of the parameters has to do.
-    """
-    if part.chart is not None:
-        return holds(part, {**part.answer, part.letter: family[part.letter]})
-    gain, names = family[part.letter], family["parameters"]
-    world = World(0, part.plant.variable, part.plant.symbols.signs)
-
-    def member(chosen: str) -> list[Fraction]:
-        """Return the entries of the member at a point, one parameter moved on by 1."""
-        point = {name: world.number(name) + int(name == chosen) for name in names}
-        table = world.value(gain.substitute({name: Scalar.of(value) for name, value in point.items()}))
-        return [entry for row in table for entry in row]
-
-    directions = [[x - y for x, y in zip(member(name), member(""), strict=True)] for name in names]
-    return rank_of(directions) == len(names) and holds(part, {**part.answer, part.letter: gain})
-
-
-def _is_hidden(part: GainDesign, pair: Pair) -> bool:
-    """Tell whether N is a basis of an unseen invariant subspace whose polynomial is the one stated."""
-    world = World(0, part.plant.variable, part.plant.symbols.signs)
-    A, C, N, X = (world.value(matrix) for matrix in (pair.A, pair.c, pair.kernel, pair.restricted))
-    unseen = not any(map(any, multiply(C, N))) and multiply(A, N) == multiply(N, X)
-    fixed = determinant(pencil(world.number(part.plant.variable), X)) == world.value(pair.fixed_polynomial)
-    return rank_of(N) == len(N[0]) > 0 and unseen and fixed
-
-
-# -- derivations -------------------------------------------------------------------------------------------------------
-
-
-def try_lines(result: Result, count: Count) -> None:
-    lines = lines_of(result.derivation)
-    found = [list(changes(line.step)) for line in lines]
-    most = -(-OF_LINES // len(lines))
-    while sum(min(len(some), most) for some in found) < min(LEAST, sum(map(len, found))):
-        most += 1
-    for number, (line, some) in enumerate(zip(lines, found, strict=True)):
-        for change in sample(some, most):
-            told, meant = line.told(change.value), line.told(line.step)
-            where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
-            count.attempt(where, told.check, partial(still_true, told, meant))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

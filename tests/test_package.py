@@ -69,4 +69,4 @@ def test_metadata(wheel: dict[str, bytes]) -> None:
     names = {line.split(">=")[0] for line in required}
     assert names == {"click", "jinja2", "lark", "mpmath", "numpy", "python-flint", "sympy"}
     assert set(metadata.get_all("Provides-Extra", [])) == {"batch", "control", "distributed", "plot", "test", "verify"}
-    assert b"symobs = symobs.cli:main" in wheel[f"{INFO}/entry_points.txt"]
+    assert b"symobs = symobs.__main__:main" in wheel[f"{INFO}/entry_points.txt"]

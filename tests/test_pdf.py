@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import stat
 import subprocess
+import tempfile
 import time
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ import pytest
 
 from symobs.errors import TypesettingError
 from symobs.phrases import PHRASES
+from symobs.render import pdf
 from symobs.render.pdf import Pdf, compiled
 from tests import render_examples as example
 from tests.render_examples import document
@@ -146,6 +149,80 @@ def test_tex_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_
     monkeypatch.setattr(shutil, "which", which.get)
     with pytest.raises(TypesettingError, match="without an error in its log"):
         compiled(article("x"))
+
+
+def only(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
+    """Let this be the only TeX there is."""
+    monkeypatch.setattr(shutil, "which", {"pdflatex": str(path)}.get)
+
+
+def test_tex_that_floods_its_log_is_stopped(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    number = tmp_path / "number"
+    program(tmp_path / "pdflatex", f"echo $$ > {number}\nyes 'a line that says nothing' > page.log")
+    only(monkeypatch, tmp_path / "pdflatex")
+    monkeypatch.setattr(pdf, "SIZE_LIMIT", 20)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    with pytest.raises(TypesettingError) as caught:
+        compiled(article("x"))
+    assert str(caught.value) == "TeX was stopped after it had written 20 MB; write LaTeX with --format latex to see why"
+    assert ends(int(number.read_text(encoding="utf-8")))
+    assert {path.name for path in tmp_path.iterdir()} == {"number", "pdflatex"}
+
+
+def test_the_error_at_the_end_of_a_long_log_is_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    script = "yes 'a line that says nothing' | head -c 5000000 > page.log\necho '! Stumbled.' >> page.log\nexit 1"
+    program(tmp_path / "pdflatex", script)
+    only(monkeypatch, tmp_path / "pdflatex")
+    with pytest.raises(TypesettingError, match=r"TeX failed: Stumbled\.; write LaTeX with --format latex"):
+        compiled(article("x"))
+
+
+def test_tex_that_makes_no_page_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    program(tmp_path / "pdflatex", "exit 0")
+    only(monkeypatch, tmp_path / "pdflatex")
+    with pytest.raises(TypesettingError, match="TeX ended without a page"):
+        compiled(article("x"))
+
+
+def test_tex_that_cannot_be_started_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "pdflatex"
+    path.write_bytes(b"\x7fELF is not what this is")
+    path.chmod(0o755)
+    only(monkeypatch, path)
+    with pytest.raises(TypesettingError) as caught:
+        compiled(article("x"))
+    assert caught.value.where == str(path)
+    assert caught.value.message.startswith("this program cannot be started: ")
+    assert "apt-get install" in caught.value.repair
+
+
+def test_tex_needs_a_folder_for_its_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    program(tmp_path / "pdflatex", "exit 0")
+    only(monkeypatch, tmp_path / "pdflatex")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
+    with pytest.raises(TypesettingError) as caught:
+        compiled(article("x"))
+    assert caught.value.where == str(tmp_path / "missing")
+    assert "TMPDIR" in caught.value.repair
+    assert caught.value.exit_code == 6
+
+
+def test_tex_that_finds_the_disk_full_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    program(tmp_path / "pdflatex", "exit 1")
+    only(monkeypatch, tmp_path / "pdflatex")
+    full = shutil.disk_usage(tmp_path)._replace(free=0)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: full)
+    with pytest.raises(TypesettingError, match="no space left on the device; make room"):
+        compiled(article("x"))
+
+
+def test_signals_mean_afterwards_what_they_meant_before(require_tool: RequireTool) -> None:
+    require_tool("pdflatex")
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.getsignal(number) for number in numbers]
+    compiled(article("x"))
+    assert [signal.getsignal(number) for number in numbers] == before
 
 
 def program(path: Path, script: str) -> None:

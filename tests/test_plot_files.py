@@ -98,7 +98,7 @@ def test_a_missing_matplotlib_is_said_before_anything_is_solved(
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     run = inside("solve", "-", "--plot", "map.png", folder=tmp_path, stdin=PROBLEM)
     assert (run.code, run.out) == (2, "")
-    assert "pip install symobs[plot], or name a file that ends in .svg or .tex" in run.err
+    assert "pip install matplotlib, or name a file that ends in .svg or .tex" in run.err
     assert inside("solve", "-", "--plot", "map.svg", folder=tmp_path, stdin=PROBLEM).code == 0
     assert pictured is not None
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from fractions import Fraction
+from math import inf as oo
 from typing import Any
 
 import mpmath
@@ -20,6 +22,9 @@ from symobs.exact import Factored, Scalar
 from symobs.exact.circle import twice_cosine
 from symobs.exact.enclosure import sign_of_number
 from symobs.exact.functions import NotWritten, function, square_root
+from tests.claims import Setting, applicable
+from tests.claims_of_advice import advice_holds, numerator
+from tests.plain import has_sign
 
 s = sympy.Symbol("s")
 RADII = st.fractions(min_value="1/8", max_value=20, max_denominator=8)
@@ -201,6 +206,62 @@ def test_a_plant_without_response() -> None:
     result = symobs.pole_advice(symobs.StateSpace("[-1 0; 1 -2]", "[0; 1]", "[1 0]"), radius=3)
     assert (result.zeros_used, result.verdict) == ((), "no")
     assert "transfer function is zero" in result.warnings[0]
+
+
+# -- special parameters ------------------------------------------------------------------------------------------------
+
+SPECIAL = {
+    "zero at infinity": ("[0 1; -2 -3]", "[0; 1]", "[1 c]", {}),
+    "zero that crosses": ("[0 1; -2 -3]", "[0; 1]", "[c 1]", {}),
+    "pair that crosses": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[b a 1]", {}),
+    "pair on the axis or not": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[a 0 1]", {}),
+    "hidden mode": ("[a 0; 0 -2]", "[1; 1]", "[b 1]", {}),
+    "declared": ("[0 1; 0 -a]", "[0; 1]", "[c 1]", {"a": "positive", "c": "nonnegative"}),
+    "two zeros": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[a*b a+b 1]", {}),
+}
+ASKED: tuple[dict[str, Any], ...] = ({"radius": 3}, {"settling_time": 2, "overshoot": "1/10"})
+
+
+@pytest.mark.parametrize("asked", ASKED, ids=["circle", "pair"])
+@pytest.mark.parametrize("name", SPECIAL)
+def test_every_point_of_a_grid_has_advice_that_is_right_there(name: str, asked: dict[str, Any]) -> None:
+    """Zeros that are places for poles at a point are used by what is said of it first."""
+    A, B, C, signs = SPECIAL[name]
+    own = symobs.StateSpace(A, B, C, symbols={n: signs.get(n, "real") for n in "abc" if n in A + C})
+    result = symobs.pole_advice(own, **asked)
+    assert result.derivation is not None
+    names, met, sigma = sorted(own.symbols.signs), 0, 4 / asked.get("settling_time", oo)
+    for values in itertools.product(map(Fraction, (-3, -1, 0, 1, 2, 5)), repeat=len(names)):
+        point = dict(zip(names, values, strict=True))
+        if not all(has_sign(value, own.symbols.sign(n)) for n, value in point.items()):
+            continue
+        at, found = Setting.of(own, {}, point), list(applicable(result, point))
+        assert found
+        for part in found:
+            advice_holds(part, at)
+        met += found[0] is not result
+        above = [float(c) for c in numerator(at)]
+        roots: list[Any] = list(np.roots(np.trim_zeros(above, "f"))) if any(above) else []
+        if all(abs(root.real + sigma) > 1e-6 for root in roots) and len({root.real < -sigma for root in roots}) < 2:
+            assert max(len(part.zeros_used) for part in found) == sum(root.real < -sigma for root in roots)
+    assert met
+
+
+def test_what_depends_on_parameters_is_not_called_slow_or_right() -> None:
+    """−c is fast enough for c > 4, and the zeros ±√(−a) are on the axis for a > 0."""
+    slow = symobs.pole_advice(plant("(s + c)/((s + 1) (s + 3))", c="positive"), settling_time=1, overshoot="0.05")
+    assert ["depends on parameters" in warning for warning in slow.warnings] == [True]
+    (first, *_) = slow.cases
+    assert ([str(c) for c in first.when], first.result.zeros_used) == (["c - 4 > 0"], (-sympy.Symbol("c"),))
+    even = symobs.pole_advice(plant("(s^2 + a)/(s + 1)^3"), radius=1)
+    assert ["no place" in w or "Not all of the zeros" in w for w in even.warnings] == [True]
+
+
+def test_what_is_not_stable_cannot_be_taken_for_stable() -> None:
+    result, v = advice("(s - 2)/(s^2 + s + 1)", radius=3), Scalar.symbol("s")
+    told = {"zeros": v - 2, "rest": factors(v + 3), "polynomial": factors(v - 2, v + 3)}
+    with pytest.raises(CertificateRejected):
+        replace(result, answer={**result.answer, **told}, taken=(v - 2,))
 
 
 # -- what is refused ---------------------------------------------------------------------------------------------------

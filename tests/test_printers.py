@@ -629,6 +629,13 @@ def test_declared_symbols_are_printed_as_declared() -> None:
     assert LatexPrinter(symbols={"m": r"m_{\text{cart}}"}).inline(lit(2 * m * b)) == r"2bm_{\text{cart}}"
 
 
+@pytest.mark.parametrize("form", ["b_0", "b^c", "b_1^c", r"\hat b'", r"\mathrm{a}^{bc}"])
+def test_a_declared_form_with_a_superscript_is_raised_in_parentheses(form: str) -> None:
+    """TeX knows no second superscript, and a reader would take both for one."""
+    raised = LatexPrinter(symbols={"b": form}).inline(lit(b * b))
+    assert raised == (f"({form})^2" if "^" in form else f"{form}^2")
+
+
 def test_running_text_gets_small_matrices_and_slashes() -> None:
     inline = LatexPrinter().inline
     assert inline(lit((319 * s + 400) / (s**2 + 23 * s + 161))) == "(319s+400)/(s^2+23s+161)"

@@ -91,6 +91,7 @@ def test_a_byte_order_mark_is_no_part_of_the_text() -> None:
     [
         ("[plant\nA = 1", "file, line 1, column 7: this is not TOML"),
         ("[plant]\nA = [0 1; 0 -1]", 'file, line 2, column 8: this is not TOML: … the matrix in quotes: "[0 1; 0 -1]"'),
+        ("poles = [-1+i, -2]", 'file, line 1, column 12: this is not TOML: … in quotes: [-2, "-1+i", "-omega"]'),
         ("task = observer", "file, line 1, column 8: this is not TOML: … texts in quotes"),
         ('task = "a"\ntask = "b"', "this is not TOML: … overwrite … keep one of them"),
         ("[plant]\n[plant]", "line 2, … twice … keep one of them"),

@@ -69,12 +69,12 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     for name in ("problem", "servo"):
         (tmp_path / f"{name}.toml").write_text(problem, encoding="utf-8")
     lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 17
+    assert len(lines) == 19
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
         assert run.out or "-o" in line
-    assert (tmp_path / "region.svg").read_bytes().startswith(b"<")
+    assert (tmp_path / "region.svg").read_bytes() == (ROOT / ".github/pictures/region.svg").read_bytes()
     assert (tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
 
@@ -97,3 +97,9 @@ def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
     run = fresh("audit", "printed.toml", folder=tmp_path)
     assert (run.code, run.err) == (4, "")
     assert shown in run.out
+
+
+def test_pictures_are_there() -> None:
+    pictures = re.findall(r"^!\[[^]]*\]\((\S+)\)$", README, re.MULTILINE)
+    assert len(pictures) == 2
+    assert all((ROOT / path).is_file() for path in pictures)

@@ -61,6 +61,14 @@ def test_all_questions_come_first_then_all_solutions(folder: Path) -> None:
     assert "Design an observer with the poles -10, -10." in run.out
 
 
+@pytest.mark.parametrize("name", ["latex", "beamer", "html", "text", "markdown"])
+def test_a_problem_without_a_title_has_the_name_of_its_file(name: str, folder: Path) -> None:
+    (folder / "untitled.toml").write_text('task = "observability"\n[plant]\nA = "[1]"\nC = "[1]"\n', encoding="utf-8")
+    run = inside("sheet", "untitled.toml", "--format", name, folder=folder)
+    assert run.code == 0, run.err
+    assert run.out.count("untitled") == 2
+
+
 @pytest.mark.parametrize(
     ("flag", "has", "has_not"), [("--questions", "Task", "χ"), ("--solutions", "χ_A(s) =", "Task")]
 )
@@ -215,8 +223,8 @@ def test_a_bug_in_one_problem_loses_no_other(folder: Path, monkeypatch: pytest.M
         (["good.toml", "--format", "word"], 2, "'word' is not an output format"),
         (["good.toml", "--format", "fragment"], 2, "fragment is for one problem; use one of"),
         (["good.toml", "-o", "sheet.doc"], 2, 'the suffix ".doc" names no output format'),
-        (["good.toml", "-o", "nowhere/sheet.tex"], 3, "nowhere/sheet.tex: cannot be written"),
-        (["good.toml", "-o", "folder.tex"], 3, "folder.tex: is a folder"),
+        (["good.toml", "-o", "nowhere/sheet.tex"], 3, "nowhere/sheet.tex: there is no folder "),
+        (["good.toml", "-o", "folder.tex"], 3, "folder.tex: this is a folder"),
         (["good.toml", "missing.toml", "gone.toml"], 3, "gone.toml: No such file"),
         (["good.toml", "--detail", "half"], 2, "not a level of detail"),
         (["good.toml", "--templates", "nowhere"], 3, "nowhere: none of the templates"),

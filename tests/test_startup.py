@@ -9,8 +9,8 @@ import pytest
 
 from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
 
-HEAVY = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
-KERNEL = {"flint", "jinja2", "lark"}
+HEAVY = {"control", "distributed", "lark", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+KERNEL = {"flint", "jinja2"}
 _COMMAND = """
 import sys
 from symobs.cli import main
@@ -62,6 +62,12 @@ def test_no_command_imports_what_is_heavy(arguments: list[str]) -> None:
     found = after(*arguments)
     assert "symobs.cli" in found
     assert found & HEAVY == set()
+
+
+def test_a_budget_costs_nothing_where_there_is_none() -> None:
+    machinery = {"multiprocessing", "resource", "select", "signal", "subprocess", "symobs.cli.budget"}
+    assert after("solve", str(SERVO), "--format", "json") & machinery == set()
+    assert "symobs.cli.budget" in after("solve", str(SERVO), "--format", "json", "--timeout", "1000")
 
 
 def test_no_worked_example_imports_what_is_heavy() -> None:

@@ -186,6 +186,15 @@ def test_exponentials_of_random_matrices(rows: list[list[int]]) -> None:
     assert not result.matrix.has(sympy.I)
 
 
+def test_a_kernel_of_several_dimensions_is_told() -> None:
+    """Two or three hidden states are columns of one matrix, not one vector that changes its value."""
+    plants = (("[1 1/10; 1/10 1]", "[0 0]"), ("[-1 0 0; 0 -1 0; 0 0 -2]", "[1 0 0]"))
+    for A, C in plants:
+        for horizon in ("inf", "T"):
+            result = symobs.gramian(symobs.StateSpace(A, C=C), horizon=horizon)
+            assert "N = " in result.to("text")
+
+
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.lists(entry, min_size=2, max_size=2), min_size=2, max_size=2),

@@ -66,7 +66,7 @@ def test_the_error_of_the_servo_by_its_formula() -> None:
     ((_, picture),) = plots(PAGES["observer"]())
     first, second = picture.courses
     assert (first.signal, first.component, second.component) == ("e", 1, 2)
-    for (t, one), (_, two) in zip(first.points, second.points, strict=True):
+    for (t, one), (_, two) in zip(picture.points(first), picture.points(second), strict=True):
         assert float(one) == pytest.approx(exp(-10 * t) * (1 - 8 * t), abs=1e-5)
         assert float(two) == pytest.approx(exp(-10 * t) * (1 - 72 * t), abs=1e-5)
 
@@ -85,11 +85,12 @@ def test_estimate_and_state_meet() -> None:
         ((_, picture),) = plots(PAGES[name]())
         state, estimate = ([c for c in picture.courses if c.signal == signal] for signal in ("x", "x_hat"))
         assert [course.dashed for course in (*state, *estimate)] == [False, False, True, True]
-        assert all(course.points[0][1] == 1 for course in state)
+        assert all(picture.points(course)[0] == (Fraction(0), Fraction(1)) for course in state)
         for one, other in zip(state, estimate, strict=True):
-            assert abs(one.points[-1][1] - other.points[-1][1]) < Fraction(1, 1000)
-            assert abs(one.points[-1][1]) < Fraction(1, 10)
-        starts = [float(course.points[0][1]) for course in estimate]
+            ends = [picture.points(course)[-1][1] for course in (one, other)]
+            assert abs(ends[0] - ends[1]) < Fraction(1, 1000)
+            assert abs(ends[0]) < Fraction(1, 10)
+        starts = [float(picture.points(course)[0][1]) for course in estimate]
         assert starts == ([0, 0] if name == "compensator" else [1, 0])  # what is measured is known from the start
 
 
@@ -126,13 +127,14 @@ def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
     course, *others = picture.courses
     end, (bottom, top) = picture.window[0][1], picture.window[1]
     height = top - bottom
-    middle = len(course.points) // 2
-    x, y = course.points[middle]
-    for moved in ((x, y + height / 100), (x, y - height / 100), (x + end / 1000, y)):
-        points = (*course.points[:middle], moved, *course.points[middle + 1 :])
-        yield replace(picture, courses=(replace(course, points=points), *others))
-    yield replace(picture, courses=(replace(course, points=course.points[:-1]), *others))
-    yield replace(picture, courses=(replace(course, points=course.points[:: len(course.points) - 1]), *others))
+    middle = len(course.heights) // 2
+    for moved in (height / 100, -height / 100):
+        wrong = course.heights[middle] + int(moved * picture.parts)
+        heights = (*course.heights[:middle], wrong, *course.heights[middle + 1 :])
+        yield replace(picture, courses=(replace(course, heights=heights), *others))
+    for fewer in (course.heights[:-1], course.heights[1:], course.heights[:: len(course.heights) - 1], ()):
+        yield replace(picture, courses=(replace(course, heights=fewer), *others))
+        yield replace(picture, courses=(replace(course, heights=fewer),))
     yield replace(picture, courses=(replace(course, row=tuple(-part for part in course.row)), *others))
     yield replace(picture, courses=(replace(course, component=course.component + 1), *others))
     yield replace(picture, courses=(replace(course, signal="u"), *others))
@@ -142,8 +144,12 @@ def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
     yield replace(picture, states=("u", *picture.states[1:]))
     yield replace(picture, window=((Fraction(0), 2 * end), (bottom, top)))
     yield replace(picture, window=((Fraction(0), end), (bottom, bottom + height / 2)))
-    faster = tuple(replace(c, points=tuple((x / 2, y) for x, y in c.points)) for c in picture.courses)
-    yield replace(picture, courses=faster, window=((Fraction(0), end / 2), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), end / 2), (bottom, top)))
+    yield replace(picture, window=((end / 1000, end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), -end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), end), (top, bottom)))
+    for parts in (picture.parts // 2, 2 * picture.parts, 0, -picture.parts):
+        yield replace(picture, parts=parts)
 
 
 def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
@@ -161,8 +167,9 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 
 def test_enclosures_are_rounded_to_the_nearest_part() -> None:
     spin = Matrix.of([[0, 1], [-1, 0]])
-    found = list(response(spin, [Fraction(0), Fraction(1)], [Fraction(0), Fraction(1, 2), Fraction(3)], 10**9))
-    assert found == [(0, 10**9), (479425539, 877582562), (141120008, -989992497)]
+    found = response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
+    assert len(found) == 7
+    assert [found[k] for k in (0, 1, 6)] == [[0, 10**9], [479425539, 877582562], [141120008, -989992497]]
 
 
 def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
@@ -170,9 +177,20 @@ def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
     assert rates(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
 
 
-def test_what_cannot_be_enclosed_is_not_drawn() -> None:
+def test_what_takes_too_many_bits_is_not_drawn() -> None:
     with pytest.raises(ArithmeticError):
-        list(response(Matrix.of([[200]]), [Fraction(1)], [Fraction(1)], 10**9))
+        response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
+    steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
+    assert plots(symobs.observer(steep, L=[[0], [0]])) == []
+
+
+def test_errors_that_grow_on_the_way_are_not_seen() -> None:
+    """A matrix whose powers are far larger than its exponential: (M + I)² = 0 with entries of a thousand."""
+    shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
+    found = response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
+    for k in (100, 300, 600):
+        decay = exp(-k / 100) * 10**6
+        assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
 
 
 # -- what is written --------------------------------------------------------------------------------------------------

@@ -292,6 +292,14 @@ def test_no_pole_where_there_is_none() -> None:
     assert symobs.time_varying_observability(plant, interval="0, 5").verdict == "yes"
 
 
+def test_a_condition_is_assumed_beside_functions_of_time() -> None:
+    """On such a page cos² + sin² = 1 is known; what is assumed from here on is assumed all the same."""
+    plant = symobs.StateSpace("[1/2 -b; 0 1/10]", "[1; 1]", "[1/10 1/10]")
+    result = symobs.time_varying_observability(plant, output="sin(2 t)")
+    assert [str(condition) for condition in result.conditions] == ["Ne(5*b + 2, 0)"]
+    assert "5b + 2 ≠ 0" in result.to("text")
+
+
 def test_discrete_time_has_no_t() -> None:
     with pytest.raises(InputError, match="discrete time"):
         symobs.StateSpace("[t]", None, "[1]", dt=True)

@@ -7,7 +7,6 @@ The modal form is block diagonal: numbers, Jordan blocks, [σ ω; −ω σ], com
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -25,6 +24,7 @@ from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -13,6 +12,7 @@ from symobs.formula import Environment, Roots
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.stability import stability
 
 if TYPE_CHECKING:

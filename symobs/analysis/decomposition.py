@@ -8,7 +8,6 @@ R, of R ∩ N, of a complement of R + N, and of a complement of R ∩ N in N, in
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,6 +22,7 @@ from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

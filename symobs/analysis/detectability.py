@@ -7,7 +7,6 @@ boundary, if it does not grow: X must be stable in the sense of Lyapunov.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -17,6 +16,7 @@ from symobs.conditions import Condition
 from symobs.errors import InputError
 from symobs.exact import Scalar, product_of
 from symobs.method import Case, Result, choose, method, task
+from symobs.record import dataclass
 from symobs.stability import is_beyond, is_marginal, marginal_where, monic, stability
 
 if TYPE_CHECKING:

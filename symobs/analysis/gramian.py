@@ -5,7 +5,6 @@ The controllability Gramian is that of (Bᵀ, Aᵀ).  In discrete time W is the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -26,6 +25,7 @@ from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.stability import Stability, stability
 from symobs.system import StateSpace
 

@@ -179,12 +179,13 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
         return
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":
         return
-    for j in range(kernel.shape[1]):
-        v = page.set("v", kernel.select(range(kernel.shape[0]), [j]))
-        zero = Matrix.zeros(page["C"].value.shape[0], 1)
-        nothing = Matrix.zeros(result.plant.order, 1)
-        page.equal(relation(v, v.value), say="kernel_shared")
-        if page.knows("exp_At"):
-            page.equal(relation(page["C"] @ page["exp_At"] @ v, zero), say="kernel_unseen")  # what it says is shown
-        shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
-        page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")
+    several = kernel.shape[1] > 1
+    v = page["N"] if several and page.knows("N") else page.set("N" if several else "v", kernel)
+    zero = Matrix.zeros(page["C"].value.shape[0], kernel.shape[1])
+    nothing = Matrix.zeros(*kernel.shape)
+    page.equal(relation(v, v.value), say="kernel_shared")
+    if page.knows("exp_At"):
+        unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
+        page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
+    shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
+    page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")

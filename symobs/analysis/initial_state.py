@@ -6,7 +6,6 @@ the derivatives of ỹ at 0 give the only candidate; whether it explains the dat
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -28,6 +27,7 @@ from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -6,7 +6,6 @@ noise of intensity Q contributes W⁻¹ ∫ V Q Vᵀ dt W⁻¹ with V(t) = e^{A�
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -28,6 +27,7 @@ from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.system import read_matrix
 
 if TYPE_CHECKING:

@@ -8,12 +8,13 @@ cannot vanish but term by term is replaced by its terms, and systems without a s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, real_consequences, vanishing_factors
 from symobs.exact import Ideal, Scalar, TooLarge
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -19,6 +18,7 @@ from symobs.formula import Identity, Letter, Literal, Negative, Power, Product, 
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -7,7 +7,7 @@ X = A on ker 𝒪 they span dim ker q(X) / deg q dimensions, and the polynomial 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +36,7 @@ from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
+from symobs.record import dataclass
 from symobs.stability import on_boundary, stability
 
 if TYPE_CHECKING:

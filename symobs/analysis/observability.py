@@ -6,7 +6,6 @@ observable.  With parameters the rank is the generic one, and every stratum wher
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,6 +13,7 @@ from symobs.analysis.pages import given, rank_cases, square_test
 from symobs.analysis.rank_result import RankResult, listed, power_rows, rank_answer
 from symobs.formula.term import block
 from symobs.method import Result, choose, method, task
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,6 @@ order do not vanish together, and what is excluded from a stratum lies on the lo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_tree import (
@@ -26,6 +25,7 @@ from symobs.conditions import Condition
 from symobs.exact import Matrix, Scalar, apart_from_zero
 from symobs.formula import Environment
 from symobs.page import relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

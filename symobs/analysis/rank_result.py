@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -42,6 +42,7 @@ from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
 from symobs.method import Case, Result
 from symobs.page import relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

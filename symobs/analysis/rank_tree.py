@@ -10,12 +10,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.analysis.loci import Locus, loci, maximal
 from symobs.conditions import FACTORED_UP_TO
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, echelon, independent_rows, modulo
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -22,6 +22,7 @@ from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.region.cases import SignCase, sign_cases
 from symobs.region.cells_proof import are_parts, is_region
 from symobs.region.choice import region_in

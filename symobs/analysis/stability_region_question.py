@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InputError
 from symobs.exact import Scalar
+from symobs.record import dataclass
 from symobs.region.critical import Boundary, Critical
 from symobs.specification import read_gain, read_names
 from symobs.system import StateSpace, read_scalar

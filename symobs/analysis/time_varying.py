@@ -7,7 +7,7 @@ exactly n − r independent initial states give the output 0.  The test at a fro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -27,6 +27,7 @@ from symobs.formula import Environment, Integral, Literal
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task_in_time
 from symobs.page import relation
+from symobs.record import dataclass
 from symobs.specification import read_interval, read_signal
 
 if TYPE_CHECKING:

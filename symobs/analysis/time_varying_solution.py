@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from symobs.analysis.intervals import END
 from symobs.analysis.transition import START, TIME, OpenIntegral, antiderivative_since, tidied, transition
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, rank
 from symobs.exact.functions import derivative, identities, known, substitute
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

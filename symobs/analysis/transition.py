@@ -8,7 +8,6 @@ logarithm of.  *triangular*: row by row, by variation of constants.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral
 from symobs.exact.exponential import NoClosedForm, OpenBranch, exponential
 from symobs.exact.functions import substitute
 from symobs.exact.waves import collected
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

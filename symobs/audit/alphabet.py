@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.audit.differences import decimals_of, wrong_entries
@@ -11,6 +10,7 @@ from symobs.audit.functions import Misfit, Unknown
 from symobs.audit.grammar import Node
 from symobs.audit.letters import HIDDEN, INSTANTS
 from symobs.exact import Matrix
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.formula import Environment

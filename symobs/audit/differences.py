@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +19,7 @@ _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Decimal:
     """A decimal as it is printed: so many units of its last place, with the power of ten written beside it."""
 
@@ -60,7 +60,7 @@ def decimal_of(node: Node) -> Decimal | None:
     return Decimal(sign * int((match["whole"] + places) or "0"), len(places), match["power"] or "")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Entry:
     """One entry of a printed value, and the right one."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.audit.functions import (
@@ -26,6 +25,7 @@ from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.functions import identities
 from symobs.formula import Environment, Letter, Literal, Relation, Signal
 from symobs.formula.term import Term, block
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise, product
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.expect import mismatches
 from symobs.formula import Environment, Signal
 from symobs.formula.term import Term
+from symobs.record import dataclass
 from symobs.viewed import Viewed
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 _MOST_LETTERS = 3
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Finding:
     """A printed equation that is false: where it stands, what is printed, what is right, and why."""
 
@@ -44,7 +45,7 @@ class Finding:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Audited:
     """What the audit of one problem found, among how many printed equations."""
 
@@ -77,7 +78,7 @@ def audit(problem: Problem) -> Audited:
     return Audited(problem.title, len(entries), tuple(found))
 
 
-@dataclass
+@dataclass()
 class _Desk:
     """One convention's letters, and the equations found true so far, whose sides later ones may lack."""
 

@@ -7,19 +7,21 @@ or, behind a signal, its derivative; and `=`.  A name is a letter, and is not ev
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from lark import Lark, Token, Transformer, UnexpectedToken
+from lark import Lark, Token, UnexpectedToken
 from lark.exceptions import VisitError
 from lark.lexer import Lexer
+from lark.visitors import Transformer_NonRecursive
 
 from symobs.errors import BudgetExceeded, ExpressionError
 from symobs.exact import Scalar
 from symobs.expression.names import Scope
 from symobs.expression.source import Source, shown
 from symobs.expression.tokens import Tokeniser
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,7 +59,7 @@ row: sum (_COMMA sum)*
 """
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Node:
     """A part of a printed equation, as it is printed.
 
@@ -95,10 +97,11 @@ def read_relation(text: str, where: str) -> tuple[Node, ...]:
 
 
 def every(node: Node) -> Iterator[Node]:
-    """Yield a node and all below it."""
-    yield node
-    for part in node.parts:
-        yield from every(part)
+    """Yield a node and all below it, from the left; a tree that is too deep is still counted."""
+    waiting = [node]
+    while waiting:
+        yield (first := waiting.pop())
+        waiting += reversed(first.parts)
 
 
 def letters_of(*nodes: Node) -> list[str]:
@@ -147,7 +150,13 @@ class _Ready(Lexer):
         pass
 
     def lex(self, tokens: Any) -> Iterator[Token]:  # type: ignore[override]
-        return iter(tokens)
+        return map(_of_lark, tokens)
+
+
+def _of_lark(ready: Any) -> Token:
+    token = Token(ready.type, ready, start_pos=ready.start)
+    token.value = ready.value
+    return token
 
 
 @cache
@@ -155,7 +164,7 @@ def _parser() -> Lark:
     return Lark(GRAMMAR, parser="lalr", lexer=_Ready, start="relation", maybe_placeholders=False)
 
 
-class _Reader(Transformer[Token, Any]):
+class _Reader(Transformer_NonRecursive[Token, Any]):
     """Makes the tree: one method for each rule of the grammar."""
 
     def __init__(self, source: Source) -> None:

@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import Factored, Matrix, Scalar, rank
 from symobs.exact.functions import substitute
 from symobs.exact.polynomial import hankel_of
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

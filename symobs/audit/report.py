@@ -35,32 +35,38 @@ def _heading(finding: Finding) -> str:
 
 
 def _text(audited: Mapping[str, Audited]) -> str:
+    from symobs.render.text import printable  # noqa: PLC0415 - each format pays for its own
+
     lines: list[str] = []
     for path, each in audited.items():
         if each.findings:
-            lines += [f"{path}: {each.title}" if each.title else path]
+            lines += [printable(f"{path}: {each.title}" if each.title else path)]
         for finding in each.findings:
-            lines += [f"  {_heading(finding)}", f"    printed   {finding.printed}"]
-            lines += [f"    right     {finding.right}"] if finding.right else []
+            lines += [f"  {printable(_heading(finding))}", f"    printed   {printable(finding.printed)}"]
+            lines += [f"    right     {printable(finding.right)}"] if finding.right else []
             lines += (
-                wrap(f"    because   {finding.reason}", _WIDTH, subsequent_indent=" " * 14) if finding.reason else []
+                wrap(f"    because   {printable(finding.reason)}", _WIDTH, subsequent_indent=" " * 14)
+                if finding.reason
+                else []
             )
             lines += [""]
     return "\n".join([*lines, summary(audited), ""])
 
 
 def _markdown(audited: Mapping[str, Audited]) -> str:
-    def escaped(text: str) -> str:
-        return text.replace("|", r"\|")
+    from symobs.render.markdown import plain  # noqa: PLC0415 - each format pays for its own
 
     def code(text: str) -> str:
-        return f"`{escaped(text)}`" if text else ""
+        """Return mathematics as code; what would end it, or the row, is no mathematics and is shown as text."""
+        if not text.isprintable() or "`" in text or "|" in text:
+            return plain(text)
+        return f"`{text}`" if text else ""
 
     lines = ["| where | erratum | printed | right | reason |", "|---|---|---|---|---|"]
     for path, each in audited.items():
         for found in each.findings:
             place = f"{found.where}, {path}" if found.where else path
-            cells = (escaped(place), found.erratum, code(found.printed), code(found.right), escaped(found.reason))
+            cells = (plain(place), plain(found.erratum), code(found.printed), code(found.right), plain(found.reason))
             lines.append(f"| {' | '.join(cells)} |")
     table = [*lines, ""] if len(lines) > 2 else []
     return "\n".join([*table, summary(audited), ""])

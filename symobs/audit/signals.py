@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from symobs.audit.letters import MEASURED, Matrices, answers_of, blocks_of, leading_block
 from symobs.convention import STANDARD
 from symobs.exact import Matrix
 from symobs.formula import Block, Environment, Formula, Letter, Literal, Negative, Product, Sum
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
-@dataclass
+@dataclass()
 class _Signals:
     """The signals of an environment, as they are written down one by one."""
 

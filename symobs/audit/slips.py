@@ -7,11 +7,12 @@ is then true, and only if it is the only one of its kind, or the only one that s
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
 from symobs.audit.grammar import Node, every, letters_of, with_part
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
@@ -25,7 +26,7 @@ _INDEX = re.compile(r"_?[0-9]+$|_d$")
 _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Slip:
     """A changed side, what was changed, and whether the same letter still stands there."""
 
@@ -47,7 +48,7 @@ class Alphabet(Protocol):
         """Return the letter whose value a bracket of decimals is, rounded."""
 
 
-@dataclass
+@dataclass()
 class Patience:
     """How much may still be tried for the findings of a file."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from symobs.audit.grammar import FUNCTIONS, Node, letters_of, read_relation
@@ -10,6 +10,7 @@ from symobs.convention import Convention, conventions
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
 from symobs.expression.source import shown
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,7 +19,7 @@ _MOST_LETS = 20
 _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Statement:
     """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
 

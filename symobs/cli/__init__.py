@@ -8,17 +8,23 @@ from __future__ import annotations
 import gc
 import sys
 from contextlib import suppress
-from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
-from symobs.output import binary, write
+from symobs.output import binary, write, write_all
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symobs.cli.work import Outcome, Tell
+
+Limited = TypeVar("Limited", bound="Callable[..., Any] | click.Command")
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
+NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 _MOST_LINES = 100
 #: Commands in modules of their own, imported when they are called, and what each does.
 _LATE = {
@@ -66,6 +72,13 @@ class Tasks(click.Group):
 
         return task_command(task)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click itself would put an empty line before our word on an interruption."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            sys.exit(_interrupted())
+
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
@@ -74,6 +87,8 @@ class Tasks(click.Group):
         if not name.startswith("-") and self.get_command(ctx, name) is None:
             nearest = get_close_matches(name, self.list_commands(ctx), 1)
             meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
+            if Path(name).suffix in {".toml", ".json"}:
+                meant = f"; write symobs solve {name[:40]}"
             ctx.fail(f"there is no command {name[:40]!r}{meant}")
         return super().resolve_command(ctx, args)
 
@@ -110,6 +125,30 @@ DETAIL_HELP = "How much of the derivation is told: full (default), outline or an
 TEMPLATES_HELP = "Use your own LaTeX templates: see `symobs templates`."
 CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
 PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
+TIMEOUT_HELP = "Stop after so many seconds: undecided, exit code 5."
+MEMORY_HELP = "Take no more than so many megabytes: undecided where that is not enough, exit code 5."
+_LEAST_MEMORY = 64  # megabytes; symobs and its libraries take half of that before they begin
+
+
+def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> float | None:
+    """Return the number an option gives; raises `UsageError` for what no budget can be, "nan" and "inf" included."""
+    if value is None:
+        return None
+    least = _LEAST_MEMORY if parameter.name == "memory" else 0
+    with suppress(ValueError):
+        number = float(value)
+        if 0 < number < float("inf") and number >= least:
+            return number
+    amount = f"a number of megabytes, {least} or more" if least else "a positive number of seconds"
+    example = f"write for example --{parameter.name} {2000 if least else 60}"
+    raise UsageError(f"{_quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
+
+
+def limits(command: Limited) -> Limited:
+    """Give a command the options `--timeout` and `--memory`."""
+    for name, unit, described in (("--memory", "MEGABYTES", MEMORY_HELP), ("--timeout", "SECONDS", TIMEOUT_HELP)):
+        command = click.option(name, metavar=unit, help=described, callback=_amount)(command)
+    return command
 
 
 @cli.command()
@@ -121,6 +160,7 @@ PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .
 @click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 @click.option("--plot", metavar="PATH", help=PLOT_HELP)
 @click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
+@limits
 def solve(
     file: str,
     task_name: str | None,
@@ -130,93 +170,41 @@ def solve(
     convention_name: str | None,
     detail: str,
     templates: str | None,
+    timeout: float | None,
+    memory: float | None,
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
+    from symobs.cli.work import check_targets, convention_of, page_of, solved  # noqa: PLC0415
     from symobs.method import tasks  # noqa: PLC0415
     from symobs.problem import parse, validate  # noqa: PLC0415
 
     chosen = _format_of(format_name, target)
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
-    _check_plot(plot, target)
-    convention = _convention(convention_name)
-    found = validate(parse(_read(file), file), task_name, Path(file).parent)
-    page = _page(detail, templates, chosen)
-    _run(found, chosen, target, plot, convention, some=task_name is not None, **page)
+    check_targets(target, plot)
+    convention = convention_of(convention_name)
+    page = page_of(detail, templates, chosen)
+
+    def work(tell: Tell) -> Outcome:
+        found = validate(parse(_read(file), file), task_name, Path(file).parent)
+        tell = _progress(found, tell)
+        return solved(found, chosen, target, plot, convention, tell, some=task_name is not None, **page)
+
+    _run(work, timeout, memory, _place(file))
 
 
-def _convention(name: str | None) -> Any:
-    """Return the convention asked for, None for the file's own."""
-    if name is None:
-        return None
-    from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
+def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
+    """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
+    if timeout is None and memory is None:
+        outcome = work(lambda _: None)
+    else:
+        from symobs.cli.budget import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 
-    return convention_named(name)
-
-
-def _page(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
-    """Return how the page is to be told and set; raises `UsageError` for what does not exist."""
-    from symobs.render.detail import detail_named  # noqa: PLC0415 - it imports the steps
-
-    if templates is None:
-        return {"detail": detail_named(detail)}
-    from symobs.method import format_named, formats  # noqa: PLC0415
-    from symobs.render.templates import check_folder  # noqa: PLC0415 - only with --templates
-
-    if not hasattr(format_named(format_name), "template"):
-        having = ", ".join(sorted(found.name for found in formats().values() if hasattr(found, "template")))
-        message = f"the format {format_name} has no LaTeX template"
-        raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
-    check_folder(Path(templates))
-    return {"detail": detail_named(detail), "templates": Path(templates)}
-
-
-def _check_plot(path: str | None, target: str | None) -> None:
-    """Say at once that no picture can be written to a file."""
-    if path is not None:
-        from symobs.render.plot_files import check_target  # noqa: PLC0415 - only with --plot
-
-        check_target(path)
-        if target is not None and Path(path).resolve() == Path(target).resolve():
-            raise UsageError("the result is written to that file", where="--plot", repair="name another file")
-
-
-def _run(
-    found: Any,
-    format_name: str,
-    target: str | None,
-    plot: str | None,
-    convention: Any,
-    *,
-    some: bool = False,
-    **page: Any,
-) -> None:
-    """Solve a problem, write the document and the picture, and leave with the contract's exit code.
-
-    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
-    is put into the document.
-    """
-    from symobs.expect import applicable, mismatches  # noqa: PLC0415
-    from symobs.method import render  # noqa: PLC0415
-
-    results = found.solve(_progress(found))
-    viewed = found.viewed(results)
-    expect = applicable(viewed, found.expect) if some else found.expect
-    unmet = mismatches(viewed, expect)
-    write(render(replace(found.document(results, convention), **page), format_name), target)
-    if plot is not None:
-        from symobs.render.plot_files import picture_file  # noqa: PLC0415
-
-        write(picture_file(results, plot), plot)
-    for line in unmet:
+        outcome = within(Budget(timeout, memory), work, where)
+    write_all(outcome.outputs)
+    for line in outcome.messages:
         _say(line)
-    if expect:
-        sys.exit(EXIT_NO if unmet else 0)
-    verdicts = {result.verdict for result in results}
-    for result in results:
-        if result.verdict in {"no", "undecided"}:
-            _say(f"{result.task}: {result.verdict}")
-    sys.exit(EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0)
+    sys.exit(outcome.code)
 
 
 def _say(text: str) -> None:
@@ -225,11 +213,16 @@ def _say(text: str) -> None:
         click.echo(text, err=True)
 
 
-def _progress(found: Any) -> Any:
-    """Return a reporter of the task being run, on a terminal with several tasks only."""
-    if not sys.stderr.isatty() or len(found.tasks) < 2:
-        return None
-    return lambda name: _say(f"{name} …")
+def _progress(found: Any, tell: Tell) -> Tell:
+    """Return `tell`, which on a terminal shows the task being run where there are several."""
+    if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
+        return tell
+
+    def shown(reached: object) -> None:
+        _say(f"{reached} …")
+        tell(reached)
+
+    return shown
 
 
 def _format_of(format_name: str | None, target: str | None) -> str:
@@ -255,12 +248,17 @@ def _quoted(text: str) -> str:
     return f'"{shown(text, 40)}"'
 
 
+def _place(file: str) -> str:
+    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+
+    return shown(file, 200) if file != "-" else "standard input"
+
+
 def _read(file: str) -> str:
     """Return the text of a file or of standard input, bounded in size."""
-    from symobs.expression.source import shown  # noqa: PLC0415
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
-    where = shown(file, 200)
+    where = _place(file)
     try:
         if file == "-":
             raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)
@@ -338,9 +336,8 @@ def copy(folder: str) -> None:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         reason = error.strerror or str(error)
-        raise InputError(reason, where=folder[:200], repair="name a folder that can be written") from None
-    for path in _templates():
-        write(path.read_bytes(), str(target / path.name))
+        raise InputError(reason, where=_place(folder), repair="name a folder that can be written") from None
+    write_all([(path.read_bytes(), str(target / path.name)) for path in _templates()])
 
 
 def _templates() -> list[Path]:
@@ -351,6 +348,16 @@ def _templates() -> list[Path]:
 
 #: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
 _COLLECTED_AFTER = 50_000
+
+
+def _interrupted() -> int:
+    """Say that the run was interrupted, in one line that no second Ctrl-C disturbs, and return its exit code."""
+    import signal  # noqa: PLC0415 - not for runs that nobody interrupts
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    shown = sys.stderr is not None and sys.stderr.isatty()
+    _say("\ninterrupted" if shown else "interrupted")  # a terminal has written ^C at the place where we write
+    return EXIT_INTERRUPTED
 
 
 def main() -> NoReturn:
@@ -371,11 +378,17 @@ def main() -> NoReturn:
     except click.exceptions.Exit as leaving:
         code = leaving.exit_code
     except click.ClickException as error:
+        from symobs.cli.hints import hint  # noqa: PLC0415 - only where the command line is not understood
+
         error.show()
+        if found := hint(error):
+            _say(found)
         code = UsageError.exit_code
+    except MemoryError:
+        _say(NOT_ENOUGH_MEMORY)
+        code = EXIT_UNDECIDED
     except (KeyboardInterrupt, click.exceptions.Abort):
-        _say("interrupted")
-        code = EXIT_INTERRUPTED
+        code = _interrupted()
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
         _say(f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this")
         code = EXIT_BUG

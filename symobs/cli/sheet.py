@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,27 +16,31 @@ from symobs.cli import (
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
+    NOT_ENOUGH_MEMORY,
     TARGET_HELP,
     TEMPLATES_HELP,
-    _convention,
     _format_of,
-    _page,
+    _place,
     _read,
     _say,
+    limits,
 )
-from symobs.errors import InputError, ProblemErrors, SymobsError, TypesettingError, UsageError
+from symobs.cli.work import convention_of, page_of
+from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
 from symobs.expect import mismatches
 from symobs.expression.source import shown
-from symobs.method import format_named, formats
-from symobs.output import write
+from symobs.method import format_named, formats, tasks
+from symobs.output import check_target, write
 from symobs.phrases import PHRASES
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
+from symobs.record import dataclass
 from symobs.sheet import Entry, Sheet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symobs.cli.work import Tell
     from symobs.method import Document
 
 _LONGEST_TITLE = 300
@@ -54,6 +57,8 @@ class _Wanted:
     detail: str
     templates: Path | None = None
     convention: Any = None
+    timeout: float | None = None
+    memory: float | None = None
 
 
 @click.command()
@@ -66,6 +71,7 @@ class _Wanted:
 @click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
 @click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
 @click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
+@limits
 def sheet(
     files: tuple[str, ...],
     target: str | None,
@@ -76,25 +82,38 @@ def sheet(
     detail: str,
     templates: str | None,
     convention_name: str | None,
+    timeout: float | None,
+    memory: float | None,
 ) -> None:
     """Put several problem FILEs on one sheet: all questions first, then all solutions.
 
     A problem that cannot be worked out keeps its place on the sheet, which says so; the reasons go to standard error.
+    --timeout and --memory are for each problem: one that takes more loses no other.
     """
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    told = _page(detail, templates, chosen.name)
-    wanted = _Wanted(chosen, not solutions, not questions, convention=_convention(convention_name), **told)
-    _check_target(target)
+    told = page_of(detail, templates, chosen.name)
+    wanted = _Wanted(
+        chosen,
+        not solutions,
+        not questions,
+        convention=convention_of(convention_name),
+        timeout=timeout,
+        memory=memory,
+        **told,
+    )
+    check_target(target)
     texts = _texts(files)
+    if timeout is not None or memory is not None:
+        tasks()  # what all problems need is imported once, not in the process of each
     entries: list[Entry] = []
     codes: set[int] = set()
     progress = _Progress(len(texts))
     for number, (file, text) in enumerate(texts, 1):
         progress.show(number, Path(file).stem)
-        name = shown(file, 200)
-        entry, code, messages = _entry(number, file, text, wanted)
+        name = _place(file)
+        entry, code, messages = _bounded_entry(number, file, text, wanted)
         entries.append(entry)
         codes.add(code)
         progress.clear()
@@ -119,17 +138,6 @@ def _sheet_format(name: str | None, target: str | None) -> Any:
     return found
 
 
-def _check_target(target: str | None) -> None:
-    """Say before the work that its result could not be written."""
-    if target is None or target == "-":
-        return
-    path = Path(os.path.realpath(target))
-    place = path if path.exists() and not path.is_file() else path.parent
-    if path.is_dir() or not place.exists() or not os.access(place, os.W_OK):
-        reason = "is a folder" if path.is_dir() else "cannot be written"
-        raise InputError(reason, where=target[:200], repair="name a file in a folder that can be written")
-
-
 def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     """Return the text of every file; raises all errors together, before work starts."""
     if not files:
@@ -151,16 +159,34 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
 # -- one problem ------------------------------------------------------------------------------------------------------
 
 
-def _entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
-    """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
-    entry = Entry(number, file, Path(file).stem if file != "-" else "")
+def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+    """Return what `_entry` does, and where that takes more than it may, as much as there was by then."""
+    if wanted.timeout is None and wanted.memory is None:
+        return _entry(number, file, text, wanted, lambda _: None)
+    from symobs.cli.budget import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+
     try:
-        return _worked_out(entry, text, wanted)
+        budget = Budget(wanted.timeout, wanted.memory)
+        return within(budget, lambda tell: _entry(number, file, text, wanted, tell))
+    except OutOfBudget as error:
+        reached: Any = error.facts["reached"] or _empty(number, file)
+        return replace(reached, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
+
+
+def _empty(number: int, file: str) -> Entry:
+    return Entry(number, file, Path(file).stem if file != "-" else "")
+
+
+def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+    """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
+    entry = _empty(number, file)
+    try:
+        return _worked_out(entry, text, wanted, tell)
     except Exception as error:  # noqa: BLE001 - whatever fails here, the other problems are not lost
-        return replace(entry, failure=PHRASES["sheet_failed"]), *_failure(error)
+        return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
@@ -168,11 +194,12 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted) -> tuple[Entry, int, l
         problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
             entry = replace(entry, question=_part(question_of(problem), wanted))
+        tell(entry)
         results = problem.solve()
         if wanted.solutions:
             entry = replace(entry, solution=_part(problem.document(results), wanted))
     except Exception as error:  # noqa: BLE001 - as above
-        return replace(entry, failure=PHRASES["sheet_failed"]), *_failure(error)
+        return _failed(entry, error, wanted)
     try:
         unmet = mismatches(problem.viewed(results), problem.expect)
     except SymobsError as error:  # what is expected cannot be read: the solution stands all the same
@@ -192,10 +219,20 @@ def _part(document: Document, wanted: _Wanted) -> Any:
     return wanted.format.part(told)
 
 
+def _failed(entry: Entry, error: Exception, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+    """Return the entry of a problem that failed; one that has used up its memory is told of where that is bounded."""
+    if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
+        raise error
+    phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
+    return replace(entry, failure=PHRASES[phrase]), *_failure(error)
+
+
 def _failure(error: Exception) -> tuple[int, list[str]]:
     """Return the exit code of what failed, and its messages; TeX that is missing fails for all."""
     if isinstance(error, TypesettingError):
         raise error
+    if isinstance(error, MemoryError):
+        return EXIT_UNDECIDED, [NOT_ENOUGH_MEMORY]
     if isinstance(error, SymobsError):
         several = error.errors if isinstance(error, ProblemErrors) else (error,)
         return max(found.exit_code for found in several), str(error).split("\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,15 +15,17 @@ from symobs.cli import (
     PLOT_HELP,
     TARGET_HELP,
     TEMPLATES_HELP,
-    _check_plot,
-    _convention,
     _format_of,
-    _page,
     _run,
+    limits,
 )
+from symobs.cli.work import check_targets, convention_of, page_of, solved
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.problem import OPEN, validate
 from symobs.specification import KINDS
+
+if TYPE_CHECKING:
+    from symobs.cli.work import Outcome, Tell
 
 PLANT_OPTIONS = {
     "A": 'state matrix, "[0 1; 0 -1]"',
@@ -56,13 +58,14 @@ def task_command(task: Any) -> click.Command:
         click.Option(["--convention", "convention_name"], metavar="NAME", help=CONVENTION_HELP),
     ]
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
-    return click.Command(
+    command = click.Command(
         task.name,
         params=parameters,
         callback=lambda **options: _run_task(task, options),
         help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
         short_help=task.summary,
     )
+    return limits(command)
 
 
 def _run_task(task: Any, options: dict[str, Any]) -> None:
@@ -73,16 +76,20 @@ def _run_task(task: Any, options: dict[str, Any]) -> None:
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
     chosen = _format_of(options["format_name"], options["target"])
-    _check_plot(options["plot"], options["target"])
-    page = _page(options["detail"], options["templates"], chosen)
+    check_targets(options["target"], options["plot"])
+    page = page_of(options["detail"], options["templates"], chosen)
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
-    convention = _convention(options["convention_name"])
+    convention = convention_of(options["convention_name"])
+
+    def work(tell: Tell) -> Outcome:
+        return solved(validate(data), chosen, options["target"], options["plot"], convention, tell, **page)
+
     try:
-        _run(validate(data), chosen, options["target"], options["plot"], convention, **page)
+        _run(work, options["timeout"], options["memory"], task.name)
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)

@@ -6,7 +6,7 @@ documents come with the package as small TOML files (`profiles/`), and a user ad
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from symobs.convention.forms import letter_form, of_determinant, of_polynomial
 from symobs.errors import UsageError
 from symobs.notation import FUNCTIONS, LETTERS
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -18,6 +18,7 @@ import tomllib
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from symobs.bounds import refuse_costly
 from symobs.convention import Convention
 from symobs.errors import InputError, ProblemErrors
 from symobs.notation import LETTERS
@@ -29,18 +30,21 @@ if TYPE_CHECKING:
 _MOST_BYTES = 20_000
 _SHOWN = 40
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
-_LETTER = re.compile(r"[A-Za-z]+[0-9]*(_[A-Za-z0-9]+)*")
+_SPELLING = r"[A-Za-z]+[0-9]*(?:_[A-Za-z0-9]+)*"
+_LETTER = re.compile(_SPELLING)
+#: The same in a law, no longer than a letter may be.
+_GAIN = rf"(?=\w{{1,{_SHOWN}}}\b)({_SPELLING})"
 #: Each key with the pattern of its text, what stands there where it is left out, and what to write.
 _TEXTS = {
     "name": (_NAME, None, 'write name = "lecture"'),
     "title": (re.compile(r"[^\x00-\x1f]{0,200}"), "", "write a short text in quotes"),
     "feedback": (
-        re.compile(r"\s*u\s*=\s*([-+−]?)\s*([A-Za-z]\w*)\s*x_hat\s*"),
+        re.compile(rf"\s*u\s*=\s*([-+−]?)\s*{_GAIN}\s*x_hat\s*"),
         "u = -K x_hat",
         'write "u = -K x_hat" or "u = K x_hat"',
     ),
     "observer": (
-        re.compile(r"\s*A\s*([-+−])\s*([A-Za-z]\w*)\s+C\s*"),
+        re.compile(rf"\s*A\s*([-+−])\s*{_GAIN}\s+C\s*"),
         "A - L C",
         'write for example "A - L C" or "A + M C"',
     ),
@@ -69,7 +73,9 @@ def of_file(path: Path) -> Convention:
             raw = stream.read(_MOST_BYTES + 1)
         if len(raw) > _MOST_BYTES:
             raise ValueError(f"it is longer than {_MOST_BYTES} bytes")  # noqa: TRY301 - said like every other reason
-        table = tomllib.loads(raw.decode())
+        text = raw.decode()
+        refuse_costly(text, _MOST_BYTES)
+        table = tomllib.loads(text)
     except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         unreadable = InputError(f"no convention can be read: {reason}", where=where, repair="write a small TOML file")

@@ -7,7 +7,7 @@ that was not established before.  Renderers accept checked derivations only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
@@ -59,6 +59,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
+from symobs.record import dataclass
 from symobs.stability import monic
 
 if TYPE_CHECKING:
@@ -180,7 +181,7 @@ def _told_of(relation: Relation, sentence: Sentence | None, environment: Environ
     if sentence.key in MOVES:
         limit = told if sentence.key == "enlarged" else Negative(told)
         wanted = environment.values.get(MOVES[sentence.key])
-        if wanted is None or as_scalar(wanted) != as_scalar(evaluate(limit, environment, Exact(environment))):
+        if wanted is None or wanted != evaluate(limit, environment, Exact(environment)):
             reject(f"{sentence.key} by {plain(told, environment.variable)}")
 
 
@@ -206,9 +207,8 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
 
     if not is_tabulated(step, value, environment):
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
-    for name, slot in step.sentence.slots if step.sentence else ():
-        if name == "polynomial" and isinstance(slot, Formula):
-            _fact(Relation((slot, polynomial), ("=",)), environment, discrete)
+    if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
+        _fact(Relation((_slot(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
     return environment.having(values=last_determinant(value, variable))
 
 
@@ -220,7 +220,8 @@ def _drawn(picture: Picture, subject: Formula, environment: Environment, discret
         _established(formula, environment)
     if not letters(subject) - {"s"} and not isinstance(subject, Apply):
         reject(f"a picture of {plain(subject, environment.variable)}, which is no letter's,")
-    for fault in faults(picture, subject, environment, discrete=discrete):
+    fault = next(faults(picture, subject, environment, discrete=discrete), None)
+    if fault is not None:
         reject(f"{fault}, in a picture,")
 
 
@@ -288,13 +289,15 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         (value,) = subjects(fact.property.name, found, environment.variable)
         polynomial = polynomial_of(value, environment)
         if not is_exactly(fact, polynomial, environment, discrete=discrete):
-            where = ", ".join(plain_relation(relation, environment.variable) for relation in fact.where)
-            reject(f"{polynomial} is {fact.property.name} exactly where {where}")
+            reject(
+                f"{polynomial} is {fact.property.name} exactly where "
+                f"{', '.join(plain_relation(relation, environment.variable) for relation in fact.where)}"
+            )
         return
     _about_letters(fact.subject, environment)
     found = evaluate(fact.subject, environment, Exact(environment))
     parts = subjects(fact.name, found, environment.variable)
-    if fact.name not in PREDICATES or not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
+    if not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
         reject(f"{fact.name}({found})")
 
 
@@ -324,7 +327,7 @@ def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> 
     match target:
         case Derivative(Letter(name)) if _is_free(name, environment):
             return environment.having(dynamics={name: rest[0]})
-        case Literal(value) if isinstance(value, Scalar) and str(value) in value.names:
+        case Literal(value) if str(value) in value.names:
             (name,) = value.names
             _new_name(name, environment)
             meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
@@ -345,7 +348,7 @@ def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> 
 
 def _is_free(name: str, environment: Environment) -> bool:
     """Whether a signal has neither a definition nor a derivative: only such a one can be given either."""
-    return name in environment.signals and environment.signals[name] is None and name not in environment.dynamics
+    return environment.signals[name] is None and name not in environment.dynamics
 
 
 def _new_name(name: str, environment: Environment) -> None:

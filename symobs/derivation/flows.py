@@ -44,10 +44,8 @@ def equations_of(name: str, labels: Mapping[str, Label], environment: Environmen
     flow = _Flow(figure, labels, environment)
     for label, letter in figure.letters:
         yield Relation((Letter(letter), without_sign(flow.label(label))[1]), ("=",))
-    said = [relation for node in figure.place for relation in flow.said_at(node)]
-    if not said:
-        raise ValueError("a figure that says nothing")
-    yield from said
+    for node in figure.place:
+        yield from flow.said_at(node)
 
 
 class _Flow:
@@ -55,7 +53,7 @@ class _Flow:
 
     def __init__(self, figure: Figure, labels: Mapping[str, Label], environment: Environment) -> None:
         self.figure, self.labels, self.environment = figure, labels, environment
-        self.output = {key(node) for node in figure.place if figure.response and not figure.out_of(node)}
+        self.output = {node for node in figure.place if figure.response and not figure.out_of(node)}
 
     def label(self, name: str) -> Formula:
         """Return a label that must be there."""
@@ -79,33 +77,29 @@ class _Flow:
         elif not is_box(node) and label is not None and wires and not self.is_from_system(wires):
             yield Relation((label, self.total(wires)), ("=",))
 
-    def leaving(self, node: str, seen: tuple[str, ...] = ()) -> Formula:
-        """Return what leaves a node."""
-        if node in seen:
-            raise ValueError(f"a loop through {node} with neither an integrator nor a signal in it")
+    def leaving(self, node: str) -> Formula:
+        """Return what leaves a node.  A loop with neither an integrator nor a signal in it has no end: RecursionError."""
         wires = self.figure.into(node)
         if self.figure.response and not wires:
             return Identity(self.environment.sizes.get("u", 1))
         if key(node) in self.output:
             return self.label("response")
-        if is_integrator(node):
-            return self.label(key(node))
         if is_box(node):
-            arriving = [self.through(wire, (*seen, node)) for wire in wires]
+            arriving = [self.through(wire) for wire in wires]
             entering = arriving[0] if len(wires) == 1 else Block(tuple((part,) for part in arriving))
             return Product((self.label(key(node)), entering))
         if not self.figure.response and (key(node) in self.labels or not wires):
             return self.label(key(node))
-        return self.total(wires, (*seen, node))
+        return self.total(wires)
 
-    def total(self, wires: list[Wire], seen: tuple[str, ...] = ()) -> Formula:
+    def total(self, wires: list[Wire]) -> Formula:
         """Return the sum of what arrives on some wires."""
-        arriving = tuple(self.through(wire, seen) for wire in wires)
+        arriving = tuple(self.through(wire) for wire in wires)
         return arriving[0] if len(arriving) == 1 else Sum(arriving)
 
-    def through(self, wire: Wire, seen: tuple[str, ...]) -> Formula:
+    def through(self, wire: Wire) -> Formula:
         """Return what arrives on a wire; a gain of its own is a sign."""
-        arriving = self.leaving(wire.begin, seen)
+        arriving = self.leaving(wire.begin)
         if not wire.gain:
             return arriving
         gain = self.label(wire.gain)
@@ -115,7 +109,7 @@ class _Flow:
 
     def is_from_system(self, wires: list[Wire]) -> bool:
         """Whether wires come from the box of a whole system, which says itself what leaves it."""
-        return any(isinstance(self.labels.get(key(wire.begin)), Together) for wire in wires)
+        return any(isinstance(self.labels.get(wire.begin), Together) for wire in wires)
 
     def hold_to_its_signals(self, node: str, equations: Together) -> None:
         """Reject a system whose equations speak of other signals than those at its box and its own state."""

@@ -85,7 +85,7 @@ def _common(picture: PoleMap) -> Iterator[int]:
 
 def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) -> bool:
     """Whether discs that hold a root each lie apart from one another, as many as there are different roots."""
-    different = sum(factor.degree(variable) for factor, power in polynomial.numerator.factors()[1] if power > 0)
+    different = sum(factor.degree(variable) for factor, _ in polynomial.numerator.factors()[1])
     apart: list[tuple[Place, Fraction]] = []
     for path, along in zip(picture.paths, picture.along, strict=True):
         shifted = _shifted(polynomial, picture.moved, along[index], path[index], variable)

@@ -62,34 +62,10 @@ def is_criterion(
 ) -> bool:
     """Tell whether what is said is what the criterion asks for, each up to a factor positive by the declared signs."""
     signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
-    if not bounds or not said:
+    if not said:
         return False
     same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
     return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
-
-
-def holds_exactly_where(
-    name: str,
-    polynomial: Scalar,
-    said: Sequence[Scalar],
-    environment: Environment,
-    discrete: bool,  # noqa: FBT001
-) -> bool:
-    """Tell whether a polynomial has the property exactly where all that is said is positive, or not negative.
-
-    Each must be, up to a factor that is positive by the declared signs, one of the conditions computed here.  A list of
-    another form needs a proof that it says the same.
-    """
-    signs = environment.signs
-    if is_criterion(name, polynomial, said, environment, discrete):
-        return True
-    if not said or not needed(name, polynomial, environment, discrete):
-        return False
-    if name != "stable":
-        return False
-    from symobs.region.conditions import is_stable_where  # noqa: PLC0415 - a list of another form is rare
-
-    return is_stable_where(polynomial, environment.variable, said, signs, discrete=discrete)
 
 
 #: What each property asks of a scalar, of the environment, and of discrete time.

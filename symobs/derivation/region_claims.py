@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.certificate import as_scalar
-from symobs.derivation.properties import holds_exactly_where, is_criterion
+from symobs.derivation.properties import is_criterion
 from symobs.formula import Exact, evaluate
 
 if TYPE_CHECKING:
@@ -33,13 +33,16 @@ def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, d
     positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
     if is_criterion(name, polynomial, positive, environment, discrete):
         return True
+    if name != "stable" or not said:
+        return False
     from symobs.derivation.regions import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.region.conditions import is_stable_where  # noqa: PLC0415 - the same
 
-    region = region_of(polynomial, environment, discrete=discrete) if name == "stable" else None
+    region = region_of(polynomial, environment, discrete=discrete)
     where = tuple((value, "!=" if operator == "!=" else ">") for value, operator in said)
     if region is not None and holds_exactly(region, where):
         return True
-    return holds_exactly_where(name, polynomial, positive, environment, discrete)
+    return is_stable_where(polynomial, environment.variable, positive, environment.signs, discrete=discrete)
 
 
 def _with_signs(environment: Environment) -> Environment:

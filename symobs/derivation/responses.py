@@ -18,7 +18,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from symobs.formula import Environment, Formula
     from symobs.picture import Course, TimeResponse
@@ -38,25 +38,22 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
         if verify(Relation(relation, ("=",)), environment)[0] == "":
             yield f"an equation of {', '.join(picture.states)} with this matrix"
             return
-    (low, high), (bottom, top) = picture.window
-    instants = [x for x, _ in picture.courses[0].points] if picture.courses else []
-    if len(instants) < 2 or instants[0] != 0 or low != 0 or instants[-1] != high or bottom >= top:
+    (begin, end), (bottom, top) = picture.window
+    counts = {len(course.heights) for course in picture.courses}
+    if len(counts) != 1 or min(counts) < 2 or begin != 0 or end <= 0 or bottom >= top or picture.parts < 1:
         yield "a window that begins at 0 and that courses fill"
         return
-    steps = {b - a for a, b in pairwise(instants)}
-    if len(steps) != 1 or min(steps) <= 0:
-        yield "instants at equal distances"
-        return
+    steps = min(counts) - 1
     sizes = [_size(name, environment) for name in picture.states]
     if [len(start) for start in picture.starts] != sizes:
         yield f"a start of {', '.join(picture.states)}"
         return
     matrix = evaluate(subject, environment, Exact(environment))
     values = _stepped(
-        matrix, tuple(part for start in picture.starts for part in start), instants[1] / 2, 2 * len(instants) - 1
+        matrix, tuple(part for start in picture.starts for part in start), end / (2 * steps), 2 * steps + 1
     )
     for course in picture.courses:
-        yield from _faults_of_course(course, instants, values, (bottom, top))
+        yield from _faults_of_course(course, picture.parts, values, (bottom, top))
 
 
 def _signals(picture: TimeResponse, state: Block, environment: Environment) -> Iterator[tuple[Formula, Formula]]:
@@ -77,16 +74,13 @@ def _size(name: str, environment: Environment) -> int:
 
 
 def _faults_of_course(
-    course: Course, instants: Sequence[Fraction], values: list[list[int]], edges: tuple[Fraction, Fraction]
+    course: Course, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
 ) -> Iterator[str]:
     """Yield where a course is not what it is said to be; `values` are those at all instants and between them."""
     common = lcm(*(part.denominator for part in course.row))
     row = [int(part * common) for part in course.row]
     true = [sum(map(mul, row, value)) // common for value in values]
-    if [x for x, _ in course.points] != list(instants):
-        yield f"{course.signal} at other instants"
-        return
-    drawn = [(y.numerator << _BITS) // y.denominator for _, y in course.points]
+    drawn = [(height << _BITS) // parts for height in course.heights]
     bottom, top = (int(edge * (1 << _BITS)) for edge in edges)
     height = top - bottom
     off = [abs(y - value) for y, value in zip(drawn, true[::2], strict=True)]
@@ -101,11 +95,13 @@ def _faults_of_course(
 def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
     """Return the state at `count` instants, in parts of 2 to the power of _BITS.
 
-    A step enlarges an error at most by e^‖Mh‖: as many bits are kept in reserve for each, so rounding is not seen.
+    A step enlarges an error at most by e^‖Mh‖ and adds some units of its own: bits are kept in reserve for the former,
+    and _BITS of them, beside those of the start and of the steps, are more than the latter add up to.
     """
     table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
     norm = max(sum(map(abs, row), Fraction(0)) for row in table)
-    bits = 2 * _BITS + int(count * norm * _BITS_OF_E) + count
+    largest = max(map(abs, start), default=Fraction(0))
+    bits = 2 * _BITS + int(count * norm * _BITS_OF_E) + count.bit_length() + int(largest).bit_length()
     if bits > _MOST_BITS:
         raise ValueError("a course with too much to compute")
     once = _exponential(table, norm, bits)
@@ -124,9 +120,9 @@ def _exponential(table: list[Vector], norm: Fraction, bits: int) -> list[list[in
     term = [[(i == j) << bits for j in range(order)] for i in range(order)]
     total = [list(row) for row in term]
     k = 0
+    columns = list(zip(*fixed, strict=True))
     while k <= 2 * norm or any(entry not in {0, -1} for row in term for entry in row):
         k += 1
-        columns = list(zip(*fixed, strict=True))
-        term = [[sum(map(mul, row, column)) // (k << bits) for column in columns] for row in term]
+        term = [[(sum(map(mul, row, column)) >> bits) // k for column in columns] for row in term]
         total = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
     return total

@@ -5,10 +5,10 @@ A step says something about letters established before it, and carries the sente
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.phrases import slots_of
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from symobs.region.routh import RouthTable
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sentence:
     """A phrase of `phrases.PHRASES` with its slots filled by formulas, facts or plain words."""
 
@@ -33,7 +33,7 @@ class Sentence:
             raise ValueError(message)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Given:
     """Data of the problem, or with `!=` a condition assumed: each relation introduces its first member.
 
@@ -45,7 +45,7 @@ class Given:
     silent: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Define:
     """A new letter (or the dynamics of a new signal): members[0] is introduced, the others must agree."""
 
@@ -55,7 +55,7 @@ class Define:
     silent: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Equal:
     """Relations among what is established, shown on one display."""
 
@@ -64,7 +64,7 @@ class Equal:
     answer: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Solve:
     """`unknown` = solution because the equation then holds."""
 
@@ -73,7 +73,7 @@ class Solve:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Conclude:
     """A finding; `verified` marks a check the reader is shown; without sentence it only binds the page."""
 
@@ -82,7 +82,7 @@ class Conclude:
     verified: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Note:
     """A remark; `caution` where an expert would warn.  It may speak of established letters only."""
 
@@ -91,7 +91,7 @@ class Note:
     caution: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Diagram:
     """A block diagram: a figure of `flow` by its name, with the gains and signals that label it.
 
@@ -103,7 +103,7 @@ class Diagram:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Tabulate:
     """Routh's table of a polynomial in `variable`; the findings, told below it, are among those of `findings_of`."""
 
@@ -114,7 +114,7 @@ class Tabulate:
     findings: tuple[Sentence, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Where:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
@@ -123,7 +123,7 @@ class Where:
     answer: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Survey:
     """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
 
@@ -138,7 +138,7 @@ class Survey:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Plot:
     """A picture of where `subject`, a polynomial, is stable, or of its roots as a parameter moves."""
 
@@ -147,7 +147,7 @@ class Plot:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Case:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
@@ -162,7 +162,7 @@ class Case:
     anew: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Section:
     """A titled run of steps; sections nest."""
 

@@ -7,7 +7,6 @@ be assigned exactly when their polynomial divides it, and then every gain differ
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ from symobs.exact import (
     unit_rows,
 )
 from symobs.exact.krylov import Krylov
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
@@ -88,6 +88,9 @@ class Pair:
     def gain(self, desired: DesiredPolynomial) -> Matrix | None:
         """Return l with det(sI − A + l c) = φ(s), or None where φ cannot be assigned."""
         if self.is_observable:
+            if not self.krylov.field.names and desired.is_numeric:
+                coefficients = desired.polynomial.coefficients(self.variable)
+                return self.krylov.placing([coefficient.fraction() for coefficient in coefficients])
             vector = self.krylov.solve_last()
             return modulo(apply_polynomial(desired.factors, desired.variable, self.A, vector).normal(), self.ideal)
         quotient, rest = self.divided(desired.polynomial)

@@ -8,13 +8,13 @@ There the chains are linked to one, or each is given factors of φ of its own.  
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations, islice, pairwise, permutations
 from math import prod
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, apply_polynomial, rank
 from symobs.exact.krylov import Krylov
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
@@ -17,6 +16,7 @@ from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText, desired_polynomial
 
 if TYPE_CHECKING:

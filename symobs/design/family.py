@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
 from symobs.page import relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

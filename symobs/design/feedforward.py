@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -18,6 +17,7 @@ from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

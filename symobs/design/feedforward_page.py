@@ -11,6 +11,7 @@ from symobs.design.estimate_pages import is_ill_posed, write_both_gains
 from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.minimal_order_page import partitioned_gain
+from symobs.design.pole_cautions import caution_law
 from symobs.exact import Matrix, Scalar
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
@@ -35,6 +36,7 @@ def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
         _loop(page, design, minimal=minimal)
         _gain(page, design)
         draw_feedforward(page, minimal=minimal)
+        caution_law(page, loop)
 
 
 def _at_rest(page: Page) -> Term:

@@ -5,7 +5,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
@@ -22,6 +22,7 @@ from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
+from symobs.record import dataclass
 from symobs.stability import Stability, stability
 
 if TYPE_CHECKING:
@@ -150,6 +151,8 @@ class GainDesign(Result):
             yield Claim(relation(entries, Matrix.zeros(1, len(self.zero))), e, f"zeros in {self.letter} as asked for")
         if self.gain_family is not None and self.gain_family[self.letter] is not None:
             yield self._assigned(self.gain_family[self.letter])
+            if self.chart is None:
+                yield from self._free_along_kernel(gain, self.gain_family)
         if self.chart is not None:
             yield from self.chart.claims(self.oriented, self.gain_family)
 
@@ -158,6 +161,19 @@ class GainDesign(Result):
         values = letters_of(self.plant) | {self.letter: gain, "phi": phi}
         e = Environment(variable=self.plant.variable, values=values)
         return Claim(self.assignment(self.plant.order), e)
+
+    def _free_along_kernel(self, gain: Matrix, family: Mapping[str, Any]) -> Iterator[Claim]:
+        """Yield L = L₀ + N g with N of full rank: no parameter of the family is idle."""
+        N, names = self._pair.kernel, family["parameters"]
+        e = Environment(variable=self.plant.variable)
+        free = Matrix.column([Scalar.symbol(name) for name in names])
+        general = (gain + self.oriented(N @ free)).normal()
+        yield Claim(relation(family[self.letter], general), e, f"{self.letter} is free along the kernel")
+        yield self._of_full_rank(N, e)
+
+    def _of_full_rank(self, N: Matrix, e: Environment) -> Claim:
+        minor = N.select(independent_rows(N, self._pair.ideal), range(N.shape[1]))
+        return Claim(relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, "N has full rank")
 
     def _impossible(self) -> Iterator[Claim]:
         """C N = 0 and A N = N X make det(sI − X) a factor of every det(sI − A + LC); it does not divide φ."""
@@ -170,9 +186,8 @@ class GainDesign(Result):
         pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
         yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
         yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
-        minor = N.select(independent_rows(N, pair.ideal), range(N.shape[1]))
         yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
-        yield Claim(relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, "N has full rank")
+        yield self._of_full_rank(N, e)
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
         phi = letter("phi", e)
         yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import (
@@ -22,10 +21,12 @@ from symobs.design.gain import GainDesign, fresh_names
 from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import taken_names
+from symobs.design.pole_cautions import caution_poles
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
 from symobs.page import Page, predicate, relation
+from symobs.record import dataclass
 from symobs.specification import DesiredPolynomial
 
 if TYPE_CHECKING:
@@ -315,6 +316,7 @@ def _verified(page: Page, design: GainDesign, side: Side) -> None:
     if not desired.is_expanded and polynomial == desired.polynomial:
         members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
     say_as_required(page, desired, *members)
+    caution_poles(page, desired, side.phi, side.kind)
     if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
         say_stability(page, error_determinant(page, side))
 

@@ -5,7 +5,6 @@ With K M = [N K₂] the control law is u = −N (y − D u) − K₂ z: what the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
@@ -21,6 +20,7 @@ from symobs.exact import Matrix, Scalar, transfer
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.page import Page, relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

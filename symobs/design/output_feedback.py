@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -16,6 +15,7 @@ from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
 from symobs.page import relation
+from symobs.record import dataclass
 from symobs.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -13,6 +12,7 @@ from symobs.design.assignment import Pair
 from symobs.design.pole_places import (
     Zeros,
     as_number,
+    needed_of,
     normalised,
     numerator_of,
     overshoot_of,
@@ -27,8 +27,9 @@ from symobs.exact.circle import butterworth
 from symobs.exact.functions import NotWritten, function, identities
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, identity, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.specification import read_quantity
 from symobs.stability import stability
 
@@ -63,14 +64,16 @@ class PoleAdvice(Result):
     """
 
     wish: Wish
+    #: Factors of the numerator whose roots are places for poles under conditions: here these hold.
+    taken: tuple[Scalar, ...] = ()
 
     task: ClassVar[str] = "pole_advice"
 
     @classmethod
-    def of(cls, plant: StateSpace, wish: Wish, method_name: str) -> Self:
+    def of(cls, plant: StateSpace, wish: Wish, method_name: str, taken: tuple[Scalar, ...] = ()) -> Self:
         """Return the advice; raises `InputError` where a circle's poles have no square roots."""
         sigma = None if wish.settling_time is None else 4 / wish.settling_time
-        zeros = Zeros.of(numerator_of(plant), plant, sigma)
+        zeros = Zeros.of(numerator_of(plant), plant, sigma, taken)
         count = plant.order - zeros.polynomial.degree(plant.variable)
         omega_d = None
         if wish.radius is not None:
@@ -86,12 +89,22 @@ class PoleAdvice(Result):
         for factor in rest:
             together[factor] = together.get(factor, 0) + 1
         answer["polynomial"] = Factored(one, tuple(together.items()))
-        return cls(plant, method_name, answer, wish)
+        return cls(plant, method_name, answer, wish, taken)
 
     @cached_property
     def zeros(self) -> Zeros:
         """The plant's zeros: those that are used, and why the others are not."""
-        return Zeros.of(numerator_of(self.plant), self.plant, self.answer["sigma"])
+        return Zeros.of(self.numerator, self.plant, self.answer["sigma"], self.taken)
+
+    @cached_property
+    def numerator(self) -> Scalar:
+        """C adj(sI − A) B + D det(sI − A), nothing cancelled."""
+        return numerator_of(self.plant)
+
+    @property
+    def passed(self) -> Scalar | None:
+        """The last of the factors that are taken for stable."""
+        return self.taken[-1] if self.taken else None
 
     @property
     def count(self) -> int:
@@ -136,7 +149,9 @@ class PoleAdvice(Result):
         if self.wish.radius is not None:
             factors = [normalised(factor, self.wish.radius, variable) for factor in factors]
         used = [factor for factor, _ in self.zeros.used]
-        stable = all(stability(f, variable, signs, discrete=False).verdict == "yes" for f in (*used, *factors))
+        held = [f for f in (*used, *factors) if f not in self.taken]
+        stable = all(stability(f, variable, signs, discrete=False).verdict == "yes" for f in held)
+        stable = stable and all(needed_of(f, signs, self.answer["sigma"], variable) for f in self.taken)
         whole = rest.degree(variable) == self.count and rest.coefficients(variable)[0].is_one
         if not stable or not whole or self.answer["zeros"] != self.zeros.polynomial:
             message = "the poles advised are the stable zeros and as many more in the left half-plane as are missing"
@@ -190,15 +205,40 @@ class PoleAdvice(Result):
     @property
     def verdict(self) -> str:
         """`no` where unobservable modes are not among the poles: no gain moves them there."""
-        return super().verdict if self.missed.is_one else "no"
+        if not self.missed.is_one:
+            return "no"
+        return "conditional" if self.case_tree else super().verdict
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
-        """The conditions of the plant and the zeros, and that the radius is positive."""
-        own, radius = super().holds_where, self.wish.radius
-        if radius is None or not self.count or sign_of(radius, self.plant.symbols.signs) == "positive":
-            return own
-        return (*own, Condition("claim", radius.numerator * radius.denominator, ">"))
+        """The conditions of the plant and the zeros, that the radius is positive, and that zeros and modes are all there."""
+        signs, radius = self.plant.symbols.signs, self.wish.radius
+        own = [*super().holds_where]
+        if radius is not None and self.count and sign_of(radius, signs) != "positive":
+            own.append(Condition("claim", radius.numerator * radius.denominator, ">"))
+        for factor in self.taken:
+            needed = needed_of(factor, signs, self.answer["sigma"], self.plant.variable)
+            own += [Condition("claim", value, ">") for value in needed]
+        listed = {condition.expression for condition in own}
+        return (*own, *(c for c in self._existence if c.expression not in listed))
+
+    @cached_property
+    def _existence(self) -> tuple[Condition, ...]:
+        """The conditions for as many zeros as in general, and for a plant all of whose modes are seen and moved."""
+        if not self.plant.field.names:
+            return ()
+        from symobs.design.pole_cases import existence_of  # noqa: PLC0415 - only plants with parameters pay for it
+
+        return existence_of(self.plant, self.numerator)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The advice where zeros are stable that need not be, and where zeros or modes are lost."""
+        if not self.plant.field.names:
+            return ()
+        from symobs.design.pole_cases import cases_of  # noqa: PLC0415 - only plants with parameters pay for it
+
+        return cases_of(self)
 
     @cached_property
     def places(self) -> tuple[Complex | Root, ...]:

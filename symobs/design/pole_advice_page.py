@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from symobs.analysis.pages import factored_form, formula_of_factored, given, hidden, hidden_polynomial
+from symobs.analysis.coordinates import set_anew
+from symobs.analysis.pages import (
+    factored_form,
+    formula_of_factored,
+    given,
+    hidden,
+    hidden_polynomial,
+    stratum_of,
+    undecided,
+)
+from symobs.derivation import Case as CaseStep
 from symobs.derivation import Given
 from symobs.design.pole_advice import FURTHER_LEFT, numerator_term
 from symobs.design.pole_places import numerator_of, overshoot_of, third_digit
@@ -15,8 +25,12 @@ from symobs.exact.functions import function
 from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product
 from symobs.page import Page, predicate, relation, sentence
+from symobs.stability import as_inequality
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.derivation import Step
     from symobs.design.pole_advice import PoleAdvice
     from symobs.design.pole_warnings import Beware
     from symobs.formula import Relation
@@ -27,22 +41,61 @@ _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 
 def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
-    written = [advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value]
-    if advice.wish.radius is not None:
-        written += [twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count)]
-    page.with_roots(*written)
+    page.with_roots(*_written(advice))
     given(page)
     if advice.wish.radius is None:
         _asked(page, advice)
     with page.section("pole_advice"):
-        _zeros(page, advice)
-        if advice.wish.radius is not None:
-            _circle(page, advice, advice.wish.radius)
-        else:
-            _pair(page, advice)
-        _polynomial(page, advice)
-        for warning in advice.cautions:
-            _caution(page, advice, warning)
+        _advice(page, advice)
+        conditions = [c.expression for c in advice.holds_where if c.kind == "existence"]
+        if conditions:
+            page.assume("advice_provided", *conditions)
+        page.steps += _cases(page, advice)
+
+
+def _written(advice: PoleAdvice) -> Iterator[Scalar]:
+    """Yield what may hold square roots, in the cases as well."""
+    yield from (advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value)
+    if advice.wish.radius is not None:
+        yield from (twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count))
+    for case in advice.case_tree:
+        if case.result is not None:
+            yield from _written(cast("PoleAdvice", case.result))
+
+
+def _advice(page: Page, advice: PoleAdvice) -> None:
+    """Write zeros, the other places, the polynomial, the cautions."""
+    _zeros(page, advice)
+    if advice.wish.radius is not None:
+        _circle(page, advice, advice.wish.radius)
+    else:
+        _pair(page, advice)
+    _polynomial(page, advice)
+    for warning in advice.cautions:
+        _caution(page, advice, warning)
+
+
+def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
+    """Yield the cases: of zeros that are stable under conditions, and of the strata."""
+    for case in advice.case_tree:
+        if case.result is None:
+            yield undecided(page, case)
+            continue
+        found = cast("PoleAdvice", case.result)
+        inner = Page(found.plant)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.knows(name)}
+        inner.environment = page.environment.having(values=matrices)
+        _advice(inner, found)
+        inner.steps += _cases(inner, found)
+        anew, steps = tuple(set_anew(page, inner)), tuple(inner.steps)
+        conditions = case.when
+        if conditions[0].operator != ">":
+            yield CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, anew=anew)
+            continue
+        for condition in reversed(conditions):
+            left, operator, right = as_inequality(condition.expression, page.plant.symbols.signs)
+            steps = (CaseStep(relation(left, operator, right), (), steps, anew=anew),)
+        yield steps[0]
 
 
 def _asked(page: Page, advice: PoleAdvice) -> None:

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import floor, log, log10, pi
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of
-from symobs.exact import Complex, Root, Scalar, factored, product_of, transfer
+from symobs.exact import Complex, Root, Scalar, factored, from_coefficients, product_of, transfer
 from symobs.exact.circle import butterworth_angles, twice_cosine
 from symobs.exact.functions import PI, function, square_root
+from symobs.record import dataclass
 from symobs.stability import is_beyond, on_boundary, stability
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from symobs.system import StateSpace
+
+#: Why a zero is not used that is a place for a pole under conditions on the parameters.
+OPEN = frozenset({"zero_open", "zero_slow_open"})
 
 
 @dataclass(frozen=True)
@@ -26,8 +31,8 @@ class Zeros:
     unused: tuple[tuple[Scalar, int, str], ...]
 
     @staticmethod
-    def of(numerator: Scalar, plant: StateSpace, sigma: Scalar | None) -> Zeros:
-        """Sort the zeros: those in Re s < 0, with σ in Re s < −σ, are used."""
+    def of(numerator: Scalar, plant: StateSpace, sigma: Scalar | None, taken: tuple[Scalar, ...] = ()) -> Zeros:
+        """Sort the zeros: those in Re s < 0, with σ in Re s < −σ, are used, and those `taken` for being there."""
         used: list[tuple[Scalar, int]] = []
         unused: list[tuple[Scalar, int, str]] = []
         if numerator.is_zero:
@@ -35,7 +40,7 @@ class Zeros:
         form = factored(numerator, plant.variable)
         for factor, power in form.factors:
             for part in _parts(factor, plant.variable):
-                reason = _reason(part, plant, sigma)
+                reason = "" if part in taken else _reason(part, plant, sigma)
                 if reason:
                     unused.append((part, power, reason))
                 else:
@@ -67,19 +72,42 @@ def _reason(factor: Scalar, plant: StateSpace, sigma: Scalar | None) -> str:
     """Return why the roots of a factor are no places for poles; nothing where they are."""
     signs, variable = plant.symbols.signs, plant.variable
     verdict = stability(factor, variable, signs, discrete=False).verdict
+    further = (
+        verdict
+        if sigma is None
+        else stability(_moved(factor, sigma, variable), variable, signs, discrete=False).verdict
+    )
     if verdict == "yes":
-        slower = sigma is not None and stability(_moved(factor, sigma, variable), variable, signs, discrete=False)
-        return "zero_slow" if slower and slower.verdict != "yes" else ""
+        return {"yes": "", "no": "zero_slow", "conditional": "zero_slow_open"}[further]
     if factor == Scalar.symbol(variable):
         return "zero_at_origin"
     if on_boundary(factor, variable, signs, discrete=False):
         return "zero_on_axis"
-    if verdict == "conditional":
+    if verdict == further == "conditional":
         return "zero_open"
     far = factor.substitute({variable: -Scalar.symbol(variable)})
     lead = far.coefficients(variable)[0]
-    mirrored = stability(far / lead, variable, signs, discrete=False).verdict == "yes"
-    return "zero_right" if mirrored or not is_beyond(factor, variable, signs, discrete=False) else "zero_mixed"
+    if stability(far / lead, variable, signs, discrete=False).verdict == "yes":
+        return "zero_right"
+    return "zero_mixed" if _on_both_sides(factor, variable, signs) else "zero_never"
+
+
+def _on_both_sides(factor: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
+    """Whether an irreducible factor surely has roots on both sides of the axis, and not all of them on one.
+
+    With numbers for coefficients what is neither stable, nor on the axis, nor all on the right.  With parameters this is
+    seen of two roots whose product is negative.
+    """
+    lead, *_, last = factor.coefficients(variable)
+    if factor.names == {variable}:
+        return is_beyond(factor, variable, signs, discrete=False)
+    return factor.degree(variable) == 2 and sign_of(last / lead, signs) == "negative"
+
+
+def needed_of(factor: Scalar, signs: Mapping[str, str], sigma: Scalar | None, variable: str) -> tuple[Scalar, ...]:
+    """Return what must be positive for the roots of a factor to be places for poles, where that is open."""
+    moved = factor if sigma is None else _moved(factor, sigma, variable)
+    return stability(moved, variable, signs, discrete=False).positive
 
 
 def _moved(factor: Scalar, sigma: Scalar, variable: str) -> Scalar:
@@ -149,4 +177,7 @@ def as_number(root: Root) -> Complex | Root:
 def numerator_of(plant: StateSpace) -> Scalar:
     """Return C adj(sI − A) B + D det(sI − A), nothing cancelled."""
     m = plant.matrices
-    return transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)[0]
+    found = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)[0]
+    if not plant.equations:
+        return found
+    return from_coefficients([plant.simplified(c) for c in found.coefficients(plant.variable)], plant.variable)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from symobs.design.pole_places import numerator_of
 from symobs.exact import Factored, Scalar, apply_polynomial, roots_of
 from symobs.exact.enclosure import is_number, sign_of_number
 from symobs.phrases import PHRASES
+from symobs.record import dataclass
 from symobs.stability import no_stable_compensator
 
 if TYPE_CHECKING:

@@ -5,7 +5,6 @@ In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  Wi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -20,6 +19,7 @@ from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.specification import (
     DesiredPolynomial,
     MatrixText,

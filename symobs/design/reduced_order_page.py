@@ -12,6 +12,7 @@ from symobs.design.drawings import draw_minimal_order
 from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
 from symobs.design.names import taken_names
+from symobs.design.pole_cautions import caution_poles
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.design.responses import plot_error
 from symobs.exact import Factored, Matrix, Scalar, roots_of
@@ -196,6 +197,7 @@ def _gain(page: Page, design: ReducedOrderObserver) -> None:
     page.in_decimals("L")
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
     say_as_required(page, desired, *members)
+    caution_poles(page, desired, "phi_o", "observer")
 
 
 def observer_state(page: Page) -> str:

@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 
     from symobs.formula.term import Term
     from symobs.page import Page
-    from symobs.picture import Place
 
 #: Modes that differ in speed by more cannot be seen in one picture; with more courses none can be told from another.
 _SPREAD, _COURSES = 15.0, 6
 #: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
 _TIMES = 6.0
-_INSTANTS, _PARTS = 400, 10**6
+_STEPS, _PARTS = 400, 10**6
 _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
 
 
@@ -55,32 +54,31 @@ def _plot(
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)
-    instants = [end * k / _INSTANTS for k in range(_INSTANTS + 1)]
-    states_there = list(response(value, (Fraction(1),) * value.shape[0], instants, _PARTS))
+    try:
+        states_there = response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
+    except ArithmeticError:
+        return
     made = tuple(
-        Course(name, index if table.shape[0] > 1 else 0, row, _course(row, instants, states_there), dashed)
+        Course(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
         for name, table, dashed in signals
         for index, row in enumerate(_rows(table), 1)
     )
-    heights = [y for course in made for _, y in course.points]
-    edge = (max(heights) - min(heights)) / 20
-    window = (Fraction(0), end), (min(heights) - edge, max(heights) + edge)
+    low, high = min(min(course.heights) for course in made), max(max(course.heights) for course in made)
+    edge = Fraction(high - low, 20)
+    window = (Fraction(0), end), ((low - edge) / _PARTS, (high + edge) / _PARTS)
     starts = tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
-    page.plot(TimeResponse(states, starts, made, window), matrix, say=say)
+    page.plot(TimeResponse(states, starts, made, window, _PARTS), matrix, say=say)
 
 
 def _rows(table: Matrix) -> list[tuple[Fraction, ...]]:
     return [tuple(entry.fraction() for entry in row) for row in table.rows]
 
 
-def _course(
-    row: Sequence[Fraction], instants: Sequence[Fraction], states: Sequence[tuple[int, ...]]
-) -> tuple[Place, ...]:
-    """Return the places of row · state, rounded to parts."""
+def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
+    """Return row · state, in whole parts."""
     common = lcm(*(part.denominator for part in row))
     whole = [int(part * common) for part in row]
-    heights = (Fraction(sum(map(mul, whole, state)) // common, _PARTS) for state in states)
-    return tuple(zip(instants, heights, strict=True))
+    return tuple(sum(map(mul, whole, state)) // common for state in states)
 
 
 def _rounded(value: float) -> Fraction:

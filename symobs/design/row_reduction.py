@@ -8,11 +8,11 @@ twice the size; a factor of φ without such roots has its companion matrix for J
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, companion, rank, reduced_echelon, roots_of
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

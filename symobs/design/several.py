@@ -6,7 +6,6 @@ seen part is given the rest of φ, and a gain may have anything along ker 𝒪.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ from symobs.design.assignment import Pair
 from symobs.design.chains import cost, simple_gains
 from symobs.design.sylvester import charts_of
 from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar

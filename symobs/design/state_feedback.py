@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,6 +17,7 @@ from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
 from symobs.method import Result, choose, method, task
+from symobs.record import dataclass
 from symobs.specification import (
     DesiredPolynomial,
     Entries,

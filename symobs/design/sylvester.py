@@ -8,13 +8,13 @@ r, rM, …, rMⁿ⁻¹ are X⁻¹.  Source: S. P. Bhattacharyya and E. de Souza,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
 from math import comb
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, apply_polynomial, companion
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -19,6 +18,7 @@ from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
+from symobs.record import dataclass
 from symobs.specification import read_gain
 
 if TYPE_CHECKING:

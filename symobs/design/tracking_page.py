@@ -8,6 +8,7 @@ from symobs.analysis.pages import formula_of_factored
 from symobs.design.drawings import draw_tracking
 from symobs.design.estimate_pages import is_ill_posed, write_both_gains
 from symobs.design.minimal_order_page import partitioned_gain
+from symobs.design.pole_cautions import caution_law
 from symobs.design.reduced_order_observer import ReducedOrderObserver
 from symobs.exact import Matrix
 from symobs.formula.term import Term, block
@@ -31,6 +32,7 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
         if design.has_gains and design.answer["K_d"] is not None:
             draw_tracking(page, minimal=isinstance(loop.estimator, ReducedOrderObserver))
             _errors(page, design)
+            caution_law(page, loop)
 
 
 def _reference(page: Page, design: TrackingDesign) -> None:

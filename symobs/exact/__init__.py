@@ -12,7 +12,16 @@ from symobs.exact.field import RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix
-from symobs.exact.polynomial import apply_polynomial, companion, from_coefficients, hankel_of, product_of, remainder
+from symobs.exact.numeric import matrix_of_numbers
+from symobs.exact.polynomial import (
+    apply_polynomial,
+    companion,
+    from_coefficients,
+    hankel_of,
+    product_of,
+    remainder,
+    resultant,
+)
 from symobs.exact.real import RealNumber
 from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.scalar import Scalar
@@ -49,6 +58,7 @@ __all__ = [
     "independent_rows",
     "is_rounding",
     "kernel",
+    "matrix_of_numbers",
     "modulo",
     "places",
     "pole_and_zero_polynomial",
@@ -56,6 +66,7 @@ __all__ = [
     "rank",
     "reduced_echelon",
     "remainder",
+    "resultant",
     "root_of_pole",
     "roots_are",
     "roots_of",

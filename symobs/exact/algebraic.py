@@ -6,13 +6,13 @@ apart: what holds for λ holds for every root of q.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import from_coefficients
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

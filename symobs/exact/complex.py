@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from fractions import Fraction

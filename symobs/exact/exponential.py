@@ -8,7 +8,6 @@ parameters; square roots stand in the scalar functions only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -20,6 +19,7 @@ from symobs.exact.quasi import Key, Quasi, matrix_at
 from symobs.exact.root_sum import RootSum
 from symobs.exact.roots import factored
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

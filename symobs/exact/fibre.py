@@ -7,13 +7,13 @@ exactly, by Euclid's algorithm modulo the minimal polynomial of α; its roots ar
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import acb_poly, arb, arb_mat, ctx, fmpq, fmpq_poly
 
 from symobs.exact.ideal import TooLarge
 from symobs.exact.real import FIRST_BITS, RealNumber, at_ball, ends_of, rational_between, real_roots, simplest_between
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

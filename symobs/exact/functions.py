@@ -7,7 +7,6 @@ from its name: d/dt is Σ ∂/∂generator · generator′.  Different generator
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 from typing import TYPE_CHECKING, overload
@@ -16,6 +15,7 @@ from flint import fmpz
 
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

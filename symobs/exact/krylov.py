@@ -6,17 +6,22 @@ dₙ₋₁ N⁻¹ eₙ.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from math import lcm
+from typing import TYPE_CHECKING, Any
 
-from flint import fmpq_mat, fmpz_mat, nmod_mat
+from flint import fmpq_mat, fmpz, fmpz_mat, nmod_mat
 
 from symobs.exact import ring
 from symobs.exact.matrix import Matrix
+from symobs.exact.ring import number_of
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
     from flint import fmpz_mpoly
 
     from symobs.exact.field import Field
@@ -39,7 +44,7 @@ class Krylov:
         A, row = A.within(field), c.within(field)
         rows = [row]
         for _ in range(A.shape[0] - 1):
-            rows.append(rows[-1] @ A)
+            rows.append(_times(rows[-1], A))
         return Krylov(A, tuple(rows))
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -98,6 +103,28 @@ class Krylov:
             return self.field.context.constant(self._numbers.det())
         return ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
 
+    def placing(self, coefficients: Sequence[Fraction]) -> Matrix:
+        """Return φ(A) 𝒪⁻¹ eₙ for a plant with numbers, φ given by its coefficients, highest power first.
+
+        It solves 𝒪 l = b with bₖ = c Aᵏ φ(A) 𝒪⁻¹ eₙ.  The numbers c Aᵏ 𝒪⁻¹ eₙ are 0, …, 0, 1 and go on as the power
+        series of 1/χ, coefficients reversed, so b is that of φ/χ: one system with short numbers on the right, and no
+        product with the long ones of its solution.  Raises ZeroDivisionError where det 𝒪 = 0.
+        """
+        order, table = len(self.rows), self.A.table
+        assert isinstance(table, fmpz_mat)  # noqa: S101 - an invariant of the rationals
+        scale = number_of(self.A.denominator)
+        above, below = _scaled(coefficients, scale), table.charpoly().coeffs()[::-1]
+        series = [above[0]]
+        for k in range(1, order + 1):
+            known = sum((below[i] * series[k - i] for i in range(1, k + 1)), fmpz(0))
+            series.append(above[k] - known)
+        common = lcm(*(coefficient.denominator for coefficient in coefficients))
+        found: Any = self._numbers.solve(fmpz_mat(order, 1, series[1:]))  # `fmpq_mat`, which its stub does not say
+        solution, number = found.numer_denom()
+        factor = number_of(self.rows[0].denominator)
+        bottom = self.field.context.constant(number * scale * common)
+        return Matrix(self.field, solution * factor, bottom, (order, 1)).normal()
+
     def solve_last(self) -> Matrix:
         """Return 𝒪⁻¹ eₙ; raises ZeroDivisionError where det 𝒪 = 0 identically."""
         order = len(self.rows)
@@ -113,3 +140,20 @@ class Krylov:
             raise ZeroDivisionError(message)
         column = tuple((cofactor * scale,) for cofactor in self._last_cofactors)
         return Matrix(self.field, column, below, (order, 1))
+
+
+def _times(row: Matrix, A: Matrix) -> Matrix:
+    """Return row · A; numbers with nothing cancelled, so that all rows are those of integral matrices."""
+    if isinstance(row.table, fmpz_mat) and isinstance(A.table, fmpz_mat):
+        return Matrix(A.field, row.table * A.table, row.denominator * A.denominator, row.shape)
+    return row @ A
+
+
+def _scaled(coefficients: Sequence[Fraction], scale: fmpz) -> list[fmpz]:
+    """Return the integral coefficients of a multiple of dⁿ φ(s/d), the polynomial of d · A where φ is that of A."""
+    common = lcm(*(coefficient.denominator for coefficient in coefficients))
+    power, found = fmpz(1), []
+    for coefficient in coefficients:
+        found.append(coefficient.numerator * (common // coefficient.denominator) * power)
+        power *= scale
+    return found

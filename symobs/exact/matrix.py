@@ -7,10 +7,10 @@ not reduce; reading an entry does, and `rows` (all entries, reduced) is computed
 from __future__ import annotations
 
 import itertools
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import TYPE_CHECKING
 
-from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
+from flint import fmpq_mat, fmpz_mat, fmpz_mpoly
 
 from symobs.exact import ring
 from symobs.exact.field import RATIONALS, Field
@@ -49,9 +49,8 @@ class Matrix:
             message = f"rows of different lengths: {[len(row) for row in rows]}"
             raise ValueError(message)
         lifted = tuple(tuple(entry.within(field) for entry in row) for row in rows)
-        denominator = field.one
-        for entry in itertools.chain(*lifted):
-            denominator = ring.common_multiple(denominator, entry.denominator_part)
+        parts = (entry.denominator_part for entry in itertools.chain(*lifted))
+        denominator = reduce(ring.common_multiple, parts, field.one)
         table = tuple(tuple(entry.over(denominator) for entry in row) for row in lifted)
         matrix = build(field, table, denominator, shape)
         matrix.__dict__["rows"] = rows
@@ -150,9 +149,13 @@ class Matrix:
 
     def degrees(self) -> tuple[int, int]:
         """Return upper bounds of the total degrees of the table's entries and of the denominator."""
+        return self._degrees
+
+    @cached_property
+    def _degrees(self) -> tuple[int, int]:
         if isinstance(self.table, fmpz_mat):
             return 0, 0
-        above = max((degree_bound(entry) for row in self.table for entry in row), default=0)
+        above = max([degree_bound(entry) for row in self.table for entry in row], default=0)
         return above, degree_bound(self.denominator)
 
     def lengths(self) -> tuple[float, float]:
@@ -194,11 +197,8 @@ class Matrix:
 
     def common_denominator(self) -> Scalar:
         """Return the least common denominator of the entries."""
-        field = self.field
-        common = field.one
-        for entry in self.entries:
-            common = ring.common_multiple(common, entry.within(field).denominator_part)
-        return Scalar(field, common, field.one)
+        parts = (entry.within(self.field).denominator_part for entry in self.entries)
+        return Scalar(self.field, reduce(ring.common_multiple, parts, self.field.one), self.field.one)
 
     @property
     def is_zero(self) -> bool:
@@ -240,8 +240,7 @@ class Matrix:
         if factor.is_one():
             return self
         if isinstance(self.table, fmpz_mat):
-            number = factor.leading_coefficient() if factor else fmpz(0)
-            return Matrix(self.field, self.table * number, self.denominator, self.shape)
+            return Matrix(self.field, self.table * ring.number_of(factor), self.denominator, self.shape)
         table = tuple(tuple(entry * factor for entry in row) for row in self.table)
         return Matrix(self.field, table, self.denominator, self.shape)
 
@@ -374,7 +373,7 @@ def build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[
     """Return the matrix of a table of polynomials, in the form its field asks for."""
     if field.names:
         return Matrix(field, table, denominator, shape)
-    numbers = [entry.leading_coefficient() if entry else fmpz(0) for row in table for entry in row]
+    numbers = [ring.number_of(entry) for row in table for entry in row]
     return _lowest(Matrix(field, fmpz_mat(*shape, numbers), denominator, shape))
 
 

@@ -6,7 +6,6 @@ or runs off to infinity, so the branches keep their number and their order, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from flint import fmpz_poly
 
 from symobs.exact.field import Field
 from symobs.exact.real import RealNumber, irreducible_factors, rational_between, real_roots
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import ring
+from symobs.exact import numeric, ring
 from symobs.exact.field import Field
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
@@ -40,10 +40,10 @@ def apply_polynomial(factors: Iterable[Scalar], variable: str, matrix: Matrix, v
     if beyond:
         field = field | Field.of(beyond.intersection(set().union(*(f.names for f in factors))))
     matrix, vector = matrix.within(field), vector.within(field)
-    apply = _horner if field.names else _numeric_horner
+    apply = _horner if field.names else numeric.horner
     for factor in factors:
         vector = apply(factor.coefficients(variable, field), matrix, vector)
-    return vector
+    return vector if field.names else vector.normal()
 
 
 def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Matrix:
@@ -68,15 +68,6 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
         if factor:
             image = [entry + factor * old for entry, old in zip(image, column, strict=True)]
     return Matrix(field, tuple((entry,) for entry in image), below, vector.shape)
-
-
-def _numeric_horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Matrix:
-    image = vector * coefficients[0]
-    for coefficient in coefficients[1:]:
-        image = matrix @ image
-        if not coefficient.is_zero:
-            image = image + vector * coefficient
-    return image
 
 
 def companion(coefficients: Sequence[Scalar]) -> Matrix:
@@ -116,3 +107,10 @@ def discriminant(polynomial: Scalar, variable: str) -> Scalar:
     """Return the discriminant of the numerator in a variable: 0 where two roots are equal."""
     found = polynomial.numerator_part.discriminant(variable)
     return Scalar(polynomial.field, found, polynomial.field.one)
+
+
+def resultant(one: Scalar, other: Scalar, variable: str) -> Scalar:
+    """Return the resultant of two numerators in a variable: 0 where they have a root in common, or both leads vanish."""
+    field = one.field | other.field | Field.of((variable,))
+    one, other = one.within(field), other.within(field)
+    return Scalar(field, one.numerator_part.resultant(other.numerator_part, variable), field.one)

@@ -6,13 +6,13 @@ closed under products, derivatives and integrals.  Constants are scalars, with s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact.functions import ONE, ZERO, derivative, function, known, leads_with_minus, roots_in, tidy, with_roots
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -6,7 +6,6 @@ Isolation is FLINT's, certified: the balls are disjoint, and a ball with imagina
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, total_ordering
 from math import ceil, floor
@@ -18,6 +17,7 @@ from symobs.exact.field import Field
 from symobs.exact.functions import Function, registered, square_root
 from symobs.exact.roots import rational_sqrt
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Sequence
     from fractions import Fraction
 
     from symobs.exact.matrix import Matrix
 
-_BITS, _HALF = 128, 0.5
+_BITS, _MOST_BITS = 128, 20_000
+_HALF = arb(0.5)
+#: Bits that an error can gain where it grows by a factor e.
+_BITS_OF_E = 1.45
 
 
 def rates(matrix: Matrix) -> tuple[float, float]:
@@ -22,17 +25,25 @@ def rates(matrix: Matrix) -> tuple[float, float]:
     return max(real), min(real)
 
 
-def response(
-    matrix: Matrix, start: Sequence[Fraction], instants: Iterable[Fraction], parts: int
-) -> Iterator[tuple[int, ...]]:
-    """Yield e^{Mt} v at some instants in whole numbers of 1/parts, each off by at most one; else `ArithmeticError`."""
-    before, ctx.prec = ctx.prec, _BITS
+def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
+    """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
+
+    One exponential, then one product a step: an enclosure grows by e^‖Mh‖ at most, so as many bits are kept for it.
+    Raises `ArithmeticError` where that takes too many.
+    """
+    rate = float(max(sum(abs(entry.fraction()) for entry in row) for row in matrix.rows))
+    bits = _BITS + int(_BITS_OF_E * rate * float(step) * count) + parts.bit_length()
+    if bits > _MOST_BITS:
+        raise ArithmeticError("a course with too much to compute")
+    before, ctx.prec = ctx.prec, bits
     try:
-        table = arb_mat(_rational(matrix))
-        column = arb_mat([[arb(fmpq(part.numerator, part.denominator))] for part in start])
-        for instant in instants:
-            moved = (table * arb(fmpq(instant.numerator, instant.denominator))).exp() * column
-            yield tuple(_nearest(moved[index, 0], parts) for index in range(len(start)))
+        once = (arb_mat(_rational(matrix)) * arb(fmpq(step.numerator, step.denominator))).exp()
+        column = arb_mat([[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start])
+        states = []
+        for _ in range(count):
+            states.append([_nearest(entry) for entry in column.entries()])
+            column = once * column
+        return states
     finally:
         ctx.prec = before
 
@@ -42,10 +53,9 @@ def _rational(matrix: Matrix) -> fmpq_mat:
     return fmpq_mat([[fmpq(value.numerator, value.denominator) for value in row] for row in values])
 
 
-def _nearest(ball: arb, parts: int) -> int:
-    """Return the whole number of parts that is nearest to an interval's middle."""
-    if float(ball.rad()) * parts > _HALF:
+def _nearest(ball: arb) -> int:
+    """Return a whole number that is nearest to an interval, or next to the nearest."""
+    if not ball.rad() < _HALF:
         raise ArithmeticError("the enclosure is too wide")
-    mantissa, exponent = (int(part) for part in ball.mid().man_exp())
-    scaled = mantissa * parts
-    return scaled << exponent if exponent >= 0 else (scaled + (1 << -exponent >> 1)) >> -exponent
+    whole: Any = (ball.mid() + _HALF).floor().unique_fmpz()  # never None for what has no radius
+    return int(whole)

@@ -9,30 +9,31 @@ from __future__ import annotations
 from math import log2
 from typing import TYPE_CHECKING, TypeAlias
 
-from flint import fmpz_mat, fmpz_mpoly
+from flint import fmpz, fmpz_mat, fmpz_mpoly
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-
-    from flint import fmpz
 
     from symobs.exact.field import Field
 
 Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
 
-#: Up to this many terms a fingerprint is the whole text.
-_WHOLE_TEXT = 60
+#: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
+_WHOLE_TEXT, _TOLD = 40, 6
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 
 
 def dot(left: Sequence[fmpz_mpoly], right: Sequence[fmpz_mpoly], zero: fmpz_mpoly) -> fmpz_mpoly:
     """Return Σ left_k right_k."""
-    total = zero
+    total = None
     for a, b in zip(left, right, strict=True):
         if a and b:
-            total = total + a * b
-    return total
+            if total is None:
+                total = a * b
+            else:
+                total.iadd(a * b)
+    return zero if total is None else total
 
 
 def product(left: Rows, right: Rows, zero: fmpz_mpoly) -> Rows:
@@ -245,11 +246,17 @@ def by_powers(
     return collected
 
 
+def number_of(constant: fmpz_mpoly) -> fmpz:
+    """Return the integer that a constant polynomial is."""
+    return constant.leading_coefficient() if constant else fmpz(0)
+
+
 def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
     """Return FLINT's text of a polynomial where it is short, else a summary of it."""
-    if len(polynomial) <= _WHOLE_TEXT:
+    length = len(polynomial)
+    if length <= _WHOLE_TEXT:
         return str(polynomial)
-    return f"{len(polynomial)} {polynomial.degrees()} {polynomial.leading_coefficient()}"
+    return f"{length} {' '.join(str(polynomial.coefficient(k * (length - 1) // _TOLD)) for k in range(_TOLD + 1))}"
 
 
 def length_bits(polynomial: fmpz_mpoly) -> float:
@@ -261,4 +268,6 @@ def length_bits(polynomial: fmpz_mpoly) -> float:
 
 def degree_bound(polynomial: fmpz_mpoly) -> int:
     """Return the sum of the degrees in each generator, which the total degree cannot exceed (and which is cheap)."""
-    return int(sum(polynomial.degrees())) if polynomial else 0
+    if len(polynomial) == 1:
+        return int(polynomial.total_degree())
+    return sum(map(int, polynomial.degrees())) if polynomial else 0

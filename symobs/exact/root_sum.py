@@ -6,12 +6,13 @@ multiplies the summand by λ, and at t = 0 the sum is the trace of λʲ / q′(�
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic import EIGENVALUE, Extension
 from symobs.exact.functions import Function, derivative, function, partial, registered, substitute, symbols_in
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
 
 from symobs.exact.complex import Complex
 from symobs.exact.scalar import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -1,7 +1,7 @@
 """Text to exact values: the only way from what a user wrote into the field.
 
-Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  lark's LALR
-parser orders the tokens (`evaluation`), and the tree is computed with exact values; `budget` asks before every
+Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  `ordering` puts
+the tokens into the order of computation, and `evaluation` computes with exact values; `budget` asks before every
 operation how large its result can get.  Nothing is run as a program and nothing recurses on the depth of a text, so
 any text ends, soon, in an exact value or in one of symobs's errors.
 """
@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import numbers
 from fractions import Fraction
+from math import lcm
 from typing import TYPE_CHECKING
 
 from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
-from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
 from symobs.expression.budget import common_denominator_excess
 from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
 from symobs.expression.names import Names, Scope, declared_name
@@ -22,12 +23,15 @@ from symobs.expression.tokens import MOST_DIGITS, sharing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import TypeGuard
 
     from symobs.expression.budget import Number
 
 __all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
 
 _LONGEST_REPAIR = 30
+#: Numbers up to this many bits need no budget.
+_NUMBERS, _SMALL = {int, Fraction}, 128
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
 
 
@@ -52,6 +56,8 @@ def parse_matrix(
     Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
     """
     scope = Scope.of(names, variable, where, functions=functions)
+    if _is_of_numbers(value):
+        return matrix_of_numbers(value)
     rows = _rows_of_text(value, scope, where) if isinstance(value, str) else _rows_of_lists(value, scope, where)
     real = [
         [entry if isinstance(entry, Scalar) else _real(entry, _cell(where, i, j)) for j, entry in enumerate(row)]
@@ -154,6 +160,17 @@ def _real(value: Number, where: str) -> Scalar:
 
 
 # -- many numbers -------------------------------------------------------------------------------------------------
+
+
+def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
+    """Whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
+    if not isinstance(value, list) or not value or not all(isinstance(row, list) and row for row in value):
+        return False
+    entries = [entry for row in value for entry in row]
+    if any(len(row) != len(value[0]) for row in value) or not {type(entry) for entry in entries} <= _NUMBERS:
+        return False
+    common = lcm(*(entry.denominator for entry in entries))
+    return common.bit_length() <= _SMALL and all(entry.numerator.bit_length() <= _SMALL for entry in entries)
 
 
 def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:

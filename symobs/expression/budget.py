@@ -5,11 +5,12 @@ A FLINT call cannot be interrupted, so what is too large must never be started.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import comb, lcm
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Complex, Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +26,7 @@ MOST_TERMS = 20_000
 MOST_WORK = 3_000_000
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Size:
     """An upper bound of an integer polynomial: its generators, total degree, terms, and bits of a coefficient."""
 
@@ -89,7 +90,7 @@ def parts(value: Number) -> Parts:
     return a * d + c * b, b * d
 
 
-@dataclass(slots=True)
+@dataclass()
 class Meter:
     """Adds up what the texts of one call have cost so far."""
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import keyword
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.errors import ExpressionError
 from symobs.expression.budget import Meter
 from symobs.expression.source import shown
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,7 +56,7 @@ def refusal(name: str) -> tuple[str, str] | None:
     return None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Scope:
     """What the texts of one call may use: names, work, and one context for all where there are several."""
 

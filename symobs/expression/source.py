@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from symobs.errors import ExpressionError, InputError
+from symobs.record import dataclass
 
 MOST_SHOWN = 60
 #: An error that points into a text shows this much of it, more than half of it before the place.
@@ -17,7 +16,7 @@ def shown(text: str, most: int = MOST_SHOWN) -> str:
     return safe if len(safe) <= most else safe[: most - 1] + "…"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Source:
     """A text and the place it comes from (`plant.A`)."""
 

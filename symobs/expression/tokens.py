@@ -1,7 +1,7 @@
 """First step: a text becomes tokens in which nothing is left unsaid.
 
 The product of two neighbours, the comma MATLAB reads from a space inside brackets and the row a newline ends are
-written out here, so that the grammar behind needs to know nothing of spaces.
+written out here, so that what comes after needs to know nothing of spaces.
 """
 
 from __future__ import annotations
@@ -10,9 +10,7 @@ import re
 import unicodedata
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
-
-from lark import Token
+from typing import TYPE_CHECKING, Self
 
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
@@ -56,6 +54,22 @@ def _context_of(texts: Iterable[str]) -> Field:
     return Field.of(fit if len(fit) <= MOST_NAMES else ())
 
 
+class Token(str):
+    """A piece of the text: its type, where it begins, and the number it stands for, None where it stands for none."""
+
+    __slots__ = ("start", "type", "value")
+
+    type: str
+    start: int
+    value: Scalar | Complex | None
+
+    def __new__(cls, type_: str, text: str, start: int, value: Scalar | Complex | None = None) -> Self:
+        """Make the token of a text."""
+        token = super().__new__(cls, text)
+        token.type, token.start, token.value = type_, start, value
+        return token
+
+
 class Tokeniser:
     """Cuts one text into tokens; each VALUE carries its exact number.
 
@@ -95,7 +109,7 @@ class Tokeniser:
             self._take(str(match.lastgroup), match.group(), position)
             position = match.end()
         if self.open:
-            place, repair = self.open[-1].start_pos or 0, f'close it with "{_CLOSING[self.open[-1]]}"'
+            place, repair = self.open[-1].start, f'close it with "{_CLOSING[self.open[-1]]}"'
             raise self.source.error(f'this "{self.open[-1]}" is never closed', place, repair)
         if not self.tokens:
             raise self.source.error(
@@ -152,9 +166,7 @@ class Tokeniser:
         return bool(self.tokens) and self.tokens[-1].type in types
 
     def _add(self, kind: str, text: str, at: int, value: Scalar | Complex | None = None) -> Token:
-        token = Token(kind, text, start_pos=at)
-        if value is not None:
-            token.value = value
+        token = Token(kind, text, at, value)
         self.tokens.append(token)
         return token
 

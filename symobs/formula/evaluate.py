@@ -7,7 +7,7 @@ A signal's value is its row of matrix coefficients over the free signals; d/dt f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.exact import Matrix, Scalar, rank
@@ -31,6 +31,7 @@ from symobs.formula.nodes import (
     Sum,
     Transpose,
 )
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -231,6 +232,7 @@ class Modular:
 
 
 _MINUS_ONE = Scalar.of(-1)
+_OF_MATRICES = {"det", "adj", "rank"}
 
 
 def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic) -> Any:
@@ -267,6 +269,9 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             value = evaluate(argument, environment, arithmetic)
             if function.endswith("_at"):
                 return _polynomial_at(environment.values[function.removesuffix("_at")], value, environment, arithmetic)
+            if function not in _OF_MATRICES:
+                message = f"{function} is no function of a matrix"
+                raise ValueError(message)
             return arithmetic.apply(function, value)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)

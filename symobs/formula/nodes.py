@@ -6,66 +6,68 @@ environment (`evaluate`), and is printed only by a format.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact.functions import all_roots
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from symobs.exact import Matrix, Root, Scalar
     from symobs.exact.functions import Function
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Letter:
     """A named quantity of the derivation, such as A, L, x̂ or χ; `name` is its key in `notation`."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Literal:
     """An exact value written out."""
 
     value: Scalar | Matrix
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Decimals:
     """Decimals written out, as digits and not as fractions: exact where they follow `=`, rounded where they follow `≈`."""
 
     value: Scalar | Matrix
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Identity:
     """The identity matrix I."""
 
     order: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sum:
     """terms[0] + terms[1] + …; a `Negative` term is printed with a minus sign."""
 
     terms: tuple[Formula, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Negative:
     """The negative of an operand."""
 
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Product:
     """factors[0] · factors[1] · …, in this order."""
 
     factors: tuple[Formula, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Power:
     """base to an integer exponent; −1 is the inverse."""
 
@@ -73,14 +75,14 @@ class Power:
     exponent: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Transpose:
     """operandᵀ."""
 
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Quotient:
     """numerator / denominator, the denominator a scalar."""
 
@@ -88,7 +90,7 @@ class Quotient:
     denominator: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Apply:
     """A function of one argument: det, adj, rank."""
 
@@ -96,14 +98,14 @@ class Apply:
     argument: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Block:
     """A matrix (or stacked signal) put together from blocks."""
 
     rows: tuple[tuple[Formula, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Derivative:
     """d/dt of a signal or of a function of time, d/d(name) of a value; the shift x(k+1) of a signal in discrete time."""
 
@@ -111,7 +113,7 @@ class Derivative:
     name: str = "t"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class At:
     """The operand with the generator `name` (a time) replaced by `instant`."""
 
@@ -120,7 +122,7 @@ class At:
     instant: Scalar
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Integral:
     """∫ integrand d(name) from `lower` to `upper`; `primitive` is the witness, whose derivative is the integrand."""
 
@@ -150,7 +152,7 @@ Formula: TypeAlias = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Relation:
     """members[0] operators[0] members[1] …: a chain of equations and comparisons, each link a claim.
 
@@ -162,7 +164,7 @@ class Relation:
     operators: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Predicate:
     """A property of a value that no equation states: `stable`, `strictly_proper`, `never_zero`."""
 
@@ -170,7 +172,7 @@ class Predicate:
     subject: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Roots:
     """The roots of a monic polynomial (of a rational function: its poles), with multiplicity; shown as their list."""
 
@@ -178,7 +180,7 @@ class Roots:
     values: tuple[Root, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Exactly:
     """A property of a value holds exactly where these inequalities do; shown as their list."""
 
@@ -186,14 +188,14 @@ class Exactly:
     where: tuple[Relation, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Together:
     """Several relations that hold at once; shown as their list."""
 
     relations: tuple[Relation, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Shown:
     """What a formula is worth; shown as the value alone."""
 
@@ -201,7 +203,7 @@ class Shown:
     value: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Names:
     """Some parameters, which a sentence speaks of; it claims nothing of them."""
 
@@ -211,23 +213,26 @@ class Names:
 Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown | Names
 
 
+#: Where the formulas directly below a node stand; asked for more often than anything else of a formula.
+_BELOW: dict[type, Callable[[Any], tuple[Formula, ...]]] = {
+    Sum: lambda node: node.terms,
+    Product: lambda node: node.factors,
+    Quotient: lambda node: (node.numerator, node.denominator),
+    Negative: lambda node: (node.operand,),
+    Transpose: lambda node: (node.operand,),
+    Derivative: lambda node: (node.operand,),
+    At: lambda node: (node.operand,),
+    Apply: lambda node: (node.argument,),
+    Power: lambda node: (node.base,),
+    Integral: lambda node: (node.integrand, node.primitive),
+    Block: lambda node: tuple(entry for row in node.rows for entry in row),
+}
+
+
 def children(formula: Formula) -> tuple[Formula, ...]:
     """Return the formulas directly below."""
-    match formula:
-        case Sum(terms):
-            return terms
-        case Product(factors):
-            return factors
-        case Quotient(above, below):
-            return above, below
-        case Negative(inner) | Transpose(inner) | Derivative(inner) | Apply(_, inner) | Power(inner, _) | At(inner):
-            return (inner,)
-        case Integral(integrand, primitive):
-            return integrand, primitive
-        case Block(rows):
-            return tuple(entry for row in rows for entry in row)
-        case _:
-            return ()
+    below = _BELOW.get(type(formula))
+    return () if below is None else below(formula)
 
 
 def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:

@@ -6,7 +6,6 @@ whoever asks for it has the lines checked again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix
@@ -30,6 +29,7 @@ from symobs.formula.nodes import (
     letters,
     with_children,
 )
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -27,6 +27,7 @@ from symobs.formula.nodes import (
     Sum,
     Transpose,
 )
+from symobs.record import dataclass
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,12 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import symobs
 from symobs.errors import InputError, UsageError
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.method.result import Document, Result

@@ -5,7 +5,7 @@ The constructor checks the claims, and they belong to the result's type, not to 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from dataclasses import fields as parts_of
 from functools import cached_property
 from types import MappingProxyType
@@ -19,6 +19,7 @@ from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.face import Faces
 from symobs.method.registry import render
 from symobs.page import Page
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

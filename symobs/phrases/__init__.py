@@ -23,6 +23,7 @@ from symobs.phrases import (
     modes,
     pictures,
     pole_advice,
+    pole_cautions,
     polynomials,
     questions,
     rank,
@@ -38,6 +39,7 @@ from symobs.phrases import (
 _MODULES = (
     titles,
     pole_advice,
+    pole_cautions,
     polynomials,
     rank,
     modes,

@@ -36,8 +36,14 @@ PHRASES: dict[str, str] = {
     "zero_rights": "Zeros lie in the right half-plane, {zero}, and cannot be used: the observer would be unstable. The robustness of full state feedback "
     "cannot be recovered.",
     "zero_mixeds": "Zeros lie on both sides of the imaginary axis, {zero}. None of them is used, for the stable ones have no factor of their own here.",
-    "zero_open": "Whether a zero is stable, {zero}, depends on parameters, so it is not used. Declare their signs to use it.",
-    "zero_opens": "Whether zeros are stable, {zero}, depends on parameters, so they are not used. Declare their signs to use them.",
+    "zero_never": "A zero, {zero}, is no place for a pole whatever the parameters are, and is not used.",
+    "zero_nevers": "Not all of the zeros {zero} are places for poles, whatever the parameters are, and none of them is used.",
+    "zero_open": "Whether a zero is stable, {zero}, depends on parameters. It is used in the case below where it is.",
+    "zero_opens": "Whether zeros are stable, {zero}, depends on parameters. They are used in the case below where they are.",
+    "zero_slow_open": "Whether a zero is fast enough for the settling time, {zero}, depends on parameters. It is used in the case below where it is.",
+    "zero_slow_opens": "Whether zeros are fast enough for the settling time, {zero}, depends on parameters. They are used in the case below where "
+    "they are.",
+    "advice_provided": "This is for a plant with as many zeros as in general, all of whose modes are seen and moved: {condition}.",
     "zero_slow": "A zero is too slow for the settling time, {zero}, and is not used.",
     "zero_slows": "Zeros are too slow for the settling time, {zero}, and are not used.",
     "cancels": "A zero, {zero}, is an eigenvalue of $A$ as well, {pole}: this mode is not observable or not controllable.",

@@ -8,6 +8,13 @@ PHRASES: dict[str, str] = {
     "its_transfer_matrix": "The transfer function is a matrix,",
     "its_transfer_function": "Adjugate over determinant gives",
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
+    "lowest_provided": "These are its poles and zeros provided that {condition}.",
+    "no_pole_lost": "No pole and no zero of it is lost provided that {condition}.",
+    "lowest_there": "In lowest terms",
+    "static_there": "There the states do not carry the input to the output:",
+    "its_pole": "The only pole is {roots}.",
+    "its_zero": "The only zero is {roots}.",
+    "no_zero": "It has no zeros.",
     "its_poles": "The poles are {roots}.",
     "its_zeros": "The zeros are {roots}.",
     "stable_continuous": "All roots lie in the open left half plane: the polynomial is stable.",
@@ -19,6 +26,7 @@ PHRASES: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "no_zero": ("polynomial",),
     "stable_continuous": ("stable",),
     "stable_discrete": ("stable",),
     "unstable_continuous": ("unstable",),

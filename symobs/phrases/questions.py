@@ -14,6 +14,7 @@ PHRASES: dict[str, str] = {
     "sheet_contents": "Contents",
     "sheet_problem": "Problem",
     "sheet_failed": "This problem could not be worked out.",
+    "sheet_undecided": "This problem was not worked out in the time or memory it was given.",
     "task": "Task.",
     "tasks": "Tasks.",
     "part": "({letter})",

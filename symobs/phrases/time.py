@@ -43,6 +43,7 @@ PHRASES: dict[str, str] = {
     "reached.",
     "kernel_shared": "Gramian, finite sum and $O$ have the same kernel. For",
     "kernel_unseen": "the output vanishes at all times, so this state and 0 cannot be told apart:",
+    "kernel_unseen_several": "the output of every column vanishes at all times, so the states they span and 0 cannot be told apart:",
     "kernel_of_gramian": "and with it the product with the Gramian and with the finite sum,",
     "initial_state": "Initial state.",
     "measured": "The data are",

@@ -7,7 +7,6 @@ is a derivation like any other: what it states is checked, and it is told by the
 from __future__ import annotations
 
 import string
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +19,7 @@ from symobs.formula import Names, Roots
 from symobs.method import Document
 from symobs.page import Page, relation, sentence
 from symobs.phrases.questions import PHRASES, UNSAID
+from symobs.record import dataclass
 from symobs.specification import (
     desired_polynomial,
     parse_signal,

@@ -7,14 +7,11 @@ import re
 import tomllib
 from typing import Any
 
+from symobs.bounds import refuse_costly
 from symobs.errors import InputError, ProblemErrors
 from symobs.expression.source import shown
 
 MAX_BYTES = 256 * 1024
-_MAX_PARTS = 10
-_MAX_TABLES = 1000
-_MAX_NESTING = 100
-_MAX_DIGITS = 1000
 
 
 class Decimal(str):
@@ -27,49 +24,11 @@ def parse(text: str, where: str = "problem") -> dict[str, Any]:
     """Return the file's tables, decimals as `Decimal` texts.  Raises `ProblemErrors`."""
     text = text.removeprefix("\ufeff")
     try:
-        _guard(text)
+        refuse_costly(text, MAX_BYTES)
         return _parse_json(text) if text.lstrip().startswith("{") else _parse_toml(text)
     except InputError as error:
         error.where = f"{shown(where, 200)}, {error.where}" if error.where else shown(where, 200)
         raise ProblemErrors((error,)) from None
-
-
-# Strings and comments as TOML reads them.  One that is never closed reaches to the end, where no parser gets anyway.
-_QUOTED = re.compile(
-    r'"""(?:[^"\\]|\\.|"(?!""))*(?:"{3,5}|\Z)'
-    r"|'''.*?(?:'{3,5}|\Z)"
-    r'|"(?:[^"\\\n]|\\[^\n])*"?'
-    r"|'[^'\n]*'?"
-    r"|(?P<comment>#[^\n]*)",
-    re.DOTALL,
-)
-_LONG_NUMBER = re.compile(rf"(?<!\w)(?:0[xo])?[0-9A-Fa-f][0-9A-Fa-f_]{{{_MAX_DIGITS},}}")
-_DOTTED_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{_MAX_PARTS},}}")
-_HEADER = re.compile(r"^[ \t]*\[[^\],\n]*\]+[ \t\r]*$", re.MULTILINE)
-
-
-def _guard(text: str) -> None:
-    """Refuse what would cost the parsers their memory, their stack or their time."""
-    if len(text) > MAX_BYTES or len(text.encode("utf-8", "replace")) > MAX_BYTES:
-        raise InputError(f"the file is larger than {MAX_BYTES // 1024} kB", repair="keep one problem to a file")
-    bare = _QUOTED.sub(lambda found: " " if found["comment"] else "q" + "\n" * found[0].count("\n"), text)
-    tables = "use the tables [plant], [specification] and so on"
-
-    def refuse(position: int, message: str, repair: str) -> None:
-        raise InputError(message, where=f"line {bare.count(chr(10), 0, position) + 1}", repair=repair)
-
-    if found := _LONG_NUMBER.search(bare):
-        refuse(found.start(), f"a number or a name has more than {_MAX_DIGITS} characters", "shorten it")
-    if found := _DOTTED_KEY.search(bare):
-        refuse(found.start(), f"a dotted key has more than {_MAX_PARTS} parts", tables)
-    if len(_HEADER.findall(bare)) > _MAX_TABLES:
-        raise InputError(f"the file has more than {_MAX_TABLES} tables", repair=tables)
-    depth = 0
-    for bracket in re.finditer(r"[\[\]{}]", bare):
-        depth += 1 if bracket[0] in "[{" else -1
-        if depth > _MAX_NESTING:
-            message = f"brackets are nested more than {_MAX_NESTING} deep"
-            refuse(bracket.start(), message, "write a matrix as a text or as a list of rows")
 
 
 def _parse_json(text: str) -> dict[str, Any]:
@@ -108,14 +67,17 @@ def _parse_toml(text: str) -> dict[str, Any]:
 
 
 def _toml_repair(message: str, line: str, text: str) -> str:
-    first = re.search(r"^\s*([^\s#].*)", text, re.MULTILINE)
-    beginning = first[1] if first else ""
+    lines = (each.strip() for each in text.split("\n"))
+    beginning = next((each for each in lines if each and not each.startswith("#")), "")
     if re.match(r"---|- |[A-Za-z_]+:(\s|$)", beginning):
         return "YAML is not read: write `key = value` lines under [tables]"
     if re.match(r'\[\s*["{\d]|\[\s*$', beginning):
         return "a problem in JSON begins with {"
     if "overwrite" in message or "twice" in message:
         return "keep one of them"
-    if re.search(r"""=\s*\[[^"']*[^"',\s\[][ ;]+[-+\w(]""", line):
+    brackets = re.search(r"""=\s*\[([^"']*)""", line)
+    if brackets and re.search(r"""[^,;\s\[][ ;]+[-+\w(]""", brackets[1]):
         return 'write commas between the entries, or the matrix in quotes: "[0 1; 0 -1]"'
+    if brackets and re.search(r"[A-Za-z]", brackets[1]):
+        return 'write what has letters in quotes: [-2, "-1+i", "-omega"]'
     return "write `key = value` lines under [tables], texts in quotes"

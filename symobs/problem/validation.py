@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
+from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
@@ -17,6 +18,7 @@ from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
 from symobs.problem.keys import PLANT, PRINTED, TOP
 from symobs.problem.tables import Decimal
+from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time import read_time
@@ -175,16 +177,21 @@ def _table(data: Mapping[str, Any], name: str, errors: _Errors) -> Mapping[str, 
 
 def _text(table: Mapping[str, Any], name: str, errors: _Errors) -> str:
     value = table.get(name, "")
+    _check_text(value, name, errors)
+    return value if isinstance(value, str) and not isinstance(value, Decimal) else ""
+
+
+def _check_text(value: object, where: str, errors: _Errors) -> None:
+    """Note what is no text, or one that is too long or cannot be printed."""
     if not isinstance(value, str) or isinstance(value, Decimal):
-        errors.note(f"a text is expected, but {_came(value)} came", name, "write it in quotes")
-        return ""
+        errors.note(f"a text is expected, but {_came(value)} came", where, "write it in quotes")
+        return
     if len(value) > _MAX_TEXT:
-        errors.note(f"the text has more than {_MAX_TEXT} characters", name, "shorten it")
+        errors.note(f"the text has more than {_MAX_TEXT} characters", where, "shorten it")
     for character in value[:_MAX_TEXT]:
         if category(character) in {"Cc", "Cs"} and character not in "\t\n":
-            errors.note(f"the character U+{ord(character):04X} cannot be printed", name, "leave it out")
+            errors.note(f"the character U+{ord(character):04X} cannot be printed", where, "leave it out")
             break
-    return value
 
 
 def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
@@ -215,10 +222,7 @@ def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
             elif key == "let":
                 texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
         for place, text in texts.items():
-            if not isinstance(text, str) or isinstance(text, Decimal):
-                errors.note(f"a text is expected, but {_came(text)} came", place, "write it in quotes")
-            elif len(text) > _MAX_TEXT:
-                errors.note(f"the text has more than {_MAX_TEXT} characters", place, "shorten it")
+            _check_text(text, place, errors)
         if ("relation" in entry) == ("expect" in entry):
             errors.note("one of relation and expect is expected", where, 'write relation = "L = [19; 81]"')
     return tuple(entry for entry in entries if isinstance(entry, Mapping))
@@ -237,7 +241,7 @@ def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple
         if not isinstance(name, str):
             errors.note(f"the name of a task is expected, but {_came(name)} came", where, _listed())
         elif (task := task_named(name)) is None:
-            errors.note(f'"{shown(name, 40)}" is not a task', where, _listed())
+            errors.note(f'"{shown(name, 40)}" is not a task', where, _listed(name))
         elif name in found:
             errors.note(f"the task {name} is named twice", where, "keep one of them")
         else:
@@ -245,8 +249,9 @@ def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple
     return tuple(found.values())
 
 
-def _listed() -> str:
-    return f"known tasks are {', '.join(sorted(tasks()))}"
+def _listed(name: str = "") -> str:
+    near = get_close_matches(name, tasks(), 1)
+    return f"{f'did you mean {near[0]}? ' if near else ''}known tasks are {', '.join(sorted(tasks()))}"
 
 
 def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
@@ -308,7 +313,7 @@ def _convention(data: Mapping[str, Any], folder: Path | None, errors: _Errors) -
         errors.note(f"a name is expected, but {_came(name)} came", "convention", 'write convention = "standard"')
         return STANDARD
     try:
-        return convention_named(name.removesuffix(".toml"), folder)
+        return convention_named(re.sub(r"(\.toml)+\Z", "", name), folder)  # a file names no path
     except UsageError as error:
         errors.note(error.message, "convention", error.repair)
     except ProblemErrors as wrong:

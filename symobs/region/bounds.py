@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.record import dataclass
 from symobs.region.prover import prove
 from symobs.stability import as_inequality
 
@@ -63,7 +63,7 @@ def _with_help(
     return None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Box:
     """A product of open intervals: a parameter lies above all its `lower` and below all its `upper` bounds.
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of, sign_where
+from symobs.record import dataclass
 from symobs.region.decide import decide_empty
 from symobs.region.simplify import Simplified, simplify
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _DEEPEST = 3
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SignCase:
     """The conditions where some expressions without parameters have certain signs.
 

@@ -7,13 +7,13 @@ monomial, in coefficients that must not be negative.  With m = 0 the known value
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
 from math import gcd
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -29,7 +29,7 @@ NOTHING: Monomial = ()
 _ROWS, _COLUMNS, _PIVOTS = 60, 160, 40
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Combination:
     """multiplier · goal = certain + Σ squares + Σ factor · (the known values at these places)."""
 
@@ -39,7 +39,7 @@ class Combination:
     multiples: tuple[tuple[Scalar, tuple[int, ...]], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Column:
     """One unknown coefficient: of a monomial times the goal (None), or times known values (none: by itself).
 

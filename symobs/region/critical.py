@@ -8,12 +8,13 @@ vanishes stability is constant on connected pieces, and on it nothing is stable.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.half_plane import all_to_the_left
+from symobs.record import dataclass
 from symobs.region.points import value_at
 from symobs.stability import bilinear, hurwitz_matrix, lienard_chipart
 
@@ -28,8 +29,8 @@ class Boundary:
 
     variable: str
     discrete: bool = False
-    margin: Scalar = Scalar.of(0)  # noqa: RUF009 - a frozen number
-    radius: Scalar = Scalar.of(1)  # noqa: RUF009
+    margin: Scalar = Scalar.of(0)
+    radius: Scalar = Scalar.of(1)
 
     @property
     def is_usual(self) -> bool:

@@ -6,11 +6,11 @@ answers the answer is `undecided`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from symobs.record import dataclass
 from symobs.region.external import names_of, none_by_cells
 from symobs.region.parts import State, cleared, in_parts, split_products
 from symobs.region.proof import Equivalence, Step
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from symobs.region.points import Point
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Decision:
     """`yes`, `no` or `undecided`, with the steps that prove a yes or the point that proves a no, unless `by` says who."""
 

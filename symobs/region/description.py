@@ -7,7 +7,7 @@ their polynomial.  Neighbouring cells with the same bounds are one part.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
@@ -15,6 +15,7 @@ from symobs.exact.enclosure import sign_of_number
 from symobs.exact.functions import square_part, square_root, substitute
 from symobs.exact.real import integer_factor
 from symobs.formula import Literal, Relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

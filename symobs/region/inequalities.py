@@ -8,11 +8,11 @@ surrounds without containing them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from symobs.exact import Scalar
+from symobs.record import dataclass
 from symobs.region.critical import irreducible
 from symobs.region.points import value_at
 

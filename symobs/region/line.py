@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact.real import rational_between, roots_of_scalar
+from symobs.record import dataclass
 from symobs.region.inequalities import Sample
 
 if TYPE_CHECKING:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar, product_of
+from symobs.record import dataclass
 from symobs.region.points import find_points, value_at
 from symobs.region.proof import UNIT, Combined, Step, by_signs, is_product, is_quotient
 from symobs.region.prover import prove, prove_by_opposite
@@ -20,7 +21,7 @@ def cleared(value: Scalar) -> Scalar:
     return value.numerator * value.denominator
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class State:
     """The list as it stands, the steps from it to the first one, and the steps from the first one to it."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import TooLarge
 from symobs.exact.fibre import Fibre, curves_between, fibre, place_between, point_between
 from symobs.exact.plane import Branch, Plane, Slab, Wall
+from symobs.record import dataclass
 from symobs.region.inequalities import Sample
 
 if TYPE_CHECKING:

@@ -13,11 +13,11 @@ The value 0 among what is known is a contradiction: everything follows from it, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.conditions import never_zero, sign_of
 from symobs.exact import Scalar, product_of
+from symobs.record import dataclass
 from symobs.region.external import none_by_z3
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ Product: TypeAlias = tuple[Scalar, tuple[Scalar, ...]]
 UNIT: tuple[Product, ...] = ((ONE, ()),)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Combined:
     """value · (sum of `multiplier`) = sum of `total`."""
 
@@ -38,7 +38,7 @@ class Combined:
     total: tuple[Product, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Opposite:
     """`steps` lead from −value > 0 to 0 > 0, and `multiple`, a polynomial multiple of the value, is positive."""
 
@@ -47,7 +47,7 @@ class Opposite:
     steps: tuple[Step, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Asked:
     """z3 says that the value is positive wherever the values of `given` are."""
 
@@ -58,7 +58,7 @@ class Asked:
 Step: TypeAlias = Combined | Opposite | Asked
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Equivalence:
     """Two lists of which each follows from the other: `forward` leads from `kept` to `raw`, `backward` back."""
 

@@ -8,11 +8,12 @@ Where terms of both signs are left, `combination` looks for such an identity by 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.record import dataclass
 from symobs.region.combination import combination
 from symobs.region.external import is_free
 from symobs.region.proof import (
@@ -40,7 +41,7 @@ _PROGRAMS = 3
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Open:
     """A polynomial in the names of a view, and the known value it is in the old names."""
 
@@ -48,7 +49,7 @@ class Open:
     value: Scalar
 
 
-@dataclass(slots=True)
+@dataclass()
 class _Budget:
     """What is left to be tried for one goal."""
 
@@ -56,7 +57,7 @@ class _Budget:
     programs: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class View:
     """The problem after some substitutions: new names stand for known values."""
 

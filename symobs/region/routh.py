@@ -11,11 +11,11 @@ of the zeros.  With parameters, zero means identically zero.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar, from_coefficients
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 ORIGINS = ("coefficients", "recurrence", "epsilon", "auxiliary")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RouthRow:
     """The row of one power of the variable: its entries, and how it came about (one of `ORIGINS`)."""
 
@@ -33,7 +33,7 @@ class RouthRow:
     origin: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RouthTable:
     """The rows from sⁿ to s⁰; `epsilon` is the generator that stands for a small positive number, empty where none does."""
 

@@ -7,12 +7,12 @@ dropped.  Only where each that is left has a point at which it alone fails is th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.record import dataclass
 from symobs.region.external import QUESTION, point_by_z3
 from symobs.region.parts import State, cleared, in_parts, split_products
 from symobs.region.points import Point, find_point, holds_at, point_where_zero, respects, value_at
@@ -40,7 +40,7 @@ _TOLD_APART = 100
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Simplified:
     """An equivalent list.
 

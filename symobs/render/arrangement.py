@@ -6,13 +6,13 @@ and lines of a terminal).  A sign before the gain of a box moves on to the junct
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
 from symobs.flow import Figure, figure_of, is_box, is_integrator, key, without_sign
 from symobs.formula import Derivative, Letter, Literal, Negative, Power, Quotient, Together
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ Point: TypeAlias = tuple[float, float]
 Measure: TypeAlias = "Callable[[Label], Point]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Metrics:
     """What a format sets: the measure of a label, and space.
 
@@ -49,7 +49,7 @@ class Metrics:
     rates: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Box:
     """A box with its label in the middle."""
 
@@ -58,7 +58,7 @@ class Box:
     label: Label
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Line:
     """A wire from corner to corner; `is_arrow` where it ends at something."""
 
@@ -66,7 +66,7 @@ class Line:
     is_arrow: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Mark:
     """Something written: in the middle of `place`, `above` it or to its `right`."""
 
@@ -75,7 +75,7 @@ class Mark:
     side: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SignMark:
     """A sign where a wire ends at a junction; `towards` is the direction of the wire there."""
 
@@ -84,7 +84,7 @@ class SignMark:
     towards: Point
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Arrangement:
     """A block diagram, settled."""
 

@@ -5,10 +5,10 @@ The narrator writes them, the formats read them, and neither knows the other.  T
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.formula import Formula, Relation, Roots
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -21,7 +21,7 @@ Inline: TypeAlias = str | Formula | Relation | Roots
 Inlines: TypeAlias = tuple[Inline, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Title:
     """What the page is about, where the problem comes from, and the conventions it keeps."""
 
@@ -30,7 +30,7 @@ class Title:
     conventions: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Heading:
     """A heading that runs into the paragraph after it; `number` is empty where headings are not numbered."""
 
@@ -38,14 +38,14 @@ class Heading:
     inlines: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Paragraph:
     """Sentences."""
 
     inlines: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Display:
     """Relations set apart from the text; boxed, the last member of the last one is an answer.
 
@@ -57,14 +57,14 @@ class Display:
     closing: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Verified:
     """The check of an answer."""
 
     inlines: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Caution:
     """A warning, or with `warns` False another note in small print, after its label."""
 
@@ -73,7 +73,7 @@ class Caution:
     warns: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Drawing:
     """A block diagram: a figure of `flow` by its name, with the formulas and equations that label it."""
 
@@ -81,7 +81,7 @@ class Drawing:
     labels: tuple[tuple[str, Label], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TableBlock:
     """Routh's table; each row with the remarks that may stand beside it, of which one is chosen, the first if it fits.
 
@@ -94,7 +94,7 @@ class TableBlock:
     where: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PictureBlock:
     """A picture and what stands below it."""
 
@@ -102,7 +102,7 @@ class PictureBlock:
     caption: Inlines
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class CaseBlock:
     """What holds in a special case: the label says which, the blocks are set in from the margin."""
 

@@ -7,7 +7,7 @@ entries too wide for it get a name, to be told below.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Generic
 
 from symobs.exact import Matrix, Scalar
@@ -25,6 +25,7 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
+from symobs.record import dataclass
 from symobs.render.glyphs import B, Level
 from symobs.render.printer import factors, shifted, signed_terms
 from symobs.render.scalars import decimal, is_leaf, spelled, spelled_matrix

@@ -115,6 +115,7 @@ _WHITE = re.compile(r"[^\S\u00a0]+")
 _CLUSTER = re.compile("(.)([\u0300-\u036f]*)", re.DOTALL)
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 _RUN_TOGETHER = {"--", "''", "``", "?`", "!`"}  # TeX makes one character of each
+_AS_IT_IS = re.compile("[A-Za-z0-9.,;:()=+/]*")
 _LONG_WORD = 40  # characters; a longer one must be allowed to break, or it leaves the page
 _PIECE = 20
 
@@ -134,6 +135,8 @@ def escape(text: str) -> str:
 
 def _word(word: str) -> str:
     """Return one word, with places to break where it is very long, and no two characters run into a third."""
+    if len(word) <= _LONG_WORD and _AS_IT_IS.fullmatch(word):
+        return word
     pieces: list[str] = []
     clusters = [_cluster(*match.groups()) for match in _CLUSTER.finditer(word)]
     for place, piece in enumerate(clusters):

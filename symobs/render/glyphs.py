@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
+
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -103,7 +103,7 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
     chapters: list[dict[str, Any]] = []
     for name, parts in sheet.chapters():
         problems: list[dict[str, Any]] = [
-            {"title": escape(entry.title), "source": "", "conventions": "", "body": "", **(part or {})}
+            {"source": "", "conventions": "", "body": "", **(part or {}), "title": escape(entry.title).strip()}
             | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
             for entry, part in parts
         ]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.formula import Formula, Relation
 from symobs.notation import OPERATORS, symbol_latex
+from symobs.record import dataclass
 from symobs.render import widths
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
@@ -114,7 +115,7 @@ class LatexPrinter(Printer[LatexBox]):
             return LatexBox(len(digits) * widths.DIGIT, Level.ATOM, digits)
         (name,) = value.names
         source = symbol_latex(name, self.symbols.get(name))
-        return LatexBox(widths.source_width(source), Level.ATOM, source)
+        return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def identity(self) -> LatexBox:
         """I."""

@@ -5,10 +5,11 @@ The result is rows; a format only writes them down.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Generic
 
+from symobs.record import dataclass
 from symobs.render.breaking import Breaker
 from symobs.render.glyphs import B, Level
 

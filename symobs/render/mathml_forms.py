@@ -9,11 +9,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from html import escape
 
 from symobs.notation import GREEK, symbol_text
+from symobs.record import dataclass
 from symobs.render.mathml_elements import APPLY, CLOSING, OPENING, THIN, row, text
 
 _PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|.", re.DOTALL)
@@ -71,7 +72,7 @@ _ALPHABETS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Part:
     """One part of a form: an element, and what stands below and above at its right."""
 

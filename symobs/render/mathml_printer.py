@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 from copy import copy
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.formula import Formula, Relation
 from symobs.notation import symbol_latex
+from symobs.record import dataclass
 from symobs.render import widths
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout

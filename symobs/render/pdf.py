@@ -1,6 +1,6 @@
 """PDF: the article, typeset by the TeX found on PATH.
 
-TeX reads and writes inside a temporary folder only, runs no other program, and has a minute.
+TeX reads and writes inside a temporary folder only, runs no other program, and has a minute and 200 MB for its files.
 """
 
 from __future__ import annotations
@@ -11,16 +11,19 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from contextlib import suppress
+import threading
+import time
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.errors import TypesettingError
 from symobs.method import output_format
 from symobs.render.latex import typeset, typeset_sheet, values_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
+    from types import FrameType
 
     from symobs.method import Document
     from symobs.sheet import Sheet
@@ -28,6 +31,12 @@ if TYPE_CHECKING:
 TIME_LIMIT = 60.0  # seconds
 #: Characters of LaTeX a second that TeX, run three times on a slow and busy machine, surely gets through.
 SLOWEST = 2000.0
+#: Megabytes that TeX may write: a page has less than one, and a log that never ends would fill the disk.
+SIZE_LIMIT = 200
+#: What is said of an error that came while TeX was running.
+TEX_AT_WORK = "TeX was at work"
+_LOOK_EVERY = 0.2  # seconds
+_LAST_OF_LOG = 1 << 20  # bytes; TeX stops at its first error, which stands there
 _INSTALL = (
     "install TeX; on Debian or Ubuntu: apt-get install texlive-latex-recommended texlive-pictures latexmk "
     "(or write LaTeX with --format latex)"
@@ -71,13 +80,18 @@ class Pdf:
 def compiled(source: str, *, time_limit: float = TIME_LIMIT) -> bytes:
     """Return the PDF that TeX makes of a LaTeX document."""
     commands = _commands()
-    with tempfile.TemporaryDirectory(prefix="symobs-") as name:
-        folder = Path(name)
-        (folder / _SOURCE).write_text(source, encoding="utf-8")
-        for command in commands:
-            if _run(command, folder, time_limit) != 0:
+    try:
+        with _ending_in_order(), tempfile.TemporaryDirectory(prefix="symobs-", ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            (folder / _SOURCE).write_text(source, encoding="utf-8")
+            page = (folder / _SOURCE).with_suffix(".pdf")
+            if any(_run(command, folder, time_limit) != 0 for command in commands) or not page.exists():
                 raise _failure(folder)
-        return (folder / _SOURCE).with_suffix(".pdf").read_bytes()
+            return page.read_bytes()
+    except OSError as error:
+        reason = f"TeX could not be given a folder to work in: {error.strerror or error}"
+        repair = "make room, or name another folder for temporary files in the variable TMPDIR"
+        raise TypesettingError(reason, where=_temporary(), repair=repair) from None
 
 
 def _commands() -> tuple[tuple[str, ...], ...]:
@@ -93,21 +107,72 @@ def _commands() -> tuple[tuple[str, ...], ...]:
 
 def _run(command: Sequence[str], folder: Path, time_limit: float) -> int:
     """Run a command in `folder` and return its exit code; whatever ends this ends all it has started."""
-    process = subprocess.Popen(  # noqa: S603 - a program found on PATH, a source that is escaped, no shell
-        command,
-        cwd=folder,
-        env=_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
     try:
-        return process.wait(time_limit)
-    except subprocess.TimeoutExpired as error:
-        raise TypesettingError(f"TeX was stopped after {time_limit:g} seconds") from error
+        process = subprocess.Popen(  # noqa: S603 - a program found on PATH, a source that is escaped, no shell
+            command,
+            cwd=folder,
+            env=_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+    except OSError as error:
+        reason = f"this program cannot be started: {error.strerror or error}"
+        raise TypesettingError(reason, where=command[0], repair=_INSTALL) from None
+    try:
+        return _waited(process, folder, time_limit)
+    except BaseException as interruption:
+        interruption.add_note(TEX_AT_WORK)
+        raise
     finally:
         _end(process)
+
+
+def _waited(process: subprocess.Popen[bytes], folder: Path, time_limit: float) -> int:
+    """Return the exit code of TeX; raises `TypesettingError` where it takes more time or room than it may."""
+    end = time.monotonic() + time_limit
+    while True:
+        left = end - time.monotonic()
+        try:
+            return process.wait(max(0.0, min(left, _LOOK_EVERY)))
+        except subprocess.TimeoutExpired:
+            if left <= 0:
+                repair = "write LaTeX with --format latex and typeset it yourself"
+                raise TypesettingError(f"TeX was stopped after {time_limit:g} seconds", repair=repair) from None
+        if _size(folder) > SIZE_LIMIT << 20:
+            repair = "write LaTeX with --format latex to see why"
+            raise TypesettingError(f"TeX was stopped after it had written {SIZE_LIMIT} MB", repair=repair)
+
+
+def _size(folder: Path) -> int:
+    """Return how many bytes the files of a folder have."""
+    with suppress(OSError):  # a file that is gone before it is measured
+        return sum(path.stat().st_size for path in folder.iterdir())
+    return 0
+
+
+@contextmanager
+def _ending_in_order() -> Iterator[None]:
+    """Let the first request to end this process end TeX and its folder too, and no second one disturb that."""
+    usual: dict[signal.Signals, Any] = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
+    if hasattr(signal, "SIGHUP"):
+        usual[signal.SIGHUP] = signal.SIG_DFL
+    ours = threading.current_thread() is threading.main_thread()  # else there are no requests to this thread
+    taken = [number for number, handler in usual.items() if ours and signal.getsignal(number) == handler]
+
+    def leave(number: int, _: FrameType | None) -> None:
+        for each in taken:
+            signal.signal(each, signal.SIG_IGN)
+        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+
+    for number in taken:
+        signal.signal(number, leave)
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, usual[number])
 
 
 def _environment() -> Mapping[str, str]:
@@ -128,9 +193,11 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 def _failure(folder: Path) -> TypesettingError:
     """Return the first error in TeX's log."""
-    log = (folder / _SOURCE).with_suffix(".log")
-    text = log.read_text(encoding="latin-1") if log.exists() else ""
+    text = _log(folder)
     error = re.search(r"^! (.*)", text, re.MULTILINE)
+    if error is None and shutil.disk_usage(folder).free < _LAST_OF_LOG:
+        repair = "make room, or name another folder for temporary files in the variable TMPDIR"
+        return TypesettingError("TeX found no space left on the device", where=_temporary(), repair=repair)
     if error is None:
         return TypesettingError("TeX ended without a page and without an error in its log", repair=_INSTALL)
     place = re.search(r"^l\.(\d+)", text[error.end() :], re.MULTILINE)
@@ -139,3 +206,21 @@ def _failure(folder: Path) -> TypesettingError:
         where=f"line {place[1]} of the LaTeX" if place else "",
         repair=_INSTALL if "not found" in error[1] else "write LaTeX with --format latex to see that line",
     )
+
+
+def _log(folder: Path) -> str:
+    """Return the end of TeX's log."""
+    log = (folder / _SOURCE).with_suffix(".log")
+    if not log.exists():
+        return ""
+    with log.open("rb") as stream:
+        stream.seek(max(0, log.stat().st_size - _LAST_OF_LOG))
+        return stream.read(_LAST_OF_LOG).decode("latin-1")
+
+
+def _temporary() -> str:
+    """Return where temporary files go."""
+    try:
+        return tempfile.gettempdir()
+    except OSError:
+        return "TMPDIR"

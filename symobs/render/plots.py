@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import pairwise
 from math import ceil, cos, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.formula import Literal, Relation
 from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.record import dataclass
 from symobs.render import plots_time
 from symobs.render.plots_caption import drawn, part, radius_of, symbol
 from symobs.render.plots_labels import Surroundings, labelled, walk
@@ -60,7 +61,7 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
             assert_never(picture)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Frame:
     """A window of the plane and the rectangle on paper that shows it."""
 
@@ -273,13 +274,18 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
 def _courses(picture: TimeResponse, measure: Measure) -> Scene:
     """Signals over time, each with its name beside it."""
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, plots_time.HEIGHT)
-    lines = {course: tuple(frame.lines(course.points)) for course in picture.courses}
+    counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
+    lines = [
+        tuple(replace(counted, horizontal=(0.0, len(course.heights) - 1.0)).lines(enumerate(course.heights)))
+        for course in picture.courses
+    ]
     pale = tuple(_zero_lines(frame))
-    every = tuple(line for parts in lines.values() for line in parts)
-    names = {plots_time.name_of(course): parts for course, parts in lines.items()}
+    every = tuple(line for parts in lines for line in parts)
+    names = {plots_time.name_of(course): parts for course, parts in zip(picture.courses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
     axes, written = _axes(frame, (symbol("t"),), measure)
-    strokes = [Stroke(line, plots_time.style_of(course)) for course, parts in lines.items() for line in parts]
+    styles = map(plots_time.style_of, picture.courses)
+    strokes = [Stroke(line, style) for style, parts in zip(styles, lines, strict=True) for line in parts]
     texts = (*written, *labels)
     zeros = (Stroke(line, "zero") for line in pale)
     whole = whole_of(axes, texts, measure)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from symobs.record import dataclass
 from symobs.render.scene import Box, Text, segment_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula import Formula, Relation
     from symobs.render.scene import Content, Measure, Point
 
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
 _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
+#: Lines are looked at in pieces of so many segments, since most lie far from a label.
+_SEGMENTS = 6
 #: What it is worth, in points of distance, to stand outside the shaded areas, on no pale line, near a curve's middle.
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
@@ -26,7 +29,7 @@ Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Surroundings:
     """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
 
@@ -67,36 +70,40 @@ def _beside(around: Surroundings, written: Sequence[Text], measure: Measure) -> 
 
 def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> Text | None:
     """Return a label where it is farthest from everything that is not its own."""
-    size, taken = measure(content), around.taken
+    (width, height), taken = measure(content), around.taken
     own = set(lines)
-    others = [_places(line) for line in around.lines if line not in own]
+    others = [place for line in around.lines if line not in own for place in _places(line)]
+    pieces = [piece for line in around.lines for piece in _pieces(line)]
     room = around.frame.grown(-_CLEAR)
     best, worth = None, float("-inf")
-    for text, from_middle in _trials(content, lines, size):
-        box = text.box(size)
-        if not room.holds(box) or any(box.meets(other) for other in taken):
+    for (x, y), from_middle in _trials(lines, width, height):
+        highest = _FAR + _FAR / 3 - _MIDDLE * from_middle + _FREE + _UNSHADED
+        left, bottom = x - width / 2, y - height / 2
+        right, top = left + width, bottom + height
+        if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
-        if any(_crosses(line, box.grown(_CLEAR)) for line in around.lines):
+        box = Box(left, bottom, right, top)
+        if any(box.meets(other) for other in taken) or _is_crossed(box.grown(_CLEAR), pieces):
             continue
-        value = min([_FAR, *(_distance(box, places) for places in others)])
-        value += min([_FAR, *(_apart(box, other) for other in taken)]) / 3
+        value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle
         value += _FREE * (not any(_crosses(line, box) for line in around.pale))
         value += _UNSHADED * (not any(contains(area, box.centre) for area in around.shades))
+        value += _distance(box, others, worth - value)
         if value > worth:
-            best, worth = text, value
-    return best
+            best, worth = (x, y), value
+    return None if best is None else Text(content, best)
 
 
-def _trials(content: Content, lines: Lines, size: tuple[float, float]) -> Iterator[tuple[Text, float]]:
-    """Yield the label on both sides of every place along its curves, with how far that is from the middle (0 to 1)."""
-    width, height = size
+def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, float]]:
+    """Yield middles of labels on both sides of every place along lines, and how far that is from the middle (0 to 1)."""
     for line in lines:
         length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(line))
         for (x, y), (dx, dy), along in walk(line, _STEP):
-            for nx, ny in ((-dy, dx), (dy, -dx)):
-                away = _GAP + abs(nx) * width / 2 + abs(ny) * height / 2
-                yield Text(content, (x + nx * away, y + ny * away)), abs(2 * along / length - 1)
+            away = _GAP + abs(dy) * width / 2 + abs(dx) * height / 2
+            from_middle = abs(2 * along / length - 1)
+            yield (x - dy * away, y + dx * away), from_middle
+            yield (x + dy * away, y - dx * away), from_middle
 
 
 def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, float]]:
@@ -112,15 +119,27 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
         gone += length
 
 
-def _crosses(line: Sequence[Point], box: Box) -> bool:
-    """Whether a line meets a box; most segments lie on one side of it, which is seen at once."""
-    left, right, bottom, top = box.left, box.right, box.bottom, box.top
-    for a, b in pairwise(line):
-        beside = (a[0] < left and b[0] < left) or (a[0] > right and b[0] > right)
-        above = (a[1] < bottom and b[1] < bottom) or (a[1] > top and b[1] > top)
-        if not beside and not above and segment_in(a, b, box) is not None:
+def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float, Sequence[Point]]]:
+    """Yield a line in pieces of some segments, each behind the sides (left, bottom, right, top) of what holds it."""
+    for first in range(0, len(line) - 1, _SEGMENTS):
+        points = line[first : first + _SEGMENTS + 1]
+        xs, ys = zip(*points, strict=True)
+        yield min(xs), min(ys), max(xs), max(ys), points
+
+
+def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
+    """Whether one of the pieces of lines meets a box."""
+    left, bottom, right, top = box.left, box.bottom, box.right, box.top
+    for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
+        is_aside = piece_left > right or left > piece_right or piece_bottom > top or bottom > piece_top
+        if not is_aside and _crosses(points, box):
             return True
     return False
+
+
+def _crosses(line: Sequence[Point], box: Box) -> bool:
+    """Whether a line meets a box."""
+    return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
 
 def _places(line: Sequence[Point]) -> list[Point]:
@@ -128,9 +147,19 @@ def _places(line: Sequence[Point]) -> list[Point]:
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
-def _distance(box: Box, places: Sequence[Point]) -> float:
-    """Return how far places keep from a box."""
-    return min(hypot(max(box.left - x, 0.0, x - box.right), max(box.bottom - y, 0.0, y - box.top)) for x, y in places)
+def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
+    """Return how far places keep from a box, up to _FAR; no further is looked once that is not more than enough."""
+    left, right, bottom, top = box.left, box.right, box.bottom, box.top
+    nearest = _FAR
+    for x, y in places:
+        dx = left - x if x < left else max(x - right, 0.0)
+        if dx < nearest:
+            dy = bottom - y if y < bottom else max(y - top, 0.0)
+            if dy < nearest:
+                nearest = min(nearest, hypot(dx, dy))
+                if nearest <= enough:
+                    break
+    return nearest
 
 
 def _apart(box: Box, other: Box) -> float:

@@ -40,7 +40,7 @@ def require_matplotlib() -> None:
         import matplotlib.figure  # noqa: F401
     except ImportError:
         message = "pictures in PNG and PDF need matplotlib"
-        raise UsageError(message, repair="pip install symobs[plot], or name a file that ends in .svg or .tex") from None
+        raise UsageError(message, repair="pip install matplotlib, or name a file that ends in .svg or .tex") from None
 
 
 def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:

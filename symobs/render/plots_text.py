@@ -77,11 +77,11 @@ def _courses(picture: TimeResponse, printer: TextPrinter) -> str:
     zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
     if picture.window[1][0] < 0 < picture.window[1][1]:
         grid[min(zero, _ROWS - 1)] = ["┈"] * _COLUMNS
-    marks = dict(zip(picture.courses, CHARACTERS, strict=False))
-    for course, mark in reversed(marks.items()):
-        for place in course.points:
+    marks = list(zip(picture.courses, CHARACTERS, strict=False))
+    for course, mark in reversed(marks):
+        for place in picture.points(course):
             _put(grid, picture.window, place, mark)
-    told = "   ".join(f"{mark} {printer.inline(name_of(course))}" for course, mark in marks.items())
+    told = "   ".join(f"{mark} {printer.inline(name_of(course))}" for course, mark in marks)
     return f"{told}\n{_framed(grid, picture.window, [symbol('t')], printer)}"
 
 

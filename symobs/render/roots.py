@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Scalar
 from symobs.formula import Letter, Literal, Relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -6,12 +6,12 @@ every text has its place: a format only writes down.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.formula import Formula, Relation
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,7 +25,7 @@ Measure: TypeAlias = "Callable[[Content], tuple[float, float]]"
 FONT_SIZE = 9.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Box:
     """A rectangle."""
 
@@ -59,7 +59,7 @@ class Box:
         return (self.left + self.right) / 2, (self.bottom + self.top) / 2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Text:
     """Something written: the `anchor` of its box (center, north, south, east or west) lies at `place`."""
 
@@ -75,7 +75,7 @@ class Text:
         return Box(left, bottom, left + width, bottom + height)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Stroke:
     """A line in one of the styles of `STYLES`."""
 
@@ -83,7 +83,7 @@ class Stroke:
     style: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Sign:
     """A small sign: a `dot`, a `cross`, a `ring`, or the `arrow` that points in a direction."""
 
@@ -92,7 +92,7 @@ class Sign:
     direction: Point = (1.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Style:
     """How a line is drawn: its width, whether in the colour of the ink or of text (or `pale`), and its dashes."""
 
@@ -115,7 +115,7 @@ RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
 ARROW = 5.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Scene:
     """A picture on paper; `numbered` are the equations of curves that carry numbers."""
 
@@ -202,6 +202,11 @@ def _next(
 
 def segment_in(a: Point, b: Point, box: Box) -> tuple[Point, Point] | None:
     """Return the part of a segment in a rectangle, None where there is none."""
+    (x0, y0), (x1, y1), left, right, bottom, top = a, b, box.left, box.right, box.bottom, box.top
+    if left <= x0 <= right and left <= x1 <= right and bottom <= y0 <= top and bottom <= y1 <= top:
+        return a, b
+    if (x0 < left and x1 < left) or (x0 > right and x1 > right) or (y0 < bottom and y1 < bottom) or (y0 > top < y1):
+        return None
     start, stop = 0.0, 1.0
     dx, dy = b[0] - a[0], b[1] - a[1]
     sides = ((-dx, a[0] - box.left), (dx, box.right - a[0]), (-dy, a[1] - box.bottom), (dy, box.top - a[1]))
@@ -244,20 +249,33 @@ def _cut(area: Sequence[Point], axis: int, edge: float, sign: int) -> Iterator[P
 
 def thinned(points: Sequence[Point], tolerance: float = 0.04) -> tuple[Point, ...]:
     """Return a line through fewer of its points that nobody can tell from it (Douglas and Peucker)."""
-    if len(points) < 3:
-        return tuple(points)
-    (x0, y0), (x1, y1) = points[0], points[-1]
-    length = hypot(x1 - x0, y1 - y0)
+    kept = {0, len(points) - 1}
+    spans = [(0, len(points) - 1)]
+    while spans:
+        first, last = spans.pop()
+        square, farthest = _farthest(points, first, last)
+        if square > tolerance * tolerance:
+            kept.add(farthest)
+            spans += [(first, farthest), (farthest, last)]
+    return tuple(points[index] for index in sorted(kept)) if points else ()
 
-    def off(point: Point) -> float:
-        x, y = point
-        if length == 0:
-            return hypot(x - x0, y - y0)
-        along = ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / length**2
-        inside = min(max(along, 0.0), 1.0)
-        return hypot(x - x0 - inside * (x1 - x0), y - y0 - inside * (y1 - y0))
 
-    farthest = max(range(1, len(points) - 1), key=lambda index: off(points[index]))
-    if off(points[farthest]) <= tolerance:
-        return (points[0], points[-1])
-    return thinned(points[: farthest + 1], tolerance)[:-1] + thinned(points[farthest:], tolerance)
+def _farthest(points: Sequence[Point], first: int, last: int) -> tuple[float, int]:
+    """Return the square of the largest distance from the segment between two points of a line, and where that is."""
+    (x0, y0), (x1, y1) = points[first], points[last]
+    ux, uy = x1 - x0, y1 - y0
+    length = ux * ux + uy * uy
+    largest, farthest = 0.0, first
+    for index in range(first + 1, last):
+        dx, dy = points[index][0] - x0, points[index][1] - y0
+        along = dx * ux + dy * uy
+        if 0.0 < along < length:
+            across = dx * uy - dy * ux
+            square = across * across / length
+        else:
+            if along > 0.0:
+                dx, dy = dx - ux, dy - uy
+            square = dx * dx + dy * dy
+        if square > largest:
+            largest, farthest = square, index
+    return largest, farthest

@@ -7,12 +7,12 @@ written out where that fits the line, else by the rule that makes it of the two 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic
 
 from symobs.exact import Scalar
 from symobs.formula import Formula, Literal, Negative, Product, Quotient, Relation, Sum
 from symobs.notation import symbol_latex
+from symobs.record import dataclass
 from symobs.render.glyphs import B
 from symobs.render.scalars import is_leaf
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import unicodedata
 from copy import copy
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
+from symobs.record import dataclass
 from symobs.render.glyphs import Box, Level
 from symobs.render.layout import Layout
 from symobs.render.printer import Printer

@@ -65,9 +65,10 @@ class StateSpace:
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
-        if any("t" in part.names for part in parts.values() if part is not None):
+        given = [part for part in parts.values() if part is not None]
+        if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
-        given = [part for part in parts.values() if part is not None and self.variable in part.field.position]
+        given = [part for part in given if self.variable in part.field.position]
         clash = self.variable in known.signs or any(self.variable in part.names for part in given)
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
@@ -344,7 +345,10 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
     numerator = value.numerator.coefficients(variable)
     if order < 1:
         message = f"{value} has no pole, so it has no state"
-        raise InputError(message, where=where, repair="give a proper rational function such as 1/(s*(s+1))")
+        example = f"1/({variable}*({variable}+1))"
+        raise InputError(
+            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
+        )
     if len(numerator) > order + 1:
         message = f"{value} is not proper: degree {len(numerator) - 1} over degree {order}"
         raise InputError(message, where=where, repair="the degree of the numerator may not exceed the denominator's")

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
 from symobs.expression import declared_name
 from symobs.notation import GREEK
+from symobs.record import dataclass
 
 
 @dataclass(frozen=True)
@@ -105,13 +106,24 @@ def _latex(entry: object, place: str) -> str:
     return str(entry)
 
 
-def _is_plain_latex(text: str) -> bool:
+_NAMED = rf"\\(?:{'|'.join(sorted({*GREEK, 'varepsilon', 'vartheta', 'varphi', 'ell'}))})(?![A-Za-z])"
+_GROUP = "\N{BULLET}"
+_LETTER = rf"(?:[A-Za-z0-9]|{_NAMED}|{_GROUP})"
+_ACCENTED = rf"\\(?:bar|tilde|dot|hat|mathrm|mathit)(?![A-Za-z]) ?{_LETTER}"
+_BELOW, _ABOVE = rf"_ ?{_LETTER}", rf"\^ ?{_LETTER}"
+_SCRIPTS = rf"(?:'{{1,3}}|{_BELOW}(?:{_ABOVE}|'{{1,3}})?|{_ABOVE}(?:{_BELOW})?)?"
+_FORM = rf"(?:(?:{_ACCENTED}|{_LETTER}){_SCRIPTS}|[ ,])+"
+_INNERMOST = re.compile(rf"\{{{_FORM}\}}")
 
-    named = {*GREEK, "varepsilon", "vartheta", "varphi", "ell", "mathrm", "mathit", "bar", "tilde", "dot", "hat"}
-    commands = re.findall(r"\\([A-Za-z]+)", text)
-    rest = re.sub(r"\\[A-Za-z]+", "", text)
-    balanced = rest.count("{") == rest.count("}")
-    return balanced and set(commands) <= named and re.fullmatch(r"[A-Za-z0-9_^{}', ]*", rest) is not None
+
+def _is_plain_latex(text: str) -> bool:
+    """Whether TeX can set a form anywhere: named commands only, whole groups, no script twice, and no `^^` code."""
+    if _GROUP in text or text != text.strip() or not re.search("[A-Za-z]", text):
+        return False
+    shorter = _INNERMOST.sub(_GROUP, text)
+    while shorter != text:
+        text, shorter = shorter, _INNERMOST.sub(_GROUP, shorter)
+    return re.fullmatch(_FORM, text) is not None
 
 
 def sympy_symbols(values: object) -> dict[str, Any]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from symobs.errors import InputError
+from symobs.record import dataclass
 from symobs.system.reading import read_scalar
 
 if TYPE_CHECKING:
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from symobs.system.symbols import Symbols
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Continuous:
     """Continuous time: ẋ, the variable s, stability in the open left half plane."""
 
     variable = "s"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimeVarying(Continuous):
     """Continuous time t, which the matrices themselves may contain: ẋ = A(t) x + B(t) u."""
 
     variable = "t"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Discrete:
     """Discrete time: x(k+1), the variable z, stability in the open unit disc; `period` if it is known."""
 

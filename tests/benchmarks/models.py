@@ -39,6 +39,20 @@ def cart_pole() -> Model:
     )
 
 
+def two_masses() -> Model:
+    """Two masses, a spring and a damper; the force acts on one, the place of the other is measured; eight symbolic poles."""
+    names = _fresh(["m1", "m2", "k", "d", *_numbered("p", 4), *_numbered("q", 4)])
+    A = "[0 0 1 0; 0 0 0 1; -{k}/{m1} {k}/{m1} -{d}/{m1} {d}/{m1}; {k}/{m2} -{k}/{m2} {d}/{m2} -{d}/{m2}]"
+    return Model(
+        A.format(**names),
+        "[0; 0; 1/{m1}; 0]".format(**names),
+        "[0 1 0 0]",
+        tuple(f"-{names[name]}" for name in _numbered("p", 4)),
+        tuple(f"-{names[name]}" for name in _numbered("q", 4)),
+        _reversed(names),
+    )
+
+
 def generic(order: int) -> Model:
     """A plant whose A and C are made of different symbols, with symbolic observer poles."""
     entries = [[f"a{i}{j}" for j in range(1, order + 1)] for i in range(1, order + 1)]

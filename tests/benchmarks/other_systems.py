@@ -1,6 +1,6 @@
-"""The same work in giac, PARI/gp and SymPy: each system in a process of its own, its start-up measured beside it.
+"""The same work in giac, Maxima, PARI/gp and SymPy: each system in a process of its own, its start-up measured beside it.
 
-What giac and gp are given stands in `giac/*.giac` and `pari/*.gp`, one file for each formulation.
+What they are given stands in `giac/*.giac`, `maxima/*.mac` and `pari/*.gp`, one file for each formulation.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 HERE = Path(__file__).resolve().parent
+TOP = HERE.parents[1]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 #: gp's own default of 8 MB is too small for the larger orders.
 _GP = ("gp", "-q", "-f", "-s", "1G")
@@ -74,6 +75,11 @@ def giac(path: Path, limit: float) -> Run | None:
         return run(["giac", str(path)], limit, folder=Path(folder))
 
 
+def maxima(path: Path, limit: float) -> Run | None:
+    """Let Maxima run a file."""
+    return run(["maxima", "--very-quiet", "-b", str(path)], limit)
+
+
 def gp(path: Path, order: int, limit: float) -> Run | None:
     """Let gp run a file after `n = order`."""
     return run(_GP, limit, f"n = {order};\n{path.read_text(encoding='utf-8')}")
@@ -85,10 +91,17 @@ def plain(text: str, names: Mapping[str, str]) -> str:
 
 
 def agrees(path: Path, differences: Sequence[str], scratch: Path, limit: float = 120) -> bool:
-    """Tell whether giac, after running a file, finds normal form 0 for each of these expressions."""
+    """Tell whether giac or Maxima, after running a file, finds normal form 0 for each of these expressions."""
     program = scratch / path.name
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".mac":
+        asked = "\n".join(f'print("difference", ratsimp({difference}))$' for difference in differences)
+        program.write_text(f"{text}\n{asked}\n", encoding="utf-8")
+        done = maxima(program, limit)
+        told = re.findall(r"^difference (.*?)\s*$", done.output, re.MULTILINE) if done else []
+        return told == ["0"] * len(differences)
     asked = ",".join(f"normal({difference})" for difference in differences)
-    program.write_text(f"{path.read_text(encoding='utf-8')}\n[{asked}]\n", encoding="utf-8")
+    program.write_text(f"{text}\n[{asked}]\n", encoding="utf-8")
     done = giac(program, limit)
     if done is None:
         return False

@@ -32,7 +32,7 @@ SHAKEN = 1e-13
 COPIES = 1
 
 _WORTH = 1000  # what the numbers may be off by, in units of how far they moved
-_ROUNDING = 2e-13
+_ROUNDING = 1e-11
 _WORTHLESS = 1e-3  # relative to the largest entry
 _ZERO, _NONZERO = 1e-10, 1e-7  # of singular values, relative to the largest
 _NOTHING = 1e-4  # the largest singular value of what is not 0 but for rounding, entries being about 1
@@ -100,7 +100,7 @@ def _same(name: str, ours: Numbers, theirs: Numbers, shaken: Sequence[Numbers]) 
         return None
     moved = np.max([np.abs(copy - theirs) for copy in shaken], axis=0)
     size = float(np.abs(theirs).max())
-    bars = _WORTH * np.maximum(moved, moved.max() / 100) + _ROUNDING * (1 + size)
+    bars = _WORTH * np.maximum(moved, moved.max() / 10) + _ROUNDING * (1 + size)
     if not bars.max() < _WORTHLESS * max(1.0, size):
         return Untold(f"{name} is ill-conditioned")
     excess = np.abs(ours - theirs) / bars
@@ -220,6 +220,8 @@ def _characteristic_polynomial(case: Case, claims: Claims) -> None:
 def _transfer_function(case: Case, claims: Claims) -> None:
     _plant(case, claims)
     claims.values["values"] = case.values(case.answer["transfer_function"], PLACES)
+    if case.point and claims.given["D"].size > 1:
+        return  # of several inputs or outputs poles and zeros are those of the parameters in general
     if case.answer.get("poles") is not None:
         claims.values["poles"] = case.polynomial_of(case.answer["poles"])
     if case.answer.get("zeros") is not None and claims.given["D"].size == 1 and claims.values["values"].any():
@@ -229,6 +231,8 @@ def _transfer_function(case: Case, claims: Claims) -> None:
 def _canonical_form(case: Case, claims: Claims) -> None:
     order = _plant(case, claims)
     kind = case.specification["kind"]
+    if case.has("polynomial"):
+        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if not case.has("T"):
         if kind in {"controllable", "observable"} and case.verdict == "yes":
             claims.wrong.append("the verdict is yes, and there is no T")
@@ -239,8 +243,6 @@ def _canonical_form(case: Case, claims: Claims) -> None:
     for letter in "ABCD":
         claims.values[f"new {letter}"] = case.matrix(letter, 1)
     claims.ranks["rank of T"] = order
-    if case.has("polynomial"):
-        claims.values["polynomial"] = case.polynomial(case.answer["polynomial"])
     if kind == "controllable":
         claims.values["controllable companion"] = claims.values["new A"]
         claims.values["controllable input"] = claims.values["new B"]
@@ -407,6 +409,8 @@ def _reduced_order_observer(case: Case, claims: Claims) -> None:
     if not case.has("L"):
         claims.values["no gain"] = np.ones((1, 1))
         _as_desired(case, claims)
+        if case.has("T") and not case.point:
+            claims.values["T"] = case.matrix("T")
         return
     outputs = claims.given["C"].shape[0]
     for letter in "LTFGHM":

@@ -160,12 +160,13 @@ S = minreal(ss(A, B, C, D, tsam), 1e-8); tell("poles", poly(pole(S))); tell("zer
 _CANONICAL = """
 if exist("T")
   tell("rank of T", svd(T)); tell("new A", T*A/T); tell("new B", T*B); tell("new C", C/T); tell("new D", D);
-  tell("polynomial", poly(A)); X = [zeros(rows(A)-1, 1), eye(rows(A)-1); -fliplr(poly(A)(2:end))];
+  X = [zeros(rows(A)-1, 1), eye(rows(A)-1); -fliplr(poly(A)(2:end))];
   tell("controllable companion", X); tell("observable companion", X');
   e = eye(rows(A)); tell("controllable input", e(:, end)); tell("observable output", e(end, :));
 else
   tell("not controllable", seen(A', B')(end) < 1e-9); tell("not observable", seen(A, C)(end) < 1e-9);
 end
+tell("polynomial", poly(A));
 """
 
 _DUAL = """
@@ -305,7 +306,8 @@ def _part(case: Case, claims: Claims) -> str:
                 parts.append('tell("error matrix", [A - B*K, -B*Ke; Z, Fo]);')
             return "\n".join(parts)
         case "reduced_order_observer" if "L" not in given:
-            return _NO_GAIN.format(seen="seen(A, C)")
+            coordinates = 'if copy == 0, R = unit_rows(C); end, tell("T", [C; R]);'
+            return _NO_GAIN.format(seen="seen(A, C)") + coordinates
     return _PARTS[task]
 
 

@@ -185,7 +185,8 @@ def _placed(A: Any, B: Any, phi: Any) -> Any:
 
 def _reduced(case: Case, g: Data, exact: Data) -> Found:
     if "L" not in g:
-        return {"no gain": _left(exact["phi"], g["A"], g["C"])}
+        T = np.vstack([g["C"], _unit_rows(case.plant("C").real)])
+        return {"no gain": _left(exact["phi"], g["A"], g["C"]), "T": T}
     p = len(g["C"])
     At, Bt = g["T"] @ g["A"] @ np.linalg.inv(g["T"]), g["T"] @ g["B"]
     A11, A12, A21, A22, L = At[:p, :p], At[:p, p:], At[p:, :p], At[p:, p:], g["L"]
@@ -257,9 +258,17 @@ def _compensator(case: Case, g: Data, exact: Data) -> Found:
         }
         if "K" in g:
             found["assigned by K"] = _polynomial(g["A"] - g["B"] @ g["K"])
+        if "L" in g:
+            found["assigned by L"] = _estimator(case, g | {"K": np.zeros(g["B"].T.shape)})[1]
         return found
     inner, assigned = _estimator(case, g)
-    found = {"assigned by K": _polynomial(g["A"] - g["B"] @ g["K"]), "assigned by L": assigned}
+    closed = g["A"] - g["B"] @ g["K"]
+    found = {"assigned by K": _polynomial(closed), "assigned by L": assigned}
+    error = inner.A if case.specification.get("observer") == "minimal" else g["A"] - g["L"] @ g["C"]
+    driven = -g["B"] @ inner.C  # u = −K x + (what the estimator's state is off) · what its state does to −u
+    found["in the error"] = np.vstack(
+        [np.hstack([closed, driven]), np.hstack([np.zeros((len(error), len(closed))), error])]
+    )
     if case.task == "feedforward":
         if "F" in g:
             whole = _connected(case, g, g["F"])
@@ -349,7 +358,8 @@ def _decomposition(case: Case, g: Data, _: Data) -> Found:
 def _canonical_form(case: Case, g: Data, _: Data) -> Found:
     if "T" not in g:
         pairs = {"not controllable": (g["A"].T, g["B"].T), "not observable": (g["A"], g["C"])}
-        return {name: _row(float(abs(_hidden(*pair)[0][0, -1]) < 1e-9)) for name, pair in pairs.items()}
+        found = {name: _row(float(abs(_hidden(*pair)[0][0, -1]) < 1e-9)) for name, pair in pairs.items()}
+        return found | {"polynomial": _polynomial(g["A"])}
     plant = _system(case, *(g[letter] for letter in "ABCD"))
     moved = control.similarity_transform(plant, g["T"])
     found = {f"new {letter}": getattr(moved, letter) for letter in "ABCD"}

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 NAME = "QEPCAD"
 COMMAND: str | None = "qepcad"
 
+#: Where `tests.campaign.sharpness` changes an answer to see whether that is noticed.
+FIELDS = ("stable_if", "intervals", "conditions")
+
 _SECONDS = 5
 _POINTS = 40  # at which the roots themselves are asked besides
 _OPERATIONS = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}

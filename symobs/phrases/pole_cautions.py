@@ -1,0 +1,29 @@
+"""Cautions beside poles that were asked for and are not stable."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "grows_observer_continuous": "Not all poles asked for lie in the open left half plane: from almost every start the estimation error grows without bound.",
+    "lasts_observer_continuous": "Not all poles asked for lie in the open left half plane: the estimation error need not decay.",
+    "stays_observer_continuous": "A pole asked for lies on the imaginary axis: a part of the estimation error stays for ever.",
+    "grows_observer_discrete": "Not all poles asked for lie inside the unit circle: from almost every start the estimation error grows without bound.",
+    "lasts_observer_discrete": "Not all poles asked for lie inside the unit circle: the estimation error need not decay.",
+    "stays_observer_discrete": "A pole asked for lies on the unit circle: a part of the estimation error stays for ever.",
+    "grows_state_feedback_continuous": "Not all poles asked for lie in the open left half plane: this feedback makes the loop unstable.",
+    "lasts_state_feedback_continuous": "Not all poles asked for lie in the open left half plane: with this feedback the loop need not come to rest.",
+    "stays_state_feedback_continuous": "A pole asked for lies on the imaginary axis: with this feedback the loop does not come to rest by itself.",
+    "grows_state_feedback_discrete": "Not all poles asked for lie inside the unit circle: this feedback makes the loop unstable.",
+    "lasts_state_feedback_discrete": "Not all poles asked for lie inside the unit circle: with this feedback the loop need not come to rest.",
+    "stays_state_feedback_discrete": "A pole asked for lies on the unit circle: with this feedback the loop does not come to rest by itself.",
+    "law_unstable_continuous": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie in the open left half plane.",
+    "law_unstable_discrete": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie inside the unit circle.",
+}
+
+_TELL: dict[str, tuple[str, ...]] = {
+    "grows": ("unstable", "beyond"),
+    "stays": ("unstable", "marginal"),
+    "lasts": ("unstable",),
+    "law": ("unstable",),
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {key: _TELL[key.partition("_")[0]] for key in PHRASES}

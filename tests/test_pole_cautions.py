@@ -1,0 +1,101 @@
+"""Cautions beside poles that were asked for: an expert says when an error grows or stays, and when a law is unstable."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symobs
+
+SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+FALLING = ("[0 1; 4 -1]", "[0; 1]", "[2 1]")
+REFERENCE = "[0 1; 4 -1]"
+
+
+def page(result: Any) -> str:
+    return " ".join(result.to("text").split())
+
+
+def plant(dt: int = 0) -> symobs.StateSpace:
+    return symobs.StateSpace(*SERVO, dt=dt)
+
+
+OBSERVERS = [
+    (0, "-1, 2", "the estimation error grows without bound"),
+    (0, "1 + i, 1 - i", "the estimation error grows without bound"),
+    (0, "0, -1", "A pole asked for lies on the imaginary axis: a part of the estimation error stays for ever"),
+    (0, "i, -i", "A pole asked for lies on the imaginary axis"),
+    (0, "0, 0", "the estimation error need not decay"),
+    (1, "1/2, 2", "the estimation error grows without bound"),
+    (1, "1, 0", "A pole asked for lies on the unit circle"),
+    (0, "-1, -2", ""),
+    (1, "0, 0", ""),
+]
+
+
+@pytest.mark.parametrize(("dt", "poles", "words"), OBSERVERS)
+def test_observers_of_full_order(dt: int, poles: str, words: str) -> None:
+    found = page(symobs.observer(plant(dt), poles=poles))
+    assert ("A caution." in found) == bool(words)
+    assert words in found
+
+
+@pytest.mark.parametrize(("pole", "words"), [("0", "stays for ever"), ("3", "grows without bound"), ("-3", "")])
+def test_observers_of_reduced_order(pole: str, words: str) -> None:
+    found = page(symobs.reduced_order_observer(plant(), poles=pole))
+    assert ("A caution." in found) == bool(words)
+    assert words in found
+
+
+TASKS: list[tuple[str, dict[str, Any]]] = [
+    ("compensator", {}),
+    ("feedforward", {}),
+    ("tracking", {"reference_matrix": "[0 1; -1 0]", "observer": "full"}),
+]
+
+
+@pytest.mark.parametrize(("task", "further"), TASKS)
+@pytest.mark.parametrize(
+    ("control", "observer", "words"),
+    [
+        ("1, -2", "-3, -4", ["this feedback makes the loop unstable"]),
+        ("i, -i", "-3, -4", ["does not come to rest by itself"]),
+        ("-1, -2", "0, -4", ["a part of the estimation error stays"]),
+        ("2, -2", "3, -4", ["this feedback makes the loop unstable", "the estimation error grows"]),
+        ("-1, -2", "-3, -4", []),
+    ],
+)
+def test_every_task_with_both_gains(
+    task: str, further: dict[str, Any], control: str, observer: str, words: list[str]
+) -> None:
+    found = page(getattr(symobs, task)(plant(), control_poles=control, observer_poles=observer, **further))
+    assert found.count("A caution.") - found.count("Without the plant") == len(words)
+    assert all(said in found for said in words)
+
+
+@pytest.mark.parametrize("observer", ["full", "minimal"])
+@pytest.mark.parametrize("control", ["-9, -5", "-2, -1"])
+def test_a_law_that_is_unstable_by_itself_is_told(observer: str, control: str) -> None:
+    """The eigenvalues are numpy's."""
+    poles = "-50, -60" if observer == "full" else "-50"
+    falling = symobs.StateSpace(*FALLING)
+    asked: dict[str, Any] = {"control_poles": control, "observer_poles": poles, "observer": observer}
+    own = np.array(symobs.compensator(falling, **asked).compensator_matrix.tolist(), dtype=float)
+    is_stable = max(np.linalg.eigvals(own).real) < 0
+    for task, further in (("feedforward", {}), ("tracking", {"reference_matrix": REFERENCE})):
+        found = page(getattr(symobs, task)(falling, **asked, **further))
+        assert ("Without the plant this law is unstable" in found) != is_stable
+
+
+def test_there_are_laws_of_both_kinds() -> None:
+    stable = symobs.compensator(plant(), control_poles="-2, -2", observer_poles="-10, -10").F_stable
+    unstable = symobs.compensator(
+        symobs.StateSpace(*FALLING), control_poles="-9, -5", observer_poles="-50, -60"
+    ).F_stable
+    assert (stable, unstable) == ("yes", "no")
+
+
+def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
+    assert "A caution." not in page(symobs.observer(plant(), poles="-p, -q"))
