@@ -108,7 +108,7 @@ class UsageError(SymobsError):
 
 
 class OutOfBudget(SymobsError):
-    """The time or the memory that was allowed ran out; `facts["reached"]` is what was reached by then, if anything."""
+    """The time or the memory that was allowed ran out; `facts["left"]` is what there was by then, or None."""
 
     exit_code = 5
 

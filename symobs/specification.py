@@ -172,7 +172,7 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         raise InputError(
-            message, where=where, repair=f"give as many as the order asks for, {degree}, with commas between them"
+            message, where=where, repair=f"give as many poles as the order asks for, {degree}, with commas between"
         )
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]

@@ -25,7 +25,7 @@ from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import Change, answer_changes, changes, lines_of
 from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
-from tests.plain_fractions import World, determinant, identity, inverse, plus, times
+from tests.plain_fractions import Algebraic, World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
 from tests.truth import still_true
 
@@ -88,10 +88,27 @@ def try_answers(part: Result, where: str, count: Count, most: int = OF_AN_ANSWER
 def holds(part: Result, answer: Mapping[str, Any]) -> bool:
     """Tell in plain fractions whether an answer is right at random points."""
     worlds = [World(seed, part.plant.variable, part.plant.symbols.signs) for seed in range(3)]
+    conditions = getattr(getattr(part, "piece", None), "conditions", ())
+    equations = part.plant.equations or [c.expression for c in conditions if c.operator == "=="]
+    for world in worlds:
+        _move_to_stratum(world, equations)
     try:
         return all(_holds_at(part, answer, world) for world in worlds)
     except (ArithmeticError, LookupError, TypeError, ValueError):
         return False
+
+
+def _move_to_stratum(world: World, equations: Sequence[Scalar]) -> None:
+    """Let a parameter be a root of the equation that holds, a rational one or that of an irreducible factor."""
+    if len(equations) != 1:
+        return
+    name, *others = sorted(equations[0].names)
+    moved = equations[0].substitute({other: Scalar.of(world.number(other)) for other in others})
+    factors = [factor for factor, _ in moved.numerator.factors()[1] if name in factor.names]
+    lead, *rest = min(factors, key=lambda factor: factor.degree(name)).coefficients(name)
+    monic = [*(c.fraction() / lead.fraction() for c in reversed(rest)), Fraction(1)]
+    root = -monic[0] if len(rest) == 1 else Algebraic.make([Fraction(0), Fraction(1)], monic)
+    world.meanings[name] = root
 
 
 def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
@@ -121,7 +138,24 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         return own == [K, L] and (found if isinstance(found, list) else [[found]]) == F
     if isinstance(part, TrackingDesign):
         return _is_followed(part, answer, A, B, world)
+    if part.task == "reduced_order_observer" and answer["L"] is not None:
+        return _is_reduced_order(replace(part, answer=answer), (A, B, C, D), s, world)
     return part.task in HOLDS and _holds_by_definition(part, answer, world)
+
+
+def _is_reduced_order(told: Any, plant: tuple[Rows, Rows, Rows, Rows], s: Fraction, world: World) -> bool:
+    """Tell whether P A − F P = H C, G = P B − H D, M [C; P] = I and det(sI − F) = φ(s)."""
+    A, B, C, D = plant
+    T, L, F, G, H, M = (world.value(told.fields[name]) for name in "TLFGHM")
+    P = plus(T[len(C) :], times(Fraction(-1), multiply(L, C)))
+    moved = plus(multiply(P, A), times(Fraction(-1), multiply(F, P)))
+    return (
+        bool(T[: len(C)] == C)
+        and moved == multiply(H, C)
+        and plus(multiply(P, B), times(Fraction(-1), multiply(H, D))) == G
+        and multiply(M, [*C, *P]) == identity(len(A))
+        and determinant(pencil(s, F)) == world.value(told.desired.polynomial)
+    )
 
 
 def _holds_by_definition(part: Result, answer: Mapping[str, Any], world: World) -> bool:

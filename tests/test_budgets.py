@@ -215,6 +215,24 @@ def test_hostile_problems_end_undecided(text: str, option: str, amount: str, sai
     assert {path.name for path in tmp_path.iterdir()} == {"hard.toml", "page.tex"}
 
 
+def test_json_says_undecided_of_every_task(hard: Path) -> None:
+    text = hard.read_text(encoding="utf-8").replace('task = "observer"', 'tasks = ["observability", "observer"]')
+    run = inside("solve", "-", "--format", "json", "--timeout", "20", stdin=text.encode())
+    assert run.code == 5
+    assert re.fullmatch(
+        r"standard input: undecided: 20 seconds were not enough, at work on \w+; give more .*\n", run.err
+    )
+    whole = json.loads(run.out)
+    assert (whole["schema"], whole["title"]) == ("symobs/1", "All of sixth order")
+    assert [result["task"] for result in whole["results"]] == ["observability", "observer"]
+    decided = json.loads(inside("solve", str(SERVO), "--format", "json").out)["results"][0]
+    for result in whole["results"]:
+        assert result["verdict"] == "undecided"
+        assert result["certificates"] == result["cases"] == result["conditions"] == []
+        assert result["symbols"] == dict.fromkeys(NAMES + OUTPUTS + POLES, "real")
+        assert result.keys() <= decided.keys()
+
+
 def unbounded(*arguments: str, folder: Path, **more: str) -> tuple[int, str]:
     """Exit code and messages of a run in a process of its own."""
     run = subprocess.run(

@@ -7,10 +7,11 @@ from fractions import Fraction
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import pytest
 
 from symobs import StateSpace, observer
-from symobs.derivation import pole_paths
+from symobs.derivation import pole_paths, responses
 from symobs.derivation.pictures import faults, is_faithful
 from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
@@ -338,13 +339,20 @@ DECAY = Environment(
 WIDE = ((Fraction(0), Fraction(2)), (Fraction(-1), Fraction(3)))
 
 
-def course(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> Course:
-    points = tuple(at(t, value) for t, value in enumerate(values))
-    return Course(signal, component, tuple(map(Fraction, row)), points)
+#: In what parts of one heights are counted.
+PARTS = 600_000
+
+
+def course(*values: Any, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> Course:
+    heights = [Fraction(value) * PARTS for value in values]
+    assert all(height.denominator == 1 for height in heights)
+    return Course(signal, component, tuple(map(Fraction, row)), tuple(map(int, heights)))
 
 
 def courses(*drawn: Course, subject: str = "A", start: tuple[int, ...] = (1,), **more: Any) -> list[str]:
-    response = TimeResponse(("x",), (tuple(map(Fraction, start)),), drawn, more.get("window", WIDE))
+    response = TimeResponse(
+        ("x",), (tuple(map(Fraction, start)),), drawn, more.get("window", WIDE), more.get("parts", PARTS)
+    )
     return list(faults_of_response(response, Letter(subject), DECAY))
 
 
@@ -357,37 +365,114 @@ def test_a_course_that_stays_is_drawn_so() -> None:
     assert courses(course(1, 1, 1), subject="F") == ["an equation of x with this matrix"]
     assert courses(course(1, 1, 1, row=(2,))) == ["an equation of x with this matrix"]
     for window in (
-        ((Fraction(0), Fraction(3)), WIDE[1]),
         ((Fraction(1), Fraction(2)), WIDE[1]),
+        ((Fraction(0), Fraction(0)), WIDE[1]),
+        ((Fraction(0), Fraction(-2)), WIDE[1]),
         (WIDE[0], (Fraction(3), Fraction(3))),
         (WIDE[0], (Fraction(3), Fraction(-1))),
     ):
         assert courses(course(1, 1, 1), window=window) == ["a window that begins at 0 and that courses fill"]
     assert courses() == courses(course(1)) == ["a window that begins at 0 and that courses fill"]
-    late = replace(course(1, 1, 1), points=(at(1, 1), at(2, 1)))
-    assert courses(late) == ["a window that begins at 0 and that courses fill"]
-    uneven = replace(course(1, 1, 1), points=(at(0, 1), at("1/2", 1), at(2, 1)))
-    assert courses(uneven) == ["instants at equal distances"]
+    for parts in (0, -PARTS):
+        assert courses(course(1, 1, 1), parts=parts) == ["a window that begins at 0 and that courses fill"]
+    twice = course(2, 2, signal="y", row=(2,))
+    assert courses(course(1, 1, 1), twice) == ["a window that begins at 0 and that courses fill"]
+    assert courses(course(1, 1, 1), parts=PARTS // 2) == ["the course of x"]
     assert courses(course(1, 1, 1), start=(1, 1)) == ["a start of x"]
     assert courses(course(1, 1, 1), start=()) == ["a start of x"]
     assert courses(course(3, 3, 3), start=(3,)) == []
     assert courses(course(4, 4, 4), start=(4,)) == ["x, which leaves the window,"]
     assert courses(course(-2, -2, -2), start=(-2,)) == ["x, which leaves the window,"]
-    other = replace(course(1, 1, 1, signal="y", row=(2,)), points=(at(0, 2), at(2, 2)))
-    assert courses(course(1, 1, 1), other) == ["y at other instants"]
     with pytest.raises(ValueError, match="not all components of x"):
         courses(course(1, 1, 1, component=1))
 
 
+def test_a_course_may_be_drawn_as_roughly_as_cannot_be_seen() -> None:
+    """A 500th of the height at the points, a 100th between them."""
+    for off, is_near in (("0.008", True), ("-0.00799", True), ("0.00801", False), ("-0.00801", False)):
+        for index in range(3):
+            values = [1 + Fraction(off) * (t == index) for t in range(3)]
+            assert (courses(course(*values)) == []) == is_near
+    high = (WIDE[0], (Fraction(-250), Fraction(250)))
+    assert courses(course(1, 1, 2), window=high) == []
+    for bend, is_near in ((8, True), (-8, True), (Fraction("8.05"), False), (-Fraction("8.05"), False)):
+        places = [(bend * Fraction(t * t) / 2, Fraction(bend * t), Fraction(bend)) for t in range(3)]
+        rows = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+        drawn = [course(*(p[j] for p in places), component=j + 1, row=rows[j]) for j in range(3)]
+        window = (WIDE[0], (Fraction(-50), Fraction(50)))
+        for order in ((0, 1, 2), (2, 0, 1)):
+            response = TimeResponse(("x",), (places[0],), tuple(drawn[j] for j in order), window, PARTS)
+            assert (list(faults_of_response(response, Letter("A"), PARABOLA)) == []) == is_near
+            with pytest.raises(ValueError, match="not all components of x"):
+                list(faults_of_response(replace(response, courses=tuple(drawn[:2])), Letter("A"), PARABOLA))
+
+
+def test_every_segment_of_a_course_is_looked_at() -> None:
+    """Of 7 t³/6 the second segment lies 21/16 off its middle, where 1 is allowed, and the first 7/16."""
+    table = Matrix.of([[int(j == i + 1) for j in range(4)] for i in range(4)])
+    known = replace(DECAY, values={"A": table}, sizes={"x": 4})
+    values = [[Fraction(7 * t**3, 6), Fraction(7 * t * t, 2), Fraction(7 * t), Fraction(7)] for t in range(3)]
+    for height, expected in ((100, ["the course of x"]), (132, [])):
+        rows = [tuple(int(i == j) for i in range(4)) for j in range(4)]
+        drawn = tuple(course(*(v[j] for v in values), component=j + 1, row=rows[j]) for j in range(4))
+        window = (WIDE[0], (Fraction(-height, 2), Fraction(height, 2)))
+        response = TimeResponse(("x",), (tuple(values[0]),), drawn, window, PARTS)
+        assert list(faults_of_response(response, Letter("A"), known)) == expected
+
+
+PARABOLA = replace(DECAY, values={"A": Matrix.of([[0, 1, 0], [0, 0, 1], [0, 0, 0]])}, sizes={"x": 3})
+
+
+def test_no_point_of_a_course_leaves_the_window() -> None:
+    known = replace(DECAY, values={"A": Matrix.of([[0, 1], [0, 0]])}, sizes={"x": 2})
+    ramp = (course(0, 1, 2, component=1, row=(1, 0)), course(1, 1, 1, component=2, row=(0, 1)))
+    for low, high, expected in (
+        (0, 2, []),
+        ("1/2", 2, ["x, which leaves the window,"]),
+        (0, "3/2", ["x, which leaves the window,"]),
+    ):
+        window = (WIDE[0], (Fraction(low), Fraction(high)))
+        response = TimeResponse(("x",), ((Fraction(0), Fraction(1)),), ramp, window, PARTS)
+        assert list(faults_of_response(response, Letter("A"), known)) == expected
+
+
+def test_two_points_are_a_course() -> None:
+    assert courses(course(1, 1), window=((Fraction(0), Fraction(1)), WIDE[1])) == []
+
+
+def test_every_signal_is_held_to_the_page() -> None:
+    third = ["an equation of x with this matrix"]
+    assert courses(course(1, 1, 1), course(3, 3, 3, signal="y", row=(3,))) == third
+    assert courses(course(2, 2, 2, signal="y", row=(2,)), course(1, 1, 1, row=(3,))) == third
+    half = replace(course(1, 1, 1, signal="w"), row=(Fraction(1, 2),))
+    known = replace(DECAY, signals={**DECAY.signals, "w": Product((Literal(Scalar.rational(1, 2)), Letter("x")))})
+    response = TimeResponse(("x",), ((Fraction(2),),), (half,), WIDE, PARTS)
+    assert list(faults_of_response(response, Letter("A"), known)) == []
+    response = replace(response, starts=((Fraction(1),),))
+    assert list(faults_of_response(response, Letter("A"), known)) == ["the course of w"]
+    with pytest.raises(ValueError, match="not all components of A"):
+        courses(course(1, 1, 1, signal="A"))
+
+
+def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
+    """e^{200 t} up to t = 2, which takes 578 bits, beside a constant."""
+    table = Matrix.of([[0, 0], [0, 200]])
+    found = responses._stepped(table, (Fraction(1), Fraction(1)), Fraction(1, 10), 21)
+    with mpmath.workprec(1000):
+        for k, (constant, growing) in enumerate(found):
+            assert abs(constant - 2**64) <= 1
+            assert abs(growing - mpmath.exp(20 * k) * 2**64) <= 2
+
+
 def test_courses_are_of_continuous_time() -> None:
-    response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE)
+    response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE, PARTS)
     assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["continuous time"]
     assert list(faults(response, Letter("A"), DECAY, discrete=False)) == []
 
 
 def test_a_course_too_long_to_compute_is_refused() -> None:
     fast = replace(DECAY, values={"A": Matrix.of([[-(10**5)]])})
-    response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 0, 0),), WIDE)
+    response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 0, 0),), WIDE, PARTS)
     with pytest.raises(ValueError, match="too much to compute"):
         list(faults_of_response(response, Letter("A"), fast))
 

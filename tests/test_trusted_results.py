@@ -252,6 +252,8 @@ def test_a_document_is_told_in_its_convention() -> None:
     assert len(found.to("latex", detail="answer")) < len(found.to("latex"))
     with pytest.raises(FrozenInstanceError):
         document.title = "other"  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        Document("", "", (found,), STANDARD, "", "full")  # type: ignore[call-arg]
 
 
 # -- registries ---------------------------------------------------------------------------------------------------------

@@ -454,6 +454,9 @@ def test_equations_of_cases_within_cases_hold_together() -> None:
     different = (Given((said(b, "!=", 0),)), equal(said(b, "!=", 0)))
     checked(case(said(c, 1), case(said(c, 1), *different, c=1)), start=ON)
     checked(case(Together((said(c, 1),)), *different, c=1), start=ON)
+    assumed = Given((said(b * c, "!=", 1),))
+    for where in (case(said(b, 2), *different[1:]), case(Together((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
+        refused(assumed, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
 
 
 def test_both_sides_of_a_case_are_read() -> None:

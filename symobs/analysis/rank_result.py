@@ -134,9 +134,8 @@ class RankResult(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield structure, rank from below, kernel and rank from above, invariance."""
         e = here = rank_environment(self.plant, self.pair(self.plant), self.answer)
-        if self.piece is None:
-            yield from minor_claim(self.answer, e)
-        else:
+        yield from minor_claim(self.answer, e)
+        if self.piece is not None:
             here = replace(e, relations=self.piece.relations(c.expression for c in self.domain))
             yield from self._at_every_point(self.piece, here)
         yield from rank_claims(self.answer, e, here)

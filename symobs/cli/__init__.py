@@ -198,9 +198,9 @@ def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float |
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
     else:
-        from symobs.cli.budget import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+        from symobs.cli.work import bounded  # noqa: PLC0415 - it is there already, with the work
 
-        outcome = within(Budget(timeout, memory), work, where)
+        outcome = bounded(work, timeout, memory, where)
     write_all(outcome.outputs)
     for line in outcome.messages:
         _say(line)
@@ -219,7 +219,8 @@ def _progress(found: Any, tell: Tell) -> Tell:
         return tell
 
     def shown(reached: object) -> None:
-        _say(f"{reached} …")
+        if isinstance(reached, str):
+            _say(f"{reached} …")
         tell(reached)
 
     return shown

@@ -50,7 +50,8 @@ class _TimeOver(BaseException):
 def within(budget: Budget, work: Callable[[Tell], Value], where: str = "") -> Value:
     """Return what `work` returns, or raise what it raises; raises `OutOfBudget` where it takes more than it may.
 
-    `work` is given a function that takes what has been reached; the last of it is in `OutOfBudget.facts["reached"]`.
+    `work` is given a function that takes how far it has come: a text says what it is at work on, anything else is what
+    would be left of it now, and stands in `OutOfBudget.facts["left"]`.
     """
     _require_child_processes(budget)
     for stream in (sys.stdout, sys.stderr):
@@ -251,7 +252,7 @@ def _end(child: int) -> None:
 
 def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
     """Return the child's value, or raise what ended it."""
-    reached = None
+    left, at_work = None, ""
     records = io.BytesIO(said)
     while True:
         try:
@@ -262,16 +263,18 @@ def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
             return content
         if kind == "error":
             raise content
-        reached = content
-    at_work = f", at work on {reached}" if isinstance(reached, str) else ""
+        if isinstance(content, str):
+            at_work = f", at work on {content}"
+        else:
+            left = content
     if status is None or status == _NO_TIME:
         message = f"undecided: {budget.seconds:g} seconds were not enough{at_work}"
-        raise OutOfBudget(message, where=where, repair=f"give more with --timeout, {_LESS}", reached=reached)
+        raise OutOfBudget(message, where=where, repair=f"give more with --timeout, {_LESS}", left=left)
     if status in {_NO_MEMORY, -signal.SIGKILL} or (_memory_is_bounded(budget) and _crashed(status)):
         amount = f"{budget.megabytes:g} MB of memory were" if budget.megabytes else "the memory there is was"
         more = "give more with --memory, " if budget.megabytes else ""
         message = f"undecided: {amount} not enough{at_work}"
-        raise OutOfBudget(message, where=where, repair=f"{more}{_LESS}", reached=reached)
+        raise OutOfBudget(message, where=where, repair=f"{more}{_LESS}", left=left)
     if status == _INTERRUPTED:
         raise KeyboardInterrupt
     name = signal.Signals(-status).name if status < 0 else f"exit code {status}"

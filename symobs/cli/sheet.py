@@ -169,8 +169,8 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
         budget = Budget(wanted.timeout, wanted.memory)
         return within(budget, lambda tell: _entry(number, file, text, wanted, tell))
     except OutOfBudget as error:
-        reached: Any = error.facts["reached"] or _empty(number, file)
-        return replace(reached, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
+        left: Any = error.facts["left"] or _empty(number, file)
+        return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
 
 
 def _empty(number: int, file: str) -> Entry:

@@ -6,14 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import UsageError
+from symobs.errors import OutOfBudget, UsageError
 from symobs.output import check_target
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    #: Takes how far the work has come: the name of a task, or a part of the answer.
+    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now.
     Tell = Callable[[object], None]
 
 #: Exit codes of the contract.
@@ -81,11 +81,17 @@ def solved(
     """Solve a problem and return its document, its picture, and what the contract says of them.
 
     With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
-    is put into the document.  `tell` is told which task begins.
+    is put into the document.  `tell` is told which task begins, and what is to be left behind where the work is ended.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.method import render  # noqa: PLC0415
 
+    if format_name == "json":
+        from symobs.render.json import given_up  # noqa: PLC0415 - only with --format json
+
+        names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
+        undecided = given_up(found.title, names, method, found.plant.symbols.signs, convention or found.convention)
+        tell(Outcome(((undecided, target),), (), EXIT_UNDECIDED))
     results = found.solve(tell)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if some else found.expect
@@ -106,3 +112,16 @@ def solved(
     messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
     code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0
     return Outcome(tuple(outputs), (*unmet, *messages), code)
+
+
+def bounded(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
+    """Return what the work leaves behind, or what was left of it when its budget was used up."""
+    from symobs.cli.budget import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+
+    try:
+        return within(Budget(timeout, memory), work, where)
+    except OutOfBudget as error:
+        left = error.facts["left"]
+        if not isinstance(left, Outcome):
+            raise
+        return replace(left, messages=(str(error),))

@@ -81,7 +81,7 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
             yield from _of_region(picture, equations, _Test(polynomial, variable, axes, discrete, environment.signs))
         case LinePicture():
             yield from _of_line(picture, _Test(polynomial, variable, axes, discrete, environment.signs))
-        case PoleMap():
+        case _:
             yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
 
 

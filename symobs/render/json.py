@@ -12,6 +12,8 @@ from symobs.method import Case, Result, output_format
 from symobs.viewed import Viewed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from symobs.method import Document
     from symobs.sheet import Sheet
 
@@ -28,8 +30,7 @@ class Json:
     def render(self, document: Document) -> str:
         """Return the document as indented JSON."""
         results = [result_object(result, document.convention) for result in document.results]
-        whole = {"schema": SCHEMA, "title": document.title, "results": results}
-        return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+        return _written({"schema": SCHEMA, "title": document.title, "results": results})
 
     def part(self, document: Document) -> Any:
         """Return the objects of a solution's results, or a question as text."""
@@ -49,8 +50,19 @@ class Json:
             if sheet.has_solutions:
                 problem["results"] = entry.solution
             problems.append(problem | ({"failure": entry.failure} if entry.failure else {}))
-        whole = {"schema": SCHEMA, "title": sheet.title, "problems": problems}
-        return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+        return _written({"schema": SCHEMA, "title": sheet.title, "problems": problems})
+
+
+def given_up(title: str, tasks: Sequence[str], method: str, signs: Mapping[str, str], convention: Convention) -> str:
+    """Return what is said of tasks that took more than they may: undecided, and nothing is claimed of them."""
+    empty: dict[str, list[str]] = {"conditions": [], "condition_kinds": [], "cases": [], "certificates": []}
+    names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": convention.name}}
+    results = [{"task": task, "method": method, "verdict": "undecided", **empty, **names} for task in tasks]
+    return _written({"schema": SCHEMA, "title": title, "results": results})
+
+
+def _written(whole: Mapping[str, object]) -> str:
+    return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
 
 
 def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:

@@ -171,7 +171,7 @@ def main(arguments: Sequence[str]) -> int:
         while table.designs < chosen.designs:
             for design, answers, lines in tried([next(numbers)], chosen.lines):
                 table.add(design.asked, answers, lines)
-    print(table)  # noqa: T201 - the report
+    print(table)
     return int(bool(table.survived))
 
 
