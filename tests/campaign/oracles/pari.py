@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tests.campaign.asked import Untold
-from tests.campaign.claims import CROOT, Moments, claims
+from tests.campaign.branch import CROOT, Moments
+from tests.campaign.claims import claims
 from tests.campaign.points import NotRational, Uncovered, answer_at, points_for, texts_at
 from tests.campaign.running import System, answers
 from tests.campaign.writing import Language, Sheet, Unsupported

@@ -127,9 +127,9 @@ zeropart(A, B, C, D) =
 \\ Poles and zeros as they are; unless all of them are asked for, a part of both may cancel.
 polesandzeros(A, B, C, D, q, w, all) =
 {
-  my(p = polepart(A, B, C), z = zeropart(A, B, C, D));
+  my(p = polepart(A, B, C), z = zeropart(A, B, C, D), G = D);
   if (z == 0, return(!all || zero(p - q)));
-  if (all, zero(p - q) && zero(z - w), zero(w * p - z * q))
+  if (all, zero(p - q) && zero(z - w), if (#G == 1 && #G~ == 1, zero(w * p - z * q), zero(q % p)))
 };
 \\ Zeros of the plant inside the region of stability.
 isplantzero(A, B, C, D, v) = { my(n = #A); zero(matdet(matconcat([v * matid(n) - A, B; -C, D]))) && real(v) < 0 };
