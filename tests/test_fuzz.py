@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 
 #: Of a slice, so many inputs a target.
 SLICE = {
-    "grammar": 1500,
-    "problem_toml": 500,
-    "problem_json": 500,
-    "command_line": 60,
-    "printing": 250,
-    "audit": 500,
-    "convention": 500,
+    "grammar": 1000,
+    "problem_toml": 300,
+    "problem_json": 300,
+    "command_line": 40,
+    "printing": 120,
+    "audit": 400,
+    "convention": 300,
 }
 #: The slice runs apart from the tests: the hook that watches it stays for the life of its process.
 _RUN = """
