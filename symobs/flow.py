@@ -271,6 +271,21 @@ _FIGURES = {
         signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
         optional=("G",),
     ),
+    "minimal_order_feedthrough": lambda: _figure(
+        """
+        y  .  b  .  .  e   .  .  .
+        .  .  .  H  .  .   .  .  .
+        .  .  .  .  .  D   .  .  .
+        u  c  .  G  j  ∫z  a  M  x
+        .  .  .  .  .  F   .  .  .
+        """,
+        "y > b > e -| M",
+        "u > c > G > j > ∫z > a > M > x",
+        "c |- D > e",
+        "b |- H -| j",
+        "a |- F -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+    ),
 }
 
 
