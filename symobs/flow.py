@@ -273,15 +273,14 @@ _FIGURES = {
     ),
     "minimal_order_feedthrough": lambda: _figure(
         """
-        y  .  b  .  .  e   .  .  .
-        .  .  .  H  .  .   .  .  .
-        .  .  .  .  .  D   .  .  .
+        y  e  b  .  .  .   .  .  .
+        .  D  .  H  .  .   .  .  .
         u  c  .  G  j  ∫z  a  M  x
         .  .  .  .  .  F   .  .  .
         """,
-        "y > b > e -| M",
+        "y > e > b -| M",
         "u > c > G > j > ∫z > a > M > x",
-        "c |- D > e",
+        "c > D > e",
         "b |- H -| j",
         "a |- F -| j",
         signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},

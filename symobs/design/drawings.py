@@ -89,6 +89,7 @@ def draw_minimal_order(page: Page) -> None:
     figure = "minimal_order_observer"
     if page.plant.matrices.has_feedthrough:
         figure, gains["D"] = "minimal_order_feedthrough", -page["D"]
+        gains["G"] = page["G_z"] + page["H_z"] @ page["D"]  # H is fed what is measured of the state
     page.diagram(figure, say="drawn_minimal_order", z=_state(page), **gains)
 
 

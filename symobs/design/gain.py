@@ -115,9 +115,22 @@ class GainDesign(Result):
         """
         pair = cls.pair(plant)
         require_one(pair.c.shape[0], "output" if cls.letter == "L" else "input", method_name)
-        if not pair.is_observable:
+        return cls.by_method(plant, desired, method_name, column)
+
+    @classmethod
+    def by_method(
+        cls,
+        plant: StateSpace,
+        desired: DesiredPolynomial,
+        method_name: str,
+        gain: Callable[[Pair, DesiredPolynomial], Matrix | None],
+    ) -> Self:
+        """Return the design whose gain a method finds where all is seen; the common way where it is not, or finds none."""
+        pair = cls.pair(plant)
+        found = gain(pair, desired) if pair.is_observable else None
+        if found is None:
             return cls.of(plant, desired, method_name)
-        answer = {cls.letter: cls.oriented(column(pair, desired)), "polynomial": desired.polynomial}
+        answer = {cls.letter: cls.oriented(found), "polynomial": desired.polynomial}
         return cls(plant, method_name, answer, desired)
 
     @classmethod
