@@ -8,20 +8,19 @@ lies in their ideal.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar, TooLarge, modulo
 from symobs.exact.functions import identities
-from symobs.exact.real import RealNumber, roots_of_scalar
-from symobs.exact.triangular import triangular
+from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.design.assignment import Pair
+    from symobs.exact.real import RealNumber
     from symobs.specification import DesiredPolynomial
 
 #: The values that a free unknown is given in turn, and the terms of equations that may be looked at in all.
@@ -65,6 +64,8 @@ def obstacles(equations: Sequence[Scalar]) -> tuple[Scalar, ...]:
 
     They are what eliminating all unknowns leaves; nothing is returned where that is too much work.
     """
+    from symobs.exact.triangular import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
+
     unknowns = _unknowns_in(equations)
     try:
         found = triangular(equations, unknowns)
@@ -84,6 +85,8 @@ class RootGain:
     @property
     def bounds(self) -> tuple[Scalar, Scalar]:
         """Short decimals on either side of the root, between which the polynomial changes its sign once."""
+        from symobs.exact.real import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
+
         digits, (name,) = 1, self.polynomial.names
         while True:
             unit, (low, high) = 10**digits, self.root.interval()
@@ -116,6 +119,8 @@ def with_zeros(pair: Pair, desired: DesiredPolynomial, zero: Sequence[tuple[int,
 
 def _in_root(gain: Matrix, factor: Scalar, name: str) -> Matrix | RootGain:
     """Return a gain in a root of a polynomial: with its closed form where it has one."""
+    from symobs.exact.real import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
+
     field = Extension(factor, name)
     reduced = Matrix.of([[field.reduce(entry) for entry in row] for row in gain.rows], gain.shape[1])
     root = roots_of_scalar(factor, name)[0]
@@ -161,6 +166,8 @@ class Search:
                 return self._by_roots(open_, equation, next(iter(names)))
         involved = sorted(self.unknowns.intersection(name for e in open_ for name in e.names))
         if not eliminated and len(involved) <= len(open_):
+            from symobs.exact.triangular import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
+
             with suppress(TooLarge):
                 return self.solve(triangular(open_, involved), eliminated=True)
         name = min(involved, key=lambda n: (-max(e.degree(n) for e in open_), -sum(n in e.names for e in open_), n))
@@ -201,6 +208,8 @@ class Search:
 
     def _allows(self, factor: Scalar, name: str, equations: Sequence[Scalar]) -> bool:
         """Whether a factor has a real root, and all equations hold for its roots."""
+        from symobs.exact.real import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
+
         field = Extension(factor, name)
         return all(e.names == {name} and field.reduce(e).is_zero for e in equations) and bool(
             roots_of_scalar(factor, name)
