@@ -271,6 +271,20 @@ _FIGURES = {
         signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
         optional=("G",),
     ),
+    "minimal_order_feedthrough": lambda: _figure(
+        """
+        y  e  b  .  .  .   .  .  .
+        .  D  .  H  .  .   .  .  .
+        u  c  .  G  j  ∫z  a  M  x
+        .  .  .  .  .  F   .  .  .
+        """,
+        "y > e > b -| M",
+        "u > c > G > j > ∫z > a > M > x",
+        "c > D > e",
+        "b |- H -| j",
+        "a |- F -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+    ),
 }
 
 

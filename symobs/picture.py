@@ -104,9 +104,9 @@ class Course:
 
 @dataclass(frozen=True)
 class TimeResponse:
-    """Signals over continuous time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
+    """Signals over time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
 
-    Heights of courses are counted in `parts` of one.
+    Heights of courses are counted in `parts` of one.  In `discrete` time they stand at 0, 1, 2, … and are exact.
     """
 
     states: tuple[str, ...]
@@ -115,6 +115,7 @@ class TimeResponse:
     window: tuple[Interval, Interval]
     parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
+    discrete: bool = False
 
     def points(self, course: Course) -> list[Place]:
         """Return the places in the plane of one of the courses."""

@@ -260,6 +260,7 @@ PAGES: dict[str, Callable[[], Result]] = {
         servo(), control_poles=[-2, -2], observer_poles=[-10], observer="minimal", reference_matrix="[0 1; -4 0]"
     ),
     "minimal-order observer": lambda: symobs.reduced_order_observer(servo(), poles=[-10]),
+    "minimal-order observer with feedthrough": lambda: symobs.reduced_order_observer(servo("[2]"), poles=[-10]),
     "discrete minimal-order observer": lambda: symobs.reduced_order_observer(servo(dt=True), poles=["1/2"]),
 }
 every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())

@@ -269,11 +269,6 @@ def test_zeros_of_a_feedback_decouple_two_chains() -> None:
     assert symobs.state_feedback(CHAINS, poles=[-2, -2, -2], zero="[0 * *; 0 * *]").verdict == "no"
 
 
-def test_irrational_entries_are_undecided() -> None:
-    found = symobs.observer(TRIPLE, poles=[-1, -1, -1], zero="[* 0; * 0; 0 *]")
-    assert (found.verdict, found.L) == ("undecided", None)
-
-
 @pytest.mark.parametrize("zero", ["(0, 1)", "(4, 1)", "[* 0; 0 *]", "[* 0; * x; * *]", "1, 2, 3", "L12", []])
 def test_what_is_no_entry_is_refused(zero: Any) -> None:
     with pytest.raises(InputError) as caught:

@@ -281,3 +281,18 @@ def test_a_plant_of_negative_gain_keeps_its_sign_in_the_box() -> None:
     plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[-2 0]")
     page = str(symobs.compensator(plant, control_poles=[-2, -3], observer_poles=[-10, -11]).to("text"))
     assert "│ -2/(s(s + 1)) │" in page
+
+
+@pytest.mark.parametrize(
+    ("A", "B", "C"),
+    [("[0 1; 0 -a]", "[0; b]", "[1 0]"), ("[0 1; 0 -1/a]", "[0; 1/a]", "[1 0]"), ("[0 1; 0 -a]", "[0; 1]", "[c 1/b]")],
+)
+def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: str, C: str) -> None:
+    """Its factored form is PF/(1 + PF), and no factor of it has a denominator."""
+    plant = symobs.StateSpace(A, B, C)
+    found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=[-3, -4])
+    form = found.unity_loop
+    s = sympy.Symbol("s")
+    P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
+    assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
+    assert all(factor.denominator.is_constant for factor, _ in form.factors)

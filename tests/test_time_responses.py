@@ -46,6 +46,14 @@ PAGES: dict[str, Callable[[], Result]] = {
         StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]"), poles=[-5, -6]
     ),
 }
+SAMPLED = StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True)
+PAGES |= {
+    "deadbeat": lambda: symobs.observer(SAMPLED, poles=[0, 0]),
+    "sampled": lambda: symobs.reduced_order_observer(SAMPLED, poles=["-1/2"]),
+    "sampled compensator": lambda: symobs.compensator(
+        SAMPLED, control_poles="1/2 + i/4, 1/2 - i/4", observer_poles="1/4, 0"
+    ),
+}
 every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
 
 
@@ -80,6 +88,29 @@ def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Resu
     assert list(untrue_courses(picture, [[entry.fraction() for entry in row] for row in value.rows])) == []
 
 
+def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
+    """A - LC = [-1 1; -1 1]: e(0) = (1, 1) is in its kernel, and the square is 0."""
+    ((_, picture),) = plots(PAGES["deadbeat"]())
+    assert picture.discrete
+    assert [[y for _, y in picture.points(course)] for course in picture.courses] == [[1, 0, 0, 0, 0, 0]] * 2
+    assert "instants 0, 1, 2" in " ".join(str(PAGES["deadbeat"]().to("text")).split())
+
+
+def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
+    derivation = PAGES["sampled"]().derivation
+    ((step, picture),) = plots(PAGES["sampled"]())
+    (step,) = [other for other in within(derivation.steps) if other == step]
+    (course,) = picture.courses
+    finer = picture.parts * 10**30
+    exact = [height * 10**30 for height in course.heights]
+    exact[2] += 1
+    near = replace(course, heights=tuple(exact))
+    with pytest.raises(DerivationRejected):
+        replaced(derivation, step, replace(step, picture=replace(picture, courses=(near,), parts=finer))).check()
+    with pytest.raises(DerivationRejected):
+        replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
+
+
 def test_estimate_and_state_meet() -> None:
     for name in ("compensator", "minimal-order compensator"):
         ((_, picture),) = plots(PAGES[name]())
@@ -98,7 +129,9 @@ def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
     parametric = StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
     assert plots(symobs.observer(parametric, poles=[-1, -2])) == []
     assert plots(symobs.observer(SERVO, poles=["-p", "-q"])) == []
-    assert plots(symobs.observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", dt=True), poles=[0, 0])) == []
+    assert plots(symobs.observer(SAMPLED, poles="9/10, 1/2")) == []  # it takes too long
+    assert plots(symobs.observer(SAMPLED, poles="1, 1/2")) == []
+    assert plots(symobs.observer(SAMPLED, poles="p, q")) == []
     assert plots(symobs.observer(SERVO, poles=[-1, -16])) == []  # the fast mode would be a vertical line
     assert plots(symobs.observer(SERVO, poles=[-1, -15])) != []
     assert plots(symobs.observer(SERVO, poles=[0, -1])) == []  # nothing converges
@@ -129,7 +162,7 @@ def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
     height = top - bottom
     middle = len(course.heights) // 2
     for moved in (height / 100, -height / 100):
-        wrong = course.heights[middle] + int(moved * picture.parts)
+        wrong = course.heights[middle] + (int(moved * picture.parts) or 1)
         heights = (*course.heights[:middle], wrong, *course.heights[middle + 1 :])
         yield replace(picture, courses=(replace(course, heights=heights), *others))
     for fewer in (course.heights[:-1], course.heights[1:], course.heights[:: len(course.heights) - 1], ()):
@@ -218,6 +251,8 @@ def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -
         assert f" {in_text}{comma}{index}" in sketched
         below = f"_{{2,{course.component}}}" if comma else f"_{course.component}" if index else ""
         assert f"${in_latex.removesuffix('_2' if comma else '')}{below}$" in drawn
-    dashes = any(course.dashed for course in picture.courses)
+    dashes = any(course.dashed for course in picture.courses) and not picture.discrete
+    if picture.discrete:
+        assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.courses)
     assert ("stroke-dasharray" in written) == dashes
     assert ("dash" in drawn) == dashes

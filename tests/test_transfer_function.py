@@ -23,9 +23,9 @@ def test_a_cancellation_is_a_case() -> None:
     assert {sympy.factor(condition.lhs) for condition in found.conditions} == {c, c + 1, c + 2, c**2 - 2}
     cases = {case.when[0].lhs: case.result for case in found.cases}
     assert {(where, cases[where].poles) for where in (c, c + 1, c + 2)} == {(c, (1,)), (c + 1, (0,)), (c + 2, (1,))}
-    assert set(cases[c**2 - 2].poles) == {0, 1}  # the zero has gone to infinity, both poles stay
-    assert cases[c**2 - 2].zeros == ()
-    assert "From here on we assume" in " ".join(found.to("text").split())
+    there = cases[c**2 - 2]  # over a field with a root of 2: the zero has gone to infinity
+    assert (set(there.poles), there.zeros) == ({0, 1}, ())
+    assert "poles and zeros provided that" in " ".join(found.to("text").split())
 
 
 @pytest.mark.parametrize("value", [Fraction(p, q) for p in range(-4, 5) for q in (1, 2)], ids=str)

@@ -63,10 +63,10 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
     if isinstance(picture, TimeResponse):
         from symobs.derivation.responses import faults_of_response  # noqa: PLC0415 - only pages with one pay for it
 
-        if not discrete:
+        if picture.discrete == discrete:
             yield from faults_of_response(picture, subject, environment)
         else:
-            yield "continuous time"
+            yield "another time"
         return
     numbers = dict(picture.drawn_for)
     for name, value in numbers.items():

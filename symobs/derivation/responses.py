@@ -1,7 +1,8 @@
 """Whether courses over time are those of the equations of the page (trusted).
 
 The values are found anew, by steps: e^{Mh} from its power series in rational numbers, with a bound for the rest, and
-then one product a step, in fixed point with as many bits as rounding can eat up.
+then one product a step, in fixed point with as many bits as rounding can eat up.  In discrete time they are powers of M
+times the start, and must be met exactly.
 """
 
 from __future__ import annotations
@@ -49,11 +50,33 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
         yield f"a start of {', '.join(picture.states)}"
         return
     matrix = evaluate(subject, environment, Exact(environment))
-    values = _stepped(
-        matrix, tuple(part for start in picture.starts for part in start), end / (2 * steps), 2 * steps + 1
-    )
+    beginning = tuple(part for start in picture.starts for part in start)
+    if picture.discrete:
+        yield from _faults_of_samples(picture, matrix, beginning)
+        return
+    values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
     for course in picture.courses:
         yield from _faults_of_course(course, picture.parts, values, (bottom, top))
+
+
+def _faults_of_samples(picture: TimeResponse, matrix: Matrix, state: tuple[Fraction, ...]) -> Iterator[str]:
+    """Yield where a course of discrete time is not what it is said to be: exactly row · Mᵏ · start."""
+    count = len(picture.courses[0].heights)
+    if picture.window[0][1] != count - 1:
+        yield "instants other than 0, 1, 2, ..."
+        return
+    table = [[entry.fraction() for entry in row] for row in matrix.rows]
+    heights: list[list[Fraction]] = [[] for _ in picture.courses]
+    for _ in range(count):
+        for found, course in zip(heights, picture.courses, strict=True):
+            found.append(sum(map(mul, course.row, state), Fraction(0)))
+        state = tuple(sum(map(mul, row, state), Fraction(0)) for row in table)
+    bottom, top = picture.window[1]
+    for found, course in zip(heights, picture.courses, strict=True):
+        if [height * picture.parts for height in found] != list(course.heights):
+            yield f"the course of {course.signal}"
+        if min(found) < bottom or max(found) > top:
+            yield f"{course.signal}, which leaves the window,"
 
 
 def _signals(picture: TimeResponse, state: Block, environment: Environment) -> Iterator[tuple[Formula, Formula]]:

@@ -82,13 +82,15 @@ def draw_tracking(page: Page, *, minimal: bool) -> None:
 
 
 def draw_minimal_order(page: Page) -> None:
-    """The observer of what is not measured, and the estimate put together; without feedthrough."""
-    if page.plant.matrices.has_feedthrough:
-        return
+    """The observer of what is not measured, and the estimate put together; a feedthrough is taken off the output."""
     gains: dict[str, Member] = {name[0]: page[name] for name in ("F_z", "H_z", "M_z")}
     if page.plant.matrices.has_input:
         gains["G"] = page["G_z"]
-    page.diagram("minimal_order_observer", say="drawn_minimal_order", z=_state(page), **gains)
+    figure = "minimal_order_observer"
+    if page.plant.matrices.has_feedthrough:
+        figure, gains["D"] = "minimal_order_feedthrough", -page["D"]
+        gains["G"] = page["G_z"] + page["H_z"] @ page["D"]  # H is fed what is measured of the state
+    page.diagram(figure, say="drawn_minimal_order", z=_state(page), **gains)
 
 
 def _driven(page: Page) -> Term:

@@ -9,15 +9,17 @@ from dataclasses import field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
-from symobs.analysis.strata import carried, strata
+from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.family import Family
 from symobs.design.several import SeveralOutputs
 from symobs.design.slices import member, member_claims
-from symobs.design.zeros import contradict, equations_for, unknown_gain, with_zeros
+from symobs.design.zero_claims import excluded_claims, in_root_claims, in_root_report
+from symobs.design.zeros import RootGain, contradict, equations_for, obstacles, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, independent_rows, roots_of
+from symobs.exact.functions import all_roots, identities
 from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
@@ -49,6 +51,8 @@ class GainDesign(Result):
     zero: Places = ()
     #: Which member of the family is asked for: `decoupled`, `smallest`, or none in particular.
     wish: str = ""
+    #: A gain with zeros as asked for whose entries no square roots write: it stands beside the answer None.
+    in_root: RootGain | None = None
 
     letter: ClassVar[str]
     rank_test: ClassVar[type[RankResult]]
@@ -86,10 +90,11 @@ class GainDesign(Result):
     ) -> Self:
         """Return the design that assigns φ, with zeros or the member of the family asked for, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
-        gain = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
-        gain = member(pair, desired, wish) if wish else gain
+        found = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
+        found = member(pair, desired, wish) if wish else found
+        gain, in_root = (None, found) if isinstance(found, RootGain) else (found, None)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired, pair, zero, wish)
+        return cls(plant, method_name, answer, desired, pair, zero, wish, in_root)
 
     @classmethod
     def places(cls, zero: Places) -> Places:
@@ -110,9 +115,22 @@ class GainDesign(Result):
         """
         pair = cls.pair(plant)
         require_one(pair.c.shape[0], "output" if cls.letter == "L" else "input", method_name)
-        if not pair.is_observable:
+        return cls.by_method(plant, desired, method_name, column)
+
+    @classmethod
+    def by_method(
+        cls,
+        plant: StateSpace,
+        desired: DesiredPolynomial,
+        method_name: str,
+        gain: Callable[[Pair, DesiredPolynomial], Matrix | None],
+    ) -> Self:
+        """Return the design whose gain a method finds where all is seen; the common way where it is not, or finds none."""
+        pair = cls.pair(plant)
+        found = gain(pair, desired) if pair.is_observable else None
+        if found is None:
             return cls.of(plant, desired, method_name)
-        answer = {cls.letter: cls.oriented(column(pair, desired)), "polynomial": desired.polynomial}
+        answer = {cls.letter: cls.oriented(found), "polynomial": desired.polynomial}
         return cls(plant, method_name, answer, desired)
 
     @classmethod
@@ -135,14 +153,14 @@ class GainDesign(Result):
             e = Environment(variable=self.plant.variable)
             yield Claim(relation(phi, self.desired.polynomial), e, "the polynomial is the one asked for")
         if gain is None:
-            if not self.zero or not self.divides:
+            if self.in_root is not None:
+                yield from in_root_claims(self, self.in_root)
+            elif not self.zero or not self.divides:
                 yield from self._impossible()
-            elif self.excluded:
-                e = Environment(variable=self.plant.variable, relations=self.equations)
-                says = "with zeros there, 1 lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
-                yield Claim(relation(1, 0), e, says if self.letter == "L" else says.replace("L*C", "B*K"))
+            else:
+                yield from excluded_claims(self)
             return
-        yield self._assigned(gain)
+        yield self.assigned(gain)
         if self.wish:
             yield from member_claims(self._pair, self.oriented(gain), self.wish)
         if self.zero:
@@ -150,16 +168,18 @@ class GainDesign(Result):
             entries = Matrix.row([gain[i, j] for i, j in self.zero])
             yield Claim(relation(entries, Matrix.zeros(1, len(self.zero))), e, f"zeros in {self.letter} as asked for")
         if self.gain_family is not None and self.gain_family[self.letter] is not None:
-            yield self._assigned(self.gain_family[self.letter])
+            yield self.assigned(self.gain_family[self.letter])
             if self.chart is None:
                 yield from self._free_along_kernel(gain, self.gain_family)
         if self.chart is not None:
             yield from self.chart.claims(self.oriented, self.gain_family)
 
-    def _assigned(self, gain: Matrix) -> Claim:
+    def assigned(self, gain: Matrix, relations: tuple[Scalar, ...] = ()) -> Claim:
+        """Return the claim that a gain assigns φ, where some polynomials vanish."""
         phi = self.answer["polynomial"]
         values = letters_of(self.plant) | {self.letter: gain, "phi": phi}
-        e = Environment(variable=self.plant.variable, values=values)
+        relations = (*relations, *identities(gain.entries)[1])
+        e = Environment(variable=self.plant.variable, values=values, relations=relations)
         return Claim(self.assignment(self.plant.order), e)
 
     def _free_along_kernel(self, gain: Matrix, family: Mapping[str, Any]) -> Iterator[Claim]:
@@ -203,8 +223,10 @@ class GainDesign(Result):
     @property
     def verdict(self) -> str:
         """`no` where φ cannot be assigned; `undecided` where no gain was found with the zeros asked for."""
+        if self.in_root is not None:
+            return "yes"
         if self.answer[self.letter] is None:
-            return "undecided" if self.zero and self.divides and not self.excluded else "no"
+            return "undecided" if self.zero and self.divides and not self.needed else "no"
         return super().verdict
 
     @cached_property
@@ -227,9 +249,9 @@ class GainDesign(Result):
         return tuple(value for value in equations_for(pair, self.desired, general) if value)
 
     @cached_property
-    def excluded(self) -> bool:
-        """Whether no gain has its zeros where they are asked for."""
-        return contradict(self.equations)
+    def needed(self) -> tuple[Scalar, ...]:
+        """What must vanish for a gain to have its zeros where they are asked for: 1 where none has, whatever the parameters."""
+        return (Scalar.of(1),) if contradict(self.equations) else obstacles(self.equations)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -276,7 +298,7 @@ class GainDesign(Result):
     def chart(self) -> Family | None:
         """The family of gains for several outputs (inputs), the gain of the answer in it; None for one."""
         gain, pair = self.answer[self.letter], self._pair
-        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs):
+        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs) or all_roots(gain):
             return None
         names = fresh_names("g", pair.freedom, self._taken)
         return Family.of(pair, self.desired, names, self.oriented(gain))
@@ -305,14 +327,24 @@ class GainDesign(Result):
                 return found
             return found.with_answer(self.letter, kept) if plant.admits(kept) else found
 
-        obstacles = self.existence
+        left = self.existence
+        if self.zero and self.answer[self.letter] is None and self.divides and self.plant.field.names:
+            return common_zeros(self.plant, self.needed, solve) if self.needed else ()
         if self._pair.is_observable:
-            return carried(self.plant, self.test.case_tree, solve)
-        if len(obstacles) <= 1:
-            return strata(self.plant, obstacles, solve)
-        shared = set.intersection(*(set(vanishing_factors([c], self.plant.symbols.signs)) for c in obstacles))
-        elsewhere = Case(tuple(Condition("existence", c, "==") for c in obstacles), {}, None)
+            return (*carried(self.plant, self.test.case_tree, solve), *strata(self.plant, self._chosen, solve))
+        if len(left) <= 1:
+            return strata(self.plant, left, solve)
+        shared = set.intersection(*(set(vanishing_factors([c], self.plant.symbols.signs)) for c in left))
+        elsewhere = Case(tuple(Condition("existence", c, "==") for c in left), {}, None)
         return (*strata(self.plant, shared, solve), elsewhere)
+
+    @cached_property
+    def _chosen(self) -> tuple[Scalar, ...]:
+        """What the gain divides by because it is this one of many: where it vanishes another one serves."""
+        if not isinstance(self._pair, SeveralOutputs) or self.answer[self.letter] is None:
+            return ()
+        lost = {c.expression for case in self.test.case_tree for c in case.when}
+        return tuple(c.expression for c in self.holds_where if c.kind == "claim" and c.expression not in lost)
 
     @cached_property
     def stability(self) -> Stability:
@@ -335,6 +367,7 @@ class GainDesign(Result):
             "fixed_modes": self.unmoved_modes,
             "family": self.gain_family,
             **({"zero": [[i + 1, j + 1] for i, j in self.zero]} if self.zero else {}),
+            **({"in_root": in_root_report(self, self.in_root)} if self.in_root is not None else {}),
         }
 
 

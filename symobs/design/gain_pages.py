@@ -22,7 +22,9 @@ from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import taken_names
 from symobs.design.pole_cautions import caution_poles
+from symobs.design.zero_page import another_gain, write_no_gain
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
+from symobs.exact.functions import all_roots
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
 from symobs.page import Page, predicate, relation
@@ -72,8 +74,9 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
     _test(page, design, side, style)
     if design.answer[side.gain] is None:
         _impossible(page, design, side)
-        for case in design.case_tree:
-            _case(page, case, side)
+        if not design.zero or not design.divides:
+            for case in design.case_tree:
+                _case(page, case, side)
         return
     if not design.fixed_polynomial.is_one:
         _with_fixed_modes(page, design, side)
@@ -87,6 +90,9 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
             write_companion(page, side, desired)
         elif style == "row_reduced_echelon" and readable(design):
             write_row_reduction(page, design, side)
+        elif all_roots(design.answer[side.gain]):
+            page.with_roots(design.answer[side.gain])
+            page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
         elif style == "sylvester" or design.chart is not None:
             write_sylvester(page, design, side, desired)
         else:
@@ -272,8 +278,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
 def _impossible(page: Page, design: GainDesign, side: Side) -> None:
     """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
     if design.zero and design.divides:
-        listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
-        page.conclude("impossible_zero" if design.excluded else "undecided_zero", places=listed)
+        write_no_gain(page, design, side, lambda: error_determinant(page, side))
         return
     fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     page.conclude(
@@ -337,6 +342,9 @@ def _case(page: Page, case: Case, side: Side) -> None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
+    if result._pair.is_observable and result.answer[side.gain] is not None:  # noqa: SLF001 - the witness of the stratum
+        page.steps.append(another_gain(page, case, side, lambda: error_determinant(page, side), "case_another_gain"))
+        return
     outer, environment = page.steps, page.environment
     page.steps = []
     try:

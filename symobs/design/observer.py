@@ -12,28 +12,17 @@ from symobs.design.components import write_components
 from symobs.design.drawings import draw_collected, draw_copy
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.design.gain_task import designed
 from symobs.design.matching import matched_gain
 from symobs.design.observer_existence_page import write_ansatz, write_found
 from symobs.design.responses import plot_error
-from symobs.design.row_reduction import gain_of, row_reduction
+from symobs.design.row_reduction import reduced_gain
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Result, method, task
 from symobs.page import Page, relation
 from symobs.record import dataclass
-from symobs.specification import (
-    DesiredPolynomial,
-    Entries,
-    GainText,
-    Name,
-    Poles,
-    PolynomialText,
-    desired_polynomial,
-    read_entries,
-    read_gain,
-    reject_both,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -42,6 +31,14 @@ if TYPE_CHECKING:
     from symobs.design.assignment import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
+    from symobs.specification import (
+        DesiredPolynomial,
+        Entries,
+        GainText,
+        Name,
+        Poles,
+        PolynomialText,
+    )
     from symobs.system import StateSpace
 
 
@@ -181,12 +178,7 @@ def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> Obser
 @method("observer/row_reduced_echelon", source="S3, (7)-(10)")
 def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form."""
-    pair = ObserverDesign.pair(plant)
-    found = row_reduction(pair, desired) if pair.is_observable else None
-    if found is None:
-        return ObserverDesign.of(plant, desired, "row_reduced_echelon")
-    answer = {"L": ObserverDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
-    return ObserverDesign(plant, "row_reduced_echelon", answer, desired)
+    return ObserverDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
 
 
 @method("observer/companion_form", source="S1, the double integrator at 16:01")
@@ -220,21 +212,6 @@ def observer(
     be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, (4.18)-(4.20) and Theorem 4.4.
     """
-    plant = plant.knowing(poles, polynomial, L)
-    plant.require("C", task="observer")
-    reject_both("L", L, poles, polynomial)
-    reject_both("L", L, zero, None, other="zero")
-    reject_both("L", L, None if member == "simple" else member, None, other="member")
-    if L is not None:
-        return ObserverDesign.of_given(plant, read_gain(L, plant, "L", (plant.order, plant.outputs)))
-    desired = desired_polynomial(plant, poles, polynomial)
-    assert desired is not None  # noqa: S101 - required
-    automatic = "ackermann" if plant.outputs == 1 else "sylvester"
-    chosen = choose("observer", method, automatic)
-    if member != "simple":
-        reject_both("member", member, zero, None, other="zero")
-        return ObserverDesign.of(plant, desired, chosen.name, wish=member).asked(method)
-    if zero is not None:
-        places = read_entries(zero, "zero", (plant.order, plant.outputs))
-        return ObserverDesign.of(plant, desired, chosen.name, places).asked(method)
-    return chosen.solve(plant, desired).asked(method)
+    return designed(
+        ObserverDesign, plant, poles=poles, polynomial=polynomial, given=L, zero=zero, member=member, method=method
+    )

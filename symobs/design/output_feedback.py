@@ -10,7 +10,7 @@ from symobs.certificate import Certificate, Claim, check
 from symobs.conditions import sign_of
 from symobs.design.gain import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, transfer, transfer_matrix
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, transfer, transfer_matrix
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
@@ -234,7 +234,7 @@ class OutputFeedback(Result):
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
-        return _over(numerator, own, polynomial) if kept else factored(value, variable, monic=False)
+        return _cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property
     def loop_polynomial(self) -> Factored:
@@ -309,3 +309,16 @@ def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
     unit, above = numerator.factors()
     below = tuple((factor, -power) for factor, power in polynomial.factors)
     return Factored(unit, (*above, (own, 1), *below))
+
+
+def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
+    """Return the same, with the parameters that `own` divides by cancelled against those in front of the numerator."""
+    form = _over(numerator, own, polynomial)
+    if own.denominator.is_constant:
+        return form
+    unit, above = numerator.factors()
+    whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
+    number, below = whole.denominator.factors()
+    rest = ((factor, power) for factor, power in above if variable in factor.names)
+    parts = (*rest, (whole.numerator, 1), *((factor, -power) for factor, power in below))
+    return Factored(unit / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))

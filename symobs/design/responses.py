@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import lcm
+from math import ceil, lcm, log
 from operator import mul
 from typing import TYPE_CHECKING
 
@@ -16,11 +16,14 @@ if TYPE_CHECKING:
 
     from symobs.formula.term import Term
     from symobs.page import Page
+    from symobs.picture import Interval
 
 #: Modes that differ in speed by more cannot be seen in one picture; with more courses none can be told from another.
 _SPREAD, _COURSES = 15.0, 6
 #: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
 _TIMES = 6.0
+#: In discrete time: the radius below which all modes are dead at once, and how many instants are drawn.
+_DEAD, _FEWEST, _SAMPLES = 1e-9, 5, 30
 _STEPS, _PARTS = 400, 10**6
 _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
 
@@ -45,8 +48,10 @@ def _plot(
     """Plot, unless the page has parameters or a picture would show nothing."""
     value = matrix.value
     courses = sum(table.shape[0] for _, table, _ in signals)
-    numeric = not value.names and not page.plant.relations and not page.plant.is_discrete
-    if not numeric or courses > _COURSES:
+    if value.names or page.plant.relations or courses > _COURSES:
+        return
+    if page.plant.is_discrete:
+        _plot_samples(page, states, matrix, signals, say)
         return
     from symobs.exact.response import rates, response  # noqa: PLC0415 - only pages with courses pay for it
 
@@ -63,11 +68,53 @@ def _plot(
         for name, table, dashed in signals
         for index, row in enumerate(_rows(table), 1)
     )
-    low, high = min(min(course.heights) for course in made), max(max(course.heights) for course in made)
+    page.plot(TimeResponse(states, _starts(page, states), made, _window(end, made, _PARTS), _PARTS), matrix, say=say)
+
+
+def _plot_samples(
+    page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
+) -> None:
+    """Plot the exact values at 0, 1, 2, …, until they are small, unless that takes too many."""
+    from symobs.exact.response import radius  # noqa: PLC0415 - only pages with courses pay for it
+
+    largest, size = radius(matrix.value), matrix.value.shape[0]
+    last = size + 1 if largest < _DEAD else ceil(_TIMES / -log(largest)) if largest < 1 else _SAMPLES + 1
+    if last > _SAMPLES:
+        return
+    table, state = _rows(matrix.value), (Fraction(1),) * size
+    states_there = []
+    for _ in range(max(last, _FEWEST) + 1):
+        states_there.append(state)
+        state = tuple(sum(map(mul, row, state), Fraction(0)) for row in table)
+    found = [
+        (
+            name,
+            index if part.shape[0] > 1 else 0,
+            row,
+            [sum(map(mul, row, s), Fraction(0)) for s in states_there],
+            dashed,
+        )
+        for name, part, dashed in signals
+        for index, row in enumerate(_rows(part), 1)
+    ]
+    parts = lcm(*(height.denominator for _, _, _, heights, _ in found for height in heights))
+    made = tuple(
+        Course(name, index, row, tuple(int(height * parts) for height in heights), dashed)
+        for name, index, row, heights, dashed in found
+    )
+    window = _window(Fraction(len(states_there) - 1), made, parts)
+    page.plot(TimeResponse(states, _starts(page, states), made, window, parts, discrete=True), matrix, say=say)
+
+
+def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], ...]:
+    return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
+
+
+def _window(end: Fraction, courses: Sequence[Course], parts: int) -> tuple[Interval, Interval]:
+    """Return a window with a little room above and below."""
+    low, high = min(min(course.heights) for course in courses), max(max(course.heights) for course in courses)
     edge = Fraction(high - low, 20)
-    window = (Fraction(0), end), ((low - edge) / _PARTS, (high + edge) / _PARTS)
-    starts = tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
-    page.plot(TimeResponse(states, starts, made, window, _PARTS), matrix, say=say)
+    return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
 
 
 def _rows(table: Matrix) -> list[tuple[Fraction, ...]]:

@@ -139,3 +139,9 @@ def _null_vector(free: int, pivots: tuple[int, ...], reduced: Matrix) -> Matrix:
     for row, pivot in enumerate(pivots):
         entries[pivot] = -reduced[row, free]
     return Matrix.column(entries)
+
+
+def reduced_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
+    """Return L of Lᵀ = f Ψ⁻¹, None where no vectors were found."""
+    found = row_reduction(pair, desired)
+    return None if found is None else gain_of(found)

@@ -10,26 +10,15 @@ from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
 from symobs.design.gain_pages import FEEDBACK, write_gain
+from symobs.design.gain_task import designed
 from symobs.design.matching import matched_gain
 from symobs.design.observer import page_style
-from symobs.design.row_reduction import gain_of, row_reduction
+from symobs.design.row_reduction import reduced_gain
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Result, method, task
 from symobs.record import dataclass
-from symobs.specification import (
-    DesiredPolynomial,
-    Entries,
-    GainText,
-    Name,
-    Poles,
-    PolynomialText,
-    desired_polynomial,
-    read_entries,
-    read_gain,
-    reject_both,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,6 +28,14 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.page import Page
+    from symobs.specification import (
+        DesiredPolynomial,
+        Entries,
+        GainText,
+        Name,
+        Poles,
+        PolynomialText,
+    )
     from symobs.system import StateSpace
 
 
@@ -111,12 +108,7 @@ def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> State
 @method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)")
 def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form."""
-    pair = StateFeedbackDesign.pair(plant)
-    found = row_reduction(pair, desired) if pair.is_observable else None
-    if found is None:
-        return StateFeedbackDesign.of(plant, desired, "row_reduced_echelon")
-    answer = {"K": StateFeedbackDesign.oriented(gain_of(found)), "polynomial": desired.polynomial}
-    return StateFeedbackDesign(plant, "row_reduced_echelon", answer, desired)
+    return StateFeedbackDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
 
 
 @method("state_feedback/companion_form", source="S1, the double integrator at 16:01")
@@ -150,21 +142,6 @@ def state_feedback(
     assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: S0, Example 4.2 and the pole assignment theorem.
     """
-    plant = plant.knowing(poles, polynomial, K)
-    plant.require("B", task="state_feedback")
-    reject_both("K", K, poles, polynomial)
-    reject_both("K", K, zero, None, other="zero")
-    reject_both("K", K, None if member == "simple" else member, None, other="member")
-    if K is not None:
-        return StateFeedbackDesign.of_given(plant, read_gain(K, plant, "K", (plant.inputs, plant.order)))
-    desired = desired_polynomial(plant, poles, polynomial)
-    assert desired is not None  # noqa: S101 - required
-    automatic = "ackermann" if plant.inputs == 1 else "sylvester"
-    chosen = choose("state_feedback", method, automatic)
-    if member != "simple":
-        reject_both("member", member, zero, None, other="zero")
-        return StateFeedbackDesign.of(plant, desired, chosen.name, wish=member).asked(method)
-    if zero is not None:
-        places = read_entries(zero, "zero", (plant.inputs, plant.order))
-        return StateFeedbackDesign.of(plant, desired, chosen.name, places).asked(method)
-    return chosen.solve(plant, desired).asked(method)
+    return designed(
+        StateFeedbackDesign, plant, poles=poles, polynomial=polynomial, given=K, zero=zero, member=member, method=method
+    )

@@ -25,6 +25,12 @@ def rates(matrix: Matrix) -> tuple[float, float]:
     return max(real), min(real)
 
 
+def radius(matrix: Matrix) -> float:
+    """Return the largest absolute value among the eigenvalues of a matrix of numbers, nearly."""
+    roots: Any = _rational(matrix).charpoly().complex_roots()
+    return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
+
+
 def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
     """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
 

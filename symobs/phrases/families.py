@@ -46,12 +46,26 @@ PHRASES: dict[str, str] = {
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",
+    "impossible_zero_unless": "With zeros in the places {places} of the gain these poles cannot be placed in general: the coefficients of the "
+    "closed-loop polynomial, equated to those asked for, are equations for the other entries that have a common solution only where {when} vanishes.",
+    "impossible_zero_in_general": "With zeros in the places {places} of the gain these poles cannot be placed in general: the coefficients of the "
+    "closed-loop polynomial, equated to those asked for, have a common solution for special parameters only.",
+    "zero_in_root": "A gain with zeros in the places {places} exists, but neither fractions nor square roots that were tried write it: its entries are "
+    "polynomials in the real root between {low} and {high} of",
+    "case_zero_gain": "There a gain has its zeros in these places:",
+    "case_another_gain": "There another gain places these poles:",
+    "gain_provided": "Here we assume {condition}.",
+    "case_no_zero": "There is no such gain.",
+    "gain_with_roots": "With zeros in the places asked for the coefficients of the closed-loop polynomial, equated to those asked for, are equations for the "
+    "other entries. A real solution is the gain",
     "undecided_zero": "No gain with rational entries and zeros in the places {places} was found, and it is not proved that there is none.",
     "gain_follows": "The gain is",
     "no_member": "A gain with short entries, whose closed-loop matrix is not cyclic, is",
     "family_hidden": "It is not the only one. The gains form a family of dimension {count}: the part that is seen has the freedom of Sylvester's equation, "
     "and along the hidden subspace the gain is free.",
 }
+
+NAMING = ("impossible_zero_unless",)
 
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",

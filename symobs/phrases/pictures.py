@@ -21,6 +21,7 @@ PHRASES: dict[str, str] = {
     "picture_curve": "Curve (1) is {curve}.",
     "picture_curves": "The curves are",
     "picture_response": "The course from {start}.",
-    "picture_estimates": "Dashed lines are estimates.",
+    "picture_estimates": "A hat tells the estimates.",
+    "picture_samples_only": "There are values at the instants 0, 1, 2 and so on alone.",
     "picture_drawn_for": "Drawn for {values}.",
 }

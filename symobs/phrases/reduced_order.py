@@ -52,3 +52,12 @@ RESTS_ON: dict[str, str] = {
 }
 
 EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails")
+
+SPELLS_OUT = (
+    "coordinates",
+    "measured_first",
+    "parts",
+    "parts_blocks",
+    "parts_with_feedthrough",
+    "parts_with_feedthrough_blocks",
+)

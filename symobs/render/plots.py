@@ -283,13 +283,17 @@ def _courses(picture: TimeResponse, measure: Measure) -> Scene:
     every = tuple(line for parts in lines for line in parts)
     names = {plots_time.name_of(course): parts for course, parts in zip(picture.courses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
-    axes, written = _axes(frame, (symbol("t"),), measure)
-    styles = map(plots_time.style_of, picture.courses)
+    axes, written = _axes(frame, (symbol(plots_time.axis_of(picture)),), measure)
+    styles = ["zero" if picture.discrete else plots_time.style_of(course) for course in picture.courses]
+    sampled = picture.courses if picture.discrete else ()
+    signs = tuple(
+        Sign(plots_time.sign_of(course), frame.at(*place)) for course in sampled for place in picture.points(course)
+    )
     strokes = [Stroke(line, style) for style, parts in zip(styles, lines, strict=True) for line in parts]
     texts = (*written, *labels)
     zeros = (Stroke(line, "zero") for line in pale)
     whole = whole_of(axes, texts, measure)
-    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), (), texts, tuple(numbered))
+    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
 
 
 def _square_frame(window: tuple[Interval, Interval]) -> _Frame:

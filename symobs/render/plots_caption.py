@@ -102,6 +102,8 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
             yield _say("response", start=Together(begun))
             if any(course.dashed for course in picture.courses):
                 yield _say("estimates")
+            if picture.discrete:
+                yield _say("samples_only")
 
 
 def _beginning(name: str, start: Sequence[Fraction]) -> Relation:

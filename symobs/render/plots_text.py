@@ -10,7 +10,7 @@ from symobs.picture import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.render.plots import ticks
 from symobs.render.plots_caption import part, radius_of, symbol
 from symobs.render.plots_labels import contains
-from symobs.render.plots_time import CHARACTERS, name_of
+from symobs.render.plots_time import CHARACTERS, axis_of, name_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -82,7 +82,7 @@ def _courses(picture: TimeResponse, printer: TextPrinter) -> str:
         for place in picture.points(course):
             _put(grid, picture.window, place, mark)
     told = "   ".join(f"{mark} {printer.inline(name_of(course))}" for course, mark in marks)
-    return f"{told}\n{_framed(grid, picture.window, [symbol('t')], printer)}"
+    return f"{told}\n{_framed(grid, picture.window, [symbol(axis_of(picture))], printer)}"
 
 
 def _grid(window: tuple[Interval, Interval], character: Callable[[float, float], str]) -> list[list[str]]:

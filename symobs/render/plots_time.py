@@ -8,7 +8,7 @@ from symobs.formula import Letter
 
 if TYPE_CHECKING:
     from symobs.formula import Formula
-    from symobs.picture import Course
+    from symobs.picture import Course, TimeResponse
 
 #: Height of the frame, in points.
 HEIGHT = 90.0
@@ -24,3 +24,13 @@ def name_of(course: Course) -> Formula:
 def style_of(course: Course) -> str:
     """Return the style of its line."""
     return "estimate" if course.dashed else "path"
+
+
+def sign_of(course: Course) -> str:
+    """Return the sign of its values in discrete time: a ring for an estimate."""
+    return "ring" if course.dashed else "dot"
+
+
+def axis_of(picture: TimeResponse) -> str:
+    """Return what time is called."""
+    return "k" if picture.discrete else "t"
