@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given
 from symobs.design.drawings import draw_compensator, draw_loop, draw_unity_loop
-from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import (
     FEEDBACK,
     OBSERVER,
@@ -15,7 +14,7 @@ from symobs.design.gain_pages import (
     name_entries,
     write_gain,
 )
-from symobs.design.names import taken_names
+from symobs.design.names import fresh_names, taken_names
 from symobs.design.observer import page_style, write_observer
 from symobs.design.responses import plot_estimate
 from symobs.design.state_feedback import StateFeedbackDesign

@@ -13,6 +13,7 @@ from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.family import Family
+from symobs.design.names import fresh_names
 from symobs.design.several import SeveralOutputs
 from symobs.design.slices import member, member_claims
 from symobs.design.zero_claims import excluded_claims, in_root_claims, in_root_report
@@ -28,7 +29,7 @@ from symobs.record import dataclass
 from symobs.stability import Stability, stability
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from symobs.analysis.rank_result import RankResult
     from symobs.design.assignment import Pair
@@ -389,19 +390,6 @@ def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
     if m.has_input and m.has_output:
         values["D"] = m.D
     return values
-
-
-def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> tuple[str, ...]:
-    """Return `stem1`, `stem2`, … (from `start` on) that are not among the names taken."""
-    used = set(taken)
-    names: list[str] = []
-    index = start
-    while len(names) < count:
-        name = f"{stem}{index}"
-        if name not in used:
-            names.append(name)
-        index += 1
-    return tuple(names)
 
 
 def require_one(count: int, what: str, name: str) -> None:

@@ -6,9 +6,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import determinant_form
-from symobs.design.gain import fresh_names
 from symobs.design.matching import matching
-from symobs.design.names import taken_names
+from symobs.design.names import fresh_names, taken_names
 from symobs.design.row_reduction import Reduction, gain_of, row_reduction
 from symobs.exact import Matrix, Scalar, companion, roots_of
 from symobs.formula import Literal, Roots, Shown

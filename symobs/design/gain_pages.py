@@ -17,10 +17,10 @@ from symobs.analysis.pages import (
     undecided,
 )
 from symobs.derivation import Case as CaseStep
-from symobs.design.gain import GainDesign, fresh_names
+from symobs.design.gain import GainDesign
 from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
-from symobs.design.names import taken_names
+from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
 from symobs.design.zero_page import another_gain, write_no_gain
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of

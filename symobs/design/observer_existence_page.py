@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.design.gain import fresh_names
-from symobs.design.names import taken_names
+from symobs.design.names import fresh_names, taken_names
 from symobs.exact import Matrix
 from symobs.page import Page, relation
 

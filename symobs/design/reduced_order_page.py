@@ -9,9 +9,8 @@ from symobs.analysis.pages import formula_of_factored, given, rank_cases, square
 from symobs.conditions import vanishing_factors
 from symobs.design.components import combination, summed
 from symobs.design.drawings import draw_minimal_order
-from symobs.design.gain import fresh_names
 from symobs.design.gain_pages import OBSERVER, define_test_matrix, say_as_required
-from symobs.design.names import taken_names
+from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.design.responses import plot_error
