@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs import StateSpace
-from symobs.errors import SymobsError
+from symobs.errors import DerivationRejected, SymobsError
 from symobs.method import tasks
 from symobs.problem import read
 from tests.asking import is_for, specification
@@ -123,6 +123,11 @@ def try_result(result: Result, label: str, answers: Count, lines: Count, most_li
         try_answers(part, where, answers, ALL)
         try_witnesses(part, where, answers, ALL)
     before = len(lines.lies)
+    try:
+        result.derivation.check()
+    except DerivationRejected as error:
+        lines.lies.append(f"{label}: its own page is refused: {error}")
+        return
     try_lines(result, lines, most_lines or ALL)
     lines.lies[before:] = [f"{label}: {lie}" for lie in lines.lies[before:]]
 
