@@ -173,7 +173,8 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (difference,)
         sure = any(_excluded_from_zero(entry, environment) for entry in entries)
-        return sure or never_together_zero(entries, environment.relations, environment.signs)
+        known = *environment.assumed, *environment.domain
+        return sure or never_together_zero(entries, environment.relations, environment.signs, known)
     sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.above)
     return (
         sign
@@ -214,7 +215,8 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
     if value.size > FACTORED_UP_TO:
         return False
     factors = (factor for factor, _ in value.numerator.factors()[1])
-    return all(factor in environment.assumed or never_zero(factor, environment.signs) for factor in factors)
+    known = {*environment.assumed, *environment.domain}
+    return all(factor in known or never_zero(factor, environment.signs) for factor in factors)
 
 
 def _holds_at_points(

