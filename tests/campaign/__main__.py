@@ -112,6 +112,9 @@ def look_again(figures: Figures, oracles: Mapping[str, Oracle], folder: Path, ta
         name, _, number = path.stem.rpartition("-")
         if not number.isdigit():
             continue
+        if int(number) >= figures.next_seed:  # of a batch that was not finished, which is drawn again
+            path.unlink()
+            continue
         kind, problem = drawn(int(number), tasks)
         answer = _answered(folder, kind, int(number), problem, 30)
         if not isinstance(answer, Asked):
