@@ -160,6 +160,24 @@ SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 ASKED: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10], "observer": "minimal"}
 
 
+def test_of_many_gains_one_that_leaves_the_law_unsolved_rules_out_no_other() -> None:
+    """The law with the gains chosen cannot be solved for u; with another K of the same poles it can."""
+    plant = StateSpace("[-2 -1 0; 1 1 -1; 1 2 -2]", "[0 0; 0 0; -2 -2]", "[1 1 1]", "[1 -1]")
+    asked = {"control_poles": [-1, -2, -3], "observer_poles": [-4, -5], "observer": "minimal"}
+    found = symobs.compensator(plant, **asked)
+    assert (found.verdict, found.answer["F"]) == ("undecided", None)
+    assert "Other gains with the same poles were not tried" in " ".join(found.to("text").split())
+    zero = "[0 0 0; 0 0 0; 0 0 0]"
+    assert symobs.feedforward(plant, **asked).verdict == "undecided"
+    assert symobs.tracking(plant, **asked, reference_matrix=zero).verdict == "undecided"
+    M = sympy.Matrix([[str(entry) for entry in row] for row in found.estimator.answer["M"].rows])  # x̂ = M [y − D u; z]
+    D, K = sympy.Matrix([[1, -1]]), sympy.Matrix(found.K)
+    other = K + sympy.Matrix([[1], [-1]]) * sympy.Matrix([[1, 0, 0]])  # B (1, -1) = 0, so this moves no pole
+    ill, well = ((sympy.eye(2) - gain * M[:, :1] * D).det() for gain in (K, other))
+    assert ill == 0
+    assert well != 0
+
+
 def test_a_well_posed_compensator_cannot_be_called_ill_posed() -> None:
     found = symobs.compensator(SERVO, **ASKED)
     with pytest.raises(CertificateRejected):

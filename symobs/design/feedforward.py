@@ -117,8 +117,8 @@ class FeedforwardDesign(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where either gain, or F, does not exist."""
-        return "no" if self.answer["F"] is None else super().verdict
+        """`no` where either gain, or F, does not exist; as the loop's where there is none."""
+        return self.loop.verdict if not self.loop.exists else "no" if self.answer["F"] is None else super().verdict
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

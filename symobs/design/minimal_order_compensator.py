@@ -121,6 +121,14 @@ class MinimalOrderCompensator(OutputFeedback):
         """The strata where the control law cannot be solved for u."""
         return strata(self.plant, [value.numerator for value in self.existence], self.on)
 
+    @property
+    def other_gains_may_do(self) -> bool:
+        """Whether both gains exist, not both are the only ones, and the law cannot be solved for u with these."""
+        gains = (self.feedback, self.estimator)
+        many = self.plant.inputs > 1 or self.plant.outputs > 1
+        found = None not in (self.answer["K"], self.answer["L"])
+        return not self.exists and found and many and any(design.desired is not None for design in gains)
+
     # -- what follows ------------------------------------------------------------------------------------------------
 
     @cached_property

@@ -85,7 +85,7 @@ def write_control_law(page: Page, design: MinimalOrderCompensator, *, large: boo
     page.equal(relation(solving @ u, law), say="minimal_control_in_y")
     determinant = relation(solving.apply("det") if plant.inputs > 1 else solving, 0)
     if not design.exists:
-        page.conclude("ill_posed", determinant=determinant)
+        page.conclude("ill_posed_for_some" if design.other_gains_may_do else "ill_posed", determinant=determinant)
         return
     factors = vanishing_factors([design.well_posedness.numerator], plant.symbols.signs)
     if factors:

@@ -145,10 +145,15 @@ class OutputFeedback(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where either gain does not exist."""
+        """`no` where either gain does not exist; `undecided` where other gains may do what these do not."""
         if not self.exists:
-            return "no"
+            return "undecided" if self.other_gains_may_do else "no"
         return super().verdict
+
+    @property
+    def other_gains_may_do(self) -> bool:
+        """Whether only the gains that were chosen, of many with the same poles, leave the law unsolved for u."""
+        return False
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:

@@ -144,8 +144,10 @@ class TrackingDesign(Result):
 
     @property
     def verdict(self) -> str:
-        """`no` where a gain or K_d does not exist."""
-        return "no" if self.answer["K_d"] is None or not self.has_gains else super().verdict
+        """`no` where a gain or K_d does not exist; as the loop's where there is none."""
+        if not self.has_gains:
+            return self.loop.verdict
+        return "no" if self.answer["K_d"] is None else super().verdict
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:

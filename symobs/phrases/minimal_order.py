@@ -12,9 +12,11 @@ PHRASES: dict[str, str] = {
     "well_posed_assumed": "This determines $u$ where {condition}.",
     "minimal_control_solved": "Solved for the input,",
     "ill_posed": "Because of {determinant} this cannot be solved for $u$: the measured output contains the input, which the control law would need "
-    "before it is known. There is no such compensator.",
-    "ill_posed_there": "There {determinant}: the output contains the input, which the control law would need before it is known. There is no such "
-    "compensator.",
+    "before it is known. With these gains there is no compensator.",
+    "ill_posed_for_some": "Because of {determinant} this cannot be solved for $u$ with these gains: the measured output contains the input, which the "
+    "control law would need before it is known. Other gains with the same poles were not tried.",
+    "ill_posed_there": "There {determinant}: the output contains the input, which the control law would need before it is known. With these "
+    "gains there is no compensator.",
     "minimal_closed": "Put into the observer, it leaves, with {state} and {input}, a system that is driven by $y$ alone:",
     "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
     "minimal_stable": _DIRECT + " By itself it is stable.",
