@@ -81,8 +81,9 @@ class RealNumber:
     def ball(self, bits: int = FIRST_BITS) -> arb:
         """Return an enclosure by a ball that is at least this precise."""
         if self.enclosed is None or bits > self.bits:
-            self.bits = max(bits, self.bits)
-            self.enclosed = _real_balls(tuple(map(int, self.polynomial.coeffs())), self.bits)[self.index]
+            most = max(bits, self.bits)
+            self.enclosed = _real_balls(tuple(map(int, self.polynomial.coeffs())), most)[self.index]
+            self.bits = most  # last, so that an interrupt in between leaves no ball called more precise than it is
         return self.enclosed
 
     def interval(self, bits: int = FIRST_BITS) -> tuple[Fraction, Fraction]:

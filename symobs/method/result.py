@@ -178,7 +178,10 @@ class Result(Faces):
         return {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
 
     def __getattr__(self, name: str) -> Any:
-        """Return an answer as SymPy objects."""
+        """Return an answer as SymPy objects; Python asks here too where a property of the class has failed."""
+        for kind in type(self).__mro__:
+            if name in vars(kind):
+                return vars(kind)[name].__get__(self, type(self))  # its own error, not that there is no such name
         from symobs.face import to_sympy  # noqa: PLC0415 - SymPy is the face only
 
         objects = {} if name.startswith("_") else self.plant.symbols.objects
@@ -186,7 +189,7 @@ class Result(Faces):
             return to_sympy(self.holds_where, objects)
         if name == "cases":
             return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
-        if name.startswith("_") or name == "fields" or name not in self.fields:
+        if name.startswith("_") or name not in self.fields:
             message = f"{type(self).__name__} has no attribute {name!r}"
             raise AttributeError(message)
         return to_sympy(self.fields[name], objects)
