@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import pytest
 
 from tests.campaign import __main__ as campaign
@@ -22,7 +23,7 @@ from tests.campaign.solving import Refused, solved
 from tests.campaign.specifications import TASKS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from tests.campaign.asked import Tables
@@ -30,6 +31,13 @@ if TYPE_CHECKING:
 ORACLES = sorted(path.stem for path in discovery.FOLDER.glob("*.py"))
 #: Problems of the slice that all oracles judge.
 SLICE = range(400, 480)
+
+
+@pytest.fixture(autouse=True)
+def _fifty_digits() -> Iterator[None]:
+    """Compute as the campaign does, whatever other tests have set."""
+    with mpmath.workdps(50):
+        yield
 
 
 @cache

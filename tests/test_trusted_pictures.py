@@ -464,9 +464,9 @@ def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
             assert abs(growing - mpmath.exp(20 * k) * 2**64) <= 2
 
 
-def test_courses_are_of_continuous_time() -> None:
+def test_courses_are_of_the_time_of_their_plant() -> None:
     response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE, PARTS)
-    assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["continuous time"]
+    assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["another time"]
     assert list(faults(response, Letter("A"), DECAY, discrete=False)) == []
 
 

@@ -79,6 +79,7 @@ def main(arguments: Sequence[str]) -> int:
     tests = [str(HERE / "tests" / f"test_{name}.py") for name in names]
     with tempfile.TemporaryDirectory() as folder:
         trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json")
+        os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
         code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
     report.close()
     return int(code) or int(report.is_bad)

@@ -30,7 +30,7 @@ def rows(settings: Settings) -> Iterator[Row]:
     )
     for work, letter, sizes, subject in families:
         subjects = {str(size): lambda size=size, subject=subject: subject(size) for size in sizes}
-        found = list(medians(min(settings.repetitions, 5), subjects).values())  # type: ignore[arg-type]
+        found = list(medians(min(settings.repetitions, 5), subjects).values())
         told = f"{letter} = {', '.join(map(str, sizes))}: {written(found[0], 's')} to {written(found[-1], 's')}"
         yield Row(f"{work}, time ~ {letter}^", exponent(sizes, found), told, unit="")
 

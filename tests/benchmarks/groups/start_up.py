@@ -25,7 +25,7 @@ _COMMANDS: dict[str, Sequence[str]] = {
 def rows(settings: Settings) -> Iterator[Row]:
     """Yield `symobs --help` and `symobs solve` of S0-Ex4.2."""
     subjects = {name: lambda arguments=arguments: wall(arguments) for name, arguments in _COMMANDS.items()}
-    found = medians(3 * settings.repetitions, subjects)  # type: ignore[arg-type]
+    found = medians(3 * settings.repetitions, subjects)
     against = "import sympy (symobs / SymPy)"
     for name, asked in (("symobs --help", "<= 0.6"), ("symobs solve, to LaTeX", "<= 0.8")):
         yield Row(name, found[name], against, found["sympy"], asked, inverted=True)

@@ -133,7 +133,7 @@ def _modes(_: Case, g: Data, exact: Data) -> Found:
 def _transfer_function(case: Case, g: Data, _: Data) -> Found:
     plant = _system(case, *(g[letter] for letter in "ABCD"))
     found = {"values": _values(plant)}
-    with suppress(ControlSlycot):
+    with suppress(ControlSlycot, TypeError):  # the latter is what `minreal` raises where slycot is missing
         least = control.minreal(plant, 1e-8, verbose=False)
         found["poles"] = _row(np.poly(least.poles())) if least.nstates else np.ones((1, 1))
         if g["D"].size == 1:
