@@ -71,7 +71,9 @@ class Pointwise(Restricted):
         self.nonzero = (*environment.assumed, *environment.domain)
 
     def apply(self, function: str, value: Matrix) -> Any:
-        """Return det, adj, or the rank: r where r×r minors never vanish together and a kernel of dimension n − r is seen.
+        """Return det, adj, or the rank: r where r×r minors never vanish together and none is higher.
+
+        That it is not higher a kernel of dimension n − r shows, or that all larger minors vanish where they are few.
 
         Raises TypeError where that cannot be shown.
         """
@@ -81,10 +83,8 @@ class Pointwise(Restricted):
         kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))
         sent_to_zero = all(entry in self.ideal for entry in (value @ kernel).entries)
         rows = independent_rows(value.select(range(value.shape[0]), columns), self.ideal)
-        if not (
-            sent_to_zero
-            and self._has_minor(value, len(columns), (rows, columns))
-            and self._has_minor(kernel, len(vectors))
+        if not self._has_minor(value, len(columns), (rows, columns)) or not (
+            (sent_to_zero and self._has_minor(kernel, len(vectors))) or self._has_none(value, len(columns) + 1)
         ):
             message = "the rank is not seen to be the same everywhere"
             raise TypeError(message)
@@ -98,6 +98,13 @@ class Pointwise(Restricted):
             return True
         chosen = itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
         return self._never_zero(matrix.select(*minor) for minor in itertools.islice(chosen, _MINORS))
+
+    def _has_none(self, matrix: Matrix, order: int) -> bool:
+        """Tell whether all minors of some order vanish; of many that is not asked."""
+        if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
+            return False
+        chosen = itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
+        return all(matrix.select(*minor).determinant() in self.ideal for minor in chosen)
 
     def _never_zero(self, parts: Iterable[Matrix]) -> bool:
         minors = (part.determinant() for part in parts)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from symobs import StateSpace, compensator, state_feedback
+from symobs import StateSpace, compensator, controllability, state_feedback
+from symobs.certificate import verify
 from symobs.derivation import Derivation
 from symobs.derivation.steps import Case, Conclude, Define, Given
 from symobs.errors import DerivationRejected
@@ -51,3 +52,24 @@ def test_the_page_of_a_gain_holds_on_such_a_curve() -> None:
     assert "k**2" in str(state_feedback(plant, poles=[-1, -2]).conditions)
     state_feedback(plant, poles=[-1, -2]).derivation.check()
     compensator(plant, control_poles=[-3, -1], observer_poles=[-3], observer="minimal").derivation.check()
+
+
+def test_a_rank_is_shown_by_minors_where_the_kernel_found_vanishes_somewhere() -> None:
+    """On a d = b c, [-b; a] is a kernel of [a b; c d], and 0 where a = b = 0; with c = 1 the rank is 1 there too."""
+    a, b, d = (Scalar.symbol(name) for name in "abd")
+    here = Environment(relations=(a * d - b,))
+    for matrix, says, holds in (
+        (Matrix.of([[a, b], [Scalar.of(1), d]]), 1, True),
+        (Matrix.of([[a, b], [Scalar.of(1), d]]), 2, False),
+        (Matrix.of([[a, b], [a, b]]), 1, False),  # 0 at a = b = 0
+        (Matrix.of([[a, b, b], [a, b, b], [Scalar.of(1), d, d]]), 1, True),
+    ):
+        relation = Relation((Apply("rank", Literal(matrix)), Literal(Scalar.of(says))), ("=",))
+        assert (verify(relation, here)[0] == "exact") is holds
+
+
+def test_the_page_of_a_long_stratum_holds() -> None:
+    """There the kernel of the controllability matrix vanishes at some points, the matrix of rank 2 at none."""
+    A = "[2, omega^2, 0; 0.1, a, omega^2; 1/2, 1/a, 1/2]"
+    plant = StateSpace(A, "[1; -3; -3]", "[0.1, -1, 0]", symbols={"a": "positive", "omega": "real"})
+    controllability(plant).derivation.check()
