@@ -11,7 +11,7 @@ from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent
 from symobs.formula import Restricted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.formula import Environment
 
@@ -61,6 +61,11 @@ def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ..
     return math.prod(factors, start=Scalar.of(1))
 
 
+def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+    """Yield the rows and the columns of every square part of an order."""
+    return itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
+
+
 class Pointwise(Restricted):
     """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
 
@@ -96,15 +101,13 @@ class Pointwise(Restricted):
         """Tell whether at every point a minor of some order is not zero; a likely one may be tried first."""
         if not order or (first is not None and self._never_zero([matrix.select(*first)])):
             return True
-        chosen = itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
-        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(chosen, _MINORS))
+        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
 
     def _has_none(self, matrix: Matrix, order: int) -> bool:
         """Tell whether all minors of some order vanish; of many that is not asked."""
         if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
             return False
-        chosen = itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
-        return all(matrix.select(*minor).determinant() in self.ideal for minor in chosen)
+        return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))
 
     def _never_zero(self, parts: Iterable[Matrix]) -> bool:
         minors = (part.determinant() for part in parts)
