@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
+from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.enclosure import sign_of_number
 from symobs.exact.functions import PI, known
 from symobs.record import dataclass
@@ -88,6 +88,8 @@ def _sign_of_undeclared(name: str) -> str:
 
 
 def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
+    if EIGENVALUE in polynomial.names:  # it may be complex: nothing is certain of its square either
+        return "real"
     total = "zero"
     for coefficient, powers in polynomial.each_term():
         sign = "positive" if coefficient > 0 else "negative"
@@ -156,7 +158,7 @@ def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Sca
     a² + b² = 0 only where a = b = 0: where no two terms have opposite signs, all of them vanish.  α x² + β x + γ = 0
     with 4αγ − β² ≥ 0 and α ≠ 0 only where 2αx + β = 0 and 4αγ − β² = 0.  Nothing is returned where neither applies.
     """
-    if polynomial.size > FACTORED_UP_TO:
+    if polynomial.size > FACTORED_UP_TO or EIGENVALUE in polynomial.names:
         return ()
     terms = polynomial.terms()
     if len(terms) > 1 and _sum_of_terms(polynomial, signs) != "real":

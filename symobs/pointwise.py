@@ -27,12 +27,11 @@ def never_together_zero(
     Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
 
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
-    parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0.  The
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
+    an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
     relations are reduced by what follows from the values alone, which keeps long ones short.
     """
     values, relations = list(values), tuple(relations)
-    if any(EIGENVALUE in value.names for value in (*values, *relations)):  # it may be complex: signs say nothing of it
-        return Ideal.of((*relations, *values)).is_whole
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     if known is None:
         return True
@@ -82,7 +81,7 @@ class Pointwise(Restricted):
 
         Raises TypeError where that cannot be shown.
         """
-        if function != "rank" or any(EIGENVALUE in value.names for value in self.relations):
+        if function != "rank" or all(relation.names == {EIGENVALUE} for relation in self.relations):
             return super().apply(function, value)
         columns, vectors = echelon(value, self.ideal)
         kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))

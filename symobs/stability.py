@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs.conditions import FACTORED_UP_TO, sign_of, sign_where
-from symobs.exact import Matrix, Scalar, from_coefficients, product_of
+from symobs.conditions import FACTORED_UP_TO, sign_of, sign_where, vanishing_factors
+from symobs.exact import Matrix, Scalar, from_coefficients, product_of, resultant
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Iterable, Mapping, Sequence
 
 #: How many points are tried before it is left open whether a polynomial can be stable, and can be unstable.
 _POINTS = 60
@@ -134,13 +135,32 @@ def on_boundary(factor: Scalar, variable: str, signs: Mapping[str, str], *, disc
     return stability(from_coefficients(widened, variable), variable, signs, discrete=False).verdict == "yes"
 
 
-def is_marginal(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
-    """Tell whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple."""
-    return all(
-        stability(factor, variable, signs, discrete=discrete).verdict == "yes"
-        or (power == 1 and on_boundary(factor, variable, signs, discrete=discrete))
-        for factor, power in polynomial.numerator.factors()[1]
-    )
+def is_marginal(
+    polynomial: Scalar,
+    variable: str,
+    signs: Mapping[str, str],
+    *,
+    discrete: bool,
+    apart: Collection[Scalar] = (),
+) -> bool:
+    """Tell whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple.
+
+    Two factors with roots on the boundary must not meet: `apart` holds irreducible polynomials known not to vanish.
+    """
+    boundary = []
+    for factor, power in polynomial.numerator.factors()[1]:
+        if stability(factor, variable, signs, discrete=discrete).verdict == "yes":
+            continue
+        if power > 1 or not on_boundary(factor, variable, signs, discrete=discrete):
+            return False
+        boundary.append(factor)
+    return set(apart).issuperset(meetings(boundary, variable, signs))
+
+
+def meetings(factors: Iterable[Scalar], variable: str, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return the irreducible polynomials in the parameters that vanish where two of some polynomials have a common root."""
+    pairs = (resultant(left, right, variable) for left, right in combinations(factors, 2))
+    return vanishing_factors(pairs, signs)
 
 
 def marginal_where(

@@ -11,13 +11,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from symobs.analysis.detectability_page import write_page
+from symobs.analysis.meetings import distances, systems_of
 from symobs.analysis.modes import ModeResult, polynomial_of
 from symobs.conditions import Condition
 from symobs.errors import InputError
 from symobs.exact import Scalar, product_of
 from symobs.method import Case, Result, choose, method, task
 from symobs.record import dataclass
-from symobs.stability import is_beyond, is_marginal, marginal_where, monic, stability
+from symobs.stability import is_beyond, is_marginal, marginal_where, meetings, monic, on_boundary, stability
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -66,18 +67,27 @@ class HiddenStability(ModeResult):
             if factor.degree(variable) > 0
         ]
         annuls = product_of(smaller)
-        if is_marginal(annuls, variable, signs, discrete=discrete):
+        if is_marginal(annuls, variable, signs, discrete=discrete, apart=self.meetings):
             return Hidden("yes" if polynomial_of(annuls, variable, X).is_zero else "no", (), annuls)
         bounds = marginal_where(f, variable, signs, discrete=discrete)
         if bounds:
             return Hidden("conditional", tuple(Condition("existence", bound, ">=") for bound in bounds))
         return Hidden("conditional", strict) if verdict == "conditional" else Hidden("undecided")
 
+    @cached_property
+    def meetings(self) -> tuple[Scalar, ...]:
+        """What vanishes where two fixed modes on the boundary meet, under the weaker reading: they may grow there."""
+        plant = self.plant
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        factors = [factor for factor, _ in self.answer["fixed_polynomial"].numerator.factors()[1]]
+        marginal = [factor for factor in factors if on_boundary(factor, variable, signs, discrete=discrete)]
+        return meetings(marginal, variable, signs) if self.meaning == "lyapunov" else ()
+
     @property
     def verdict(self) -> str:
         """That of the fixed modes where there are no cases, else what holds on all of them."""
         verdicts = {self.hidden.verdict}
-        verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.case_tree}
+        verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.deciding_cases}
         if len(verdicts) == 1:
             return verdicts.pop()
         return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"
@@ -89,24 +99,59 @@ class HiddenStability(ModeResult):
         return self.cases_by(lambda plant: solve(plant, task_name, meaning, method_name))
 
     @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
-        """The cases of the rank test, and the boundary where the weaker reading leaves it open."""
-        strict = [c.expression for c in self.hidden.where if c.operator == ">"]
-        if self.meaning == "asymptotic" or not strict:
+    def meeting_cases(self) -> tuple[Case, ...]:
+        """The modes where eigenvalues meet."""
+        task_name, meaning, method_name = self.task, self.meaning, self.method
+        further = [(value,) for value in self.meetings]
+        return self.meetings_by(lambda plant: solve(plant, task_name, meaning, method_name), *further)
+
+    @property
+    def deciding_cases(self) -> tuple[Case, ...]:
+        """The cases on which another verdict may hold.
+
+        Where eigenvalues meet the fixed modes are the same, and only the weaker reading asks for their eigenvectors: a
+        mode that grows in general may have as many as it should there, on strata that are told.
+        """
+        if self.hidden.annuls is None:
             return self.rank_cases
-        return (*self.rank_cases, Case((Condition("existence", product_of(strict), "=="),), {}, None))
+        return (*self.rank_cases, *(case for case in self.meeting_cases if case.when or self.hidden.verdict == "no"))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The cases of the rank test, where eigenvalues meet, and the boundary where the weaker reading leaves it open."""
+        strict = [c.expression for c in self.hidden.where if c.operator == ">"]
+        found = (*self.rank_cases, *self.meeting_cases)
+        if self.meaning == "asymptotic" or not strict:
+            return found
+        return (*found, Case((Condition("existence", product_of(strict), "=="),), {}, None))
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, what makes the fixed modes stable, and the strata on which others are not."""
-        if self.hidden.verdict not in {"yes", "conditional"}:
+        if self.hidden.verdict == "no":
+            return (*self.domain, *self._only_there)
+        if self.hidden.verdict == "undecided":
             return self.domain
-        lost = dict.fromkeys(
-            case.when[0].expression for case in self.rank_cases if case.result is None or case.result.verdict != "yes"
-        )
+        differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
+        lost = distances(systems_of(differing) or ())
         listed = {c.expression for c in self.domain}
         others = (Condition("existence", expression) for expression in lost if expression not in listed)
         return (*self.domain, *self.hidden.where, *others)
+
+    @property
+    def grows_where(self) -> tuple[Condition, ...]:
+        """What keeps away from the strata on which a mode that grows in general, under the weaker reading, may not."""
+        if self.hidden.annuls is None or self.hidden.verdict != "no":
+            return ()
+        return tuple(Condition("existence", value) for value in distances(systems_of(self.meeting_cases) or ()))
+
+    @property
+    def _only_there(self) -> tuple[Condition, ...]:
+        """What must vanish where fixed modes grow in general: some of these strata, where they do not."""
+        kept = [case for case in self.meeting_cases if case.result is None or case.result.verdict != "no"]
+        if not self.grows_where or not kept:
+            return ()
+        return (Condition("existence", product_of(distances(systems_of(kept) or ())), "=="),)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -9,13 +9,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.coordinates import set_anew
-from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_hidden, show_spectrum, stack_of
+from symobs.analysis.mode_pages import (
+    at_eigenvalues,
+    fixed_modes,
+    meeting_steps,
+    show_hidden,
+    show_spectrum,
+    stack_of,
+)
 from symobs.analysis.modes import stable_modes
-from symobs.analysis.pages import given, hidden, hidden_polynomial, square_test, stratum_of, undecided
+from symobs.analysis.pages import as_written, given, hidden, hidden_polynomial, square_test, stratum_of, undecided
+from symobs.certificate import verify
 from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude
+from symobs.derivation.strata import on_stratum
 from symobs.exact import EIGENVALUE
-from symobs.formula import Exactly
-from symobs.page import Page, predicate, relation
+from symobs.formula import Exactly, Together
+from symobs.page import Page, predicate, relation, sentence
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
@@ -89,8 +99,10 @@ def _judge(page: Page, result: HiddenStability, about: Term) -> None:
         return
     else:
         page.conclude(f"unstable_{time}", predicate("unstable", about))
-    if result.hidden.verdict in {"yes", "no"}:
+    if result.hidden.verdict == "yes" or (result.hidden.verdict == "no" and not result.grows_where):
         page.conclude(f"{result.hidden.verdict}_{result.task}")
+    elif result.grows_where:
+        page.conclude(f"grows_{result.task}")
 
 
 def _where(page: Page, result: HiddenStability, about: Term) -> None:
@@ -119,10 +131,20 @@ def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> Non
     zero = page.value(result.test.answer["restricted"] * 0)
     image = page["X"].apply("mu_at")
     if result.hidden.verdict == "yes":
+        if result.meetings:
+            page.assume("apart_provided", *result.meetings)
         page.conclude(f"marginal_{time}", predicate("marginal", mu))
         page.conclude("semisimple", relation(image, zero), polynomial=relation(mu, annuls))
+        return
+    grows = relation(image, "!=", zero)
+    words = Conclude(sentence("grows", {"polynomial": relation(mu, annuls)}), (grows,))
+    apart = [as_written(condition) for condition in result.grows_where]
+    if verify(grows, page.environment)[0]:
+        page.steps.append(words)
+    elif apart and verify(grows, on_stratum(Together(tuple(apart)), {}, page.environment))[0]:
+        page.steps.append(CaseStep(Together(tuple(apart)), (), (words,)))
     else:
-        page.conclude("grows", relation(image, "!=", zero), polynomial=relation(mu, annuls))
+        page.remark("lyapunov_undecided")
 
 
 # -- through the kernel ------------------------------------------------------------------------------------------------
@@ -153,9 +175,12 @@ def _generic(page: Page, result: HiddenStability) -> None:
 
 
 def _cases(page: Page, letter: str, result: HiddenStability) -> None:
-    """Write on every stratum of the rank test what is hidden there, and whether it is stable."""
-    for case in result.rank_cases:
+    """Write on every stratum what is hidden there, and whether it is stable; where eigenvalues meet, how they are seen."""
+    weaker = result.meaning == "lyapunov"
+    for case in (*result.rank_cases, *(result.meeting_cases if weaker else ())):
         page.steps.append(undecided(page, case) if case.result is None else _case(page, letter, case))
+    if not weaker:
+        page.steps += meeting_steps(page, result)
 
 
 def _case(page: Page, letter: str, case: Case) -> Step:

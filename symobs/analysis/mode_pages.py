@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from symobs.analysis.pages import formula_of_factored, hidden
+from symobs.analysis.coordinates import set_anew
+from symobs.analysis.meetings import holds_where
+from symobs.analysis.pages import as_written, conditions_of, formula_of_factored, hidden, undecided
+from symobs.analysis.rank_tree import maximal_minors
+from symobs.certificate import verify
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Step
+from symobs.derivation.strata import on_stratum
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
-from symobs.formula import Roots
+from symobs.formula import Roots, Together
 from symobs.formula.term import block
-from symobs.page import relation, sentence
+from symobs.page import Page, relation, sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from symobs.analysis.modes import Eigenvalues, ModeResult
+    from symobs.conditions import Condition
+    from symobs.formula import Environment
     from symobs.formula.term import Term
-    from symobs.page import Page
 
 
 def show_spectrum(page: Page, result: ModeResult) -> None:
@@ -45,28 +51,60 @@ def pencil_of(page: Page, result: ModeResult, value: Scalar | None = None) -> Te
 
 
 def at_eigenvalues(page: Page, result: ModeResult, parts: Iterable[Eigenvalues]) -> None:
-    """Write one matrix and one rank for each eigenvalue, and where the rank is too low the vectors that show it."""
-    by_factor = dict(zip((part.factor for part in result.spectrum), result.answer["ranks"], strict=True))
-    for part in parts:
-        if part.witness is not None:
-            page.steps.append(_at(page, result, part, by_factor[part.factor]))
+    """Write one matrix and one rank for each eigenvalue, and where the rank is too low the vectors that show it.
+
+    With parameters they hold under the conditions that are told with the eigenvalue.
+    """
+    wanted = {part.factor for part in parts}
+    for part, rank, where in result.parts:
+        if part.factor in wanted and part.witness is not None and where is not None:
+            page.steps += _at(page, result, part, rank, holds_where(where))
 
 
-def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int) -> Step:
+def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int, conditions: list[Condition]) -> list[Step]:
     dual = result.kind == "controllability"
     unknown = page.value(Scalar.symbol(EIGENVALUE))
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
-    steps: list[Step] = [Equal((relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank),))]
+    at = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
+    ranks = relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank)
+    when = Together((at, *map(as_written, conditions))) if conditions else at
+    if part.matrix.names - {EIGENVALUE} and not verify(ranks, on_stratum(when, {}, page.environment))[0]:
+        return []  # it is shown by the minors of X − λI, and too long to be shown by those of the whole matrix
+    steps: list[Step] = [Equal((ranks,))]
     singular = (page["A"] - unknown @ page.identity(page.plant.order)).apply("det")
     steps.append(Conclude(None, (relation(pencil, matrix), relation(singular, 0))))
     kernel: Matrix = part.witness[2]  # type: ignore[index]
-    for j in range(kernel.shape[1]):
+    shown = kernel.shape[1] if _are_independent(kernel, on_stratum(when, {}, page.environment)) else 0
+    for j in range(shown):
         v = page.value(kernel.select(range(page.plant.order), [j]))
         zero = Matrix.zeros(part.matrix.shape[0], 1)
         image = relation(v.T @ pencil, zero.T) if dual else relation(pencil @ v, zero)
         steps.append(Equal((image,), sentence(f"pbh_low_{result.kind}", {}) if not j else None))
-    when = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
-    return CaseStep(when, (), tuple(steps))
+    return [CaseStep(when, (), tuple(steps))]
+
+
+def _are_independent(vectors: Matrix, here: Environment) -> bool:
+    """Tell whether eigenvectors are independent at every point, none of them 0."""
+    minors = Matrix.column(maximal_minors(vectors)) if vectors.shape[1] else Matrix.of([[1]])
+    return bool(verify(relation(minors, "!=", minors * 0), here)[0])
+
+
+def meeting_steps(page: Page, result: ModeResult) -> Iterator[Step]:
+    """Yield a case for each stratum on which only eigenvectors are others than in general, with the ranks there."""
+    for case in result.meeting_cases:
+        if case.result is None:
+            yield undecided(page, case)
+            continue
+        found: Any = case.result
+        inner = Page(found.plant)
+        values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
+        inner.environment = page.environment.having(values=values)
+        at_eigenvalues(inner, found, [part for part, rank, _ in found.parts if rank < found.plant.order])
+        inner.steps += meeting_steps(inner, found)
+        anew = tuple(set_anew(page, inner))
+        yield CaseStep(
+            conditions_of(case), tuple(case.substitution.items()), tuple(inner.steps), sentence("ranks_meet", {}), anew
+        )
 
 
 def fixed_modes(page: Page, result: ModeResult) -> None:

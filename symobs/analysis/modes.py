@@ -11,9 +11,10 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from symobs.analysis.meetings import constancy, constancy_claims, holds_where, systems_of
 from symobs.analysis.observability import Controllability, Observability
 from symobs.analysis.pages import formula_of_factored
-from symobs.analysis.strata import carried
+from symobs.analysis.strata import carried, common_zeros
 from symobs.certificate import Claim
 from symobs.conditions import sign_of
 from symobs.exact import (
@@ -42,6 +43,7 @@ from symobs.stability import on_boundary, stability
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from symobs.analysis.meetings import Constancy, System
     from symobs.analysis.observability import RankResult
     from symobs.exact import Ideal
     from symobs.system import StateSpace
@@ -213,17 +215,24 @@ class ModeResult(Result):
 
     @staticmethod
     def answer_of(plant: StateSpace, kind: str) -> dict[str, Any]:
-        """Return χ, the ranks and the polynomial of the fixed modes."""
+        """Return χ, the ranks with the strata outside which they hold, and the polynomial of the fixed modes."""
         test = TESTS[kind].of(plant, "rank")
         A, _ = test.pair(plant)
         variable, X = plant.variable, test.answer["restricted"]
         chi = plant.simplified(A.characteristic_polynomial(variable))
         fixed = plant.simplified(X.characteristic_polynomial(variable)) if X.shape[0] else Scalar.of(1)
-        ranks = tuple(
-            plant.order - hidden_dimension(X, factor, variable, plant.ideal)
-            for factor, _ in factors_of(chi, fixed, plant).factors
-        )
-        return {"polynomial": chi, "ranks": ranks, "fixed_polynomial": fixed}
+        factors = [factor for factor, _ in factors_of(chi, fixed, plant).factors]
+        dimensions = [hidden_dimension(X, factor, variable, plant.ideal) for factor in factors]
+        others = systems_of(test.case_tree)
+        return {
+            "polynomial": chi,
+            "ranks": tuple(plant.order - dimension for dimension in dimensions),
+            "constancy": tuple(
+                None if others is None else constancy(X, factor, dimension, plant, others)
+                for factor, dimension in zip(factors, dimensions, strict=True)
+            ),
+            "fixed_polynomial": fixed,
+        }
 
     @cached_property
     def test(self) -> RankResult:
@@ -238,9 +247,14 @@ class ModeResult(Result):
         return tuple(replace(part, witness=None) for part in found) if self.plant.equations else found
 
     @property
+    def parts(self) -> Iterator[tuple[Eigenvalues, int, Constancy | None]]:
+        """The eigenvalues by factors, each with its rank and where that holds."""
+        return zip(self.spectrum, self.answer["ranks"], self.answer["constancy"], strict=True)
+
+    @property
     def all_certificates(self) -> tuple[Any, ...]:
         """The certificates of this result and of the rank test below it."""
-        return (*self.certificates, *self.test.certificates)
+        return (*self.certificates, *self.test.all_certificates)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the spectrum, the rank at each eigenvalue, the polynomial of the fixed modes."""
@@ -251,10 +265,12 @@ class ModeResult(Result):
         yield Claim(relation((s @ identity(order, e) - letter("A", e)).apply("det"), chi), e)
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
         yield Claim(relation(chi, Term(formula_of_factored(form), e)), e, "chi = product of the factors")
-        count = len(self.answer["ranks"])
-        yield Claim(relation(count, len(self.spectrum)), e, "one rank for each factor")
-        for part, found in zip(self.spectrum, self.answer["ranks"], strict=True):
+        counts = len(self.answer["ranks"]), len(self.answer["constancy"])
+        yield Claim(relation(*counts, len(self.spectrum)), e, "one rank for each factor")
+        for part, found, where in self.parts:
             yield from self._rank_claims(part, found, e)
+            if where is not None:
+                yield from constancy_claims(where, X, part.factor, order - found, self.plant)
         fixed = (
             (s @ identity(X.shape[0], e) - letter("X", e)).apply("det")
             if X.shape[0]
@@ -309,13 +325,18 @@ class ModeResult(Result):
     # -- fields -------------------------------------------------------------------------------------------------------
 
     def modes_of(self, *, with_matrix: bool) -> list[dict[str, Any]]:
-        """Return the modes with multiplicity: eigenvalue, stable, observable or controllable, rank, matrix."""
+        """Return the modes with multiplicity: eigenvalue, stable, observable or controllable, rank, matrix.
+
+        The rank holds wherever the mode's `conditions` do; where it holds is not known where they are None.
+        """
         seen = "observable" if self.kind == "observability" else "controllable"
         signs, listed = self.plant.symbols.signs, []
-        for part, found in zip(self.spectrum, self.answer["ranks"], strict=True):
+        for part, found, where in self.parts:
             stable = stable_modes(part.roots, signs, discrete=self.plant.is_discrete)
             for root, verdict in [pair for pair in zip(part.roots, stable, strict=True) for _ in range(part.power)]:
-                mode = {"eigenvalue": root, "stable": verdict, seen: found == self.plant.order, "rank": found}
+                mode: dict[str, Any] = {"eigenvalue": root, "stable": verdict}
+                mode |= {seen: found == self.plant.order, "rank": found}
+                mode["conditions"] = None if where is None else holds_where(where)
                 listed.append(mode | ({"matrix": self._pencil_at(root)} if with_matrix else {}))
         return listed
 
@@ -334,3 +355,14 @@ class ModeResult(Result):
     def cases_by(self, solve: Callable[[StateSpace], Result]) -> tuple[Case, ...]:
         """Return the cases of the rank test with the answers of this task there."""
         return carried(self.plant, self.test.case_tree, lambda plant, _: solve(plant))
+
+    def meetings_by(self, solve: Callable[[StateSpace], Result], *further: System) -> tuple[Case, ...]:
+        """Return the cases of the other strata on which a rank is not the generic one, and of further ones."""
+        known = systems_of(self.test.case_tree)
+        if known is None:
+            return ()
+        found = [system for where in self.answer["constancy"] if where is not None for system in where.systems]
+        new = dict.fromkeys(system for system in (*found, *further) if system not in known)
+        cases = [case for system in new for case in common_zeros(self.plant, system, lambda plant, _: solve(plant))]
+        open_ones = (Case((), {}, None),) if None in self.answer["constancy"] else ()
+        return (*{frozenset(case.when): case for case in cases}.values(), *open_ones)

@@ -192,7 +192,7 @@ def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
 
 def conditions_of(case: Case) -> Relation | Together:
     """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
-    relations = tuple(_as_written(condition) for condition in case.when)
+    relations = tuple(as_written(condition) for condition in case.when)
     return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
 
 
@@ -201,7 +201,8 @@ def stratum_of(case: Case) -> Relation | Together:
     return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
 
 
-def _as_written(condition: Condition) -> Relation:
+def as_written(condition: Condition) -> Relation:
+    """Return a condition with p = q for p − q = 0 of two terms."""
     value, operator = condition.expression, condition.operator.replace("==", "=")
     terms = value.terms()
     if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, show_spectrum, stack_of
+from symobs.analysis.mode_pages import at_eigenvalues, fixed_modes, meeting_steps, show_spectrum, stack_of
 from symobs.analysis.modes import TESTS, ModeResult, has_open_cases
 from symobs.analysis.pages import given, hidden_polynomial, rank_cases, square_test
 from symobs.errors import InputError
@@ -53,8 +53,18 @@ class PopovBelevitchHautus(ModeResult):
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
-        """The ranks on every stratum of the rank test."""
+        """The ranks on every stratum where one of them is not the generic one."""
+        return (*self.rank_cases, *self.meeting_cases)
+
+    @cached_property
+    def rank_cases(self) -> tuple[Case, ...]:
+        """The ranks on the strata of the rank test."""
         return self.cases_by(lambda plant: solve(plant, self.of, self.method))
+
+    @cached_property
+    def meeting_cases(self) -> tuple[Case, ...]:
+        """The ranks where eigenvalues meet."""
+        return self.meetings_by(lambda plant: solve(plant, self.of, self.method))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -81,6 +91,7 @@ class PopovBelevitchHautus(ModeResult):
                 page.define(letter, stack, say=say)
                 square_test(page, letter, self.test, self.kind)
                 rank_cases(page, letter, self.test, self.kind)
+                page.steps += meeting_steps(page, self)
                 return
             rank, order = self.test.answer["rank"], self.plant.order
             if rank == order:
@@ -91,6 +102,7 @@ class PopovBelevitchHautus(ModeResult):
             whole = hidden_polynomial(page, order - rank)
             roots = roots_of(self.answer["fixed_polynomial"], self.plant.variable)
             page.conclude(f"modes_{self.kind}", modes=Roots(whole.formula, roots))
+            page.steps += meeting_steps(page, self)
 
 
 def solve(plant: StateSpace, of: str, method_name: str) -> PopovBelevitchHautus:

@@ -171,6 +171,17 @@ class _Search:
         return None
 
 
+def node_of(matrix: Matrix, region: Region, minor: Minor) -> Node | None:
+    """Return the rank of a matrix in a region with the loci below; None where that is beyond the limits.
+
+    `minor` does not vanish in general.
+    """
+    try:
+        return _Search(matrix, region, minor).node(region.whole)
+    except (_Exhausted, TooLarge):
+        return None
+
+
 def rank_tree(matrix: Matrix, A: Matrix, region: Region, minor: Minor, kernel: Kernel) -> Tree:
     """Return rank and kernel of a matrix whose kernel is invariant under A, for all parameters of a region.
 

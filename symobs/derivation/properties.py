@@ -79,7 +79,11 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
         not discrete and no_stable_compensator(value, environment.variable, environment.signs)
     ),
     "marginal": lambda value, environment, discrete: is_marginal(
-        value, environment.variable, environment.signs, discrete=discrete
+        value,
+        environment.variable,
+        environment.signs,
+        discrete=discrete,
+        apart=(*environment.assumed, *environment.domain),
     ),
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete

@@ -96,6 +96,8 @@ def _left_of(when: Together, substitution: dict[str, Scalar], environment: Envir
             reject(plain_relation(relation, environment.variable))
     relations = [apart_from_zero(value) for value in excluded]
     known = Ideal.of((*equations, *relations, *environment.relations))
+    if known.is_whole:
+        reject(f"that {' and '.join(plain_relation(r, environment.variable) for r in when.relations)} can be")
     for name, value in substitution.items():
         solved = (Scalar.symbol(name) * value.denominator - value.numerator) in known
         if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):

@@ -3,12 +3,12 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
-from symobs.exact.algebraic import EIGENVALUE, Extension
+from symobs.exact.algebraic import Extension
 from symobs.exact.calculus import antiderivative, exponential_of_integral
 from symobs.exact.complex import Complex
 from symobs.exact.decimals import is_rounding, places, rounded, written
 from symobs.exact.elimination import echelon, independent_rows, kernel, modulo, rank, reduced_echelon, unit_rows
-from symobs.exact.field import RATIONALS, VARIABLES, Field
+from symobs.exact.field import EIGENVALUE, RATIONALS, VARIABLES, Field
 from symobs.exact.functions import derivative
 from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.matrix import Matrix

@@ -17,9 +17,6 @@ from symobs.record import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-#: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
-EIGENVALUE = "lambda"
-
 
 @dataclass(frozen=True)
 class Extension:

@@ -11,7 +11,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact.algebraic import EIGENVALUE, Extension
+from symobs.exact.algebraic import Extension
+from symobs.exact.field import EIGENVALUE
 from symobs.exact.functions import ONE, ZERO, registered, square_root
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import companion

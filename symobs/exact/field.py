@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 VARIABLES = ("s", "z", "t")
+#: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
+EIGENVALUE = "lambda"
 
 
 def _canonical(name: str) -> tuple[int, str]:

@@ -2,7 +2,8 @@
 
 An ideal stands for what is known to be 0: the equations of a stratum, the minimal polynomial of an eigenvalue, the
 relation c² + s² = 1 of a cosine and a sine.  It is kept as a reduced Gröbner basis (Buchberger's algorithm of FLINT in
-the graded reverse lexicographic order), whose size is limited, since its computation cannot be interrupted.
+the graded reverse lexicographic order; with an eigenvalue in the lexicographic one), whose size is limited, since its
+computation cannot be interrupted.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
-from symobs.exact.field import Field
+from symobs.exact.field import EIGENVALUE, Field
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -108,12 +109,23 @@ def apart_from_zero(value: Scalar) -> Scalar:
     return 1 - Scalar.symbol(f"1/({value.numerator})") * value.numerator
 
 
+def _home(field: Field) -> fmpz_mpoly_ctx:
+    """Return the context of a basis: with an eigenvalue among the names, what does not speak of it is seen in the basis.
+
+    It comes first in a lexicographic order, which eliminates it.
+    """
+    if EIGENVALUE not in field.position:
+        return fmpz_mpoly_ctx.get(field.names, Ordering.degrevlex)
+    others = (name for name in field.names if name != EIGENVALUE)
+    return fmpz_mpoly_ctx.get((EIGENVALUE, *others), Ordering.lex)
+
+
 @lru_cache(maxsize=512)
 def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     for generator in generators:
         field = generator.field if field is None else field | generator.field
     field = field or Field.of(())
-    home = fmpz_mpoly_ctx.get(field.names, Ordering.degrevlex)
+    home = _home(field)
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):
         return Ideal(field, fmpz_mpoly_vec([home.constant(1)], home), home)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.exact.algebraic import EIGENVALUE, Extension
+from symobs.exact.algebraic import Extension
+from symobs.exact.field import EIGENVALUE
 from symobs.exact.functions import Function, derivative, function, partial, registered, substitute, symbols_in
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass

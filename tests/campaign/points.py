@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
-from itertools import islice, product
+from itertools import combinations, islice, product
 from random import Random
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -132,7 +132,7 @@ def answer_at(answer: Tables, point: Point) -> Tables | None:
             raise Uncovered(f"{broken[0][1]} fails and no case holds")
         return branch
     # Where its conditions hold, and no deeper case does, what is said under conditions is said.
-    if all(kind == "existence" and "=" not in condition.replace(">=", ">") for kind, condition in broken):
+    if all(kind == "existence" and "!=" not in condition for kind, condition in broken):
         return branch | {"verdict": "no" if broken else "yes"}
     raise Uncovered(f"{broken[0][1]} fails and no case holds")
 
@@ -172,7 +172,7 @@ def points_for(asked: Asked, most: int = 5) -> Iterator[Point]:
         yield {}
         return
     random = Random(f"points {asked.seed}")  # noqa: S311 - test points, no secrets
-    equations = sorted({side for text in _relations(asked.answer) for side in _sides(text)})
+    equations = sorted({side for text in _relations(asked.answer) for side in _sides(text)} | _meetings(asked.answer))
     seen: Counter[tuple[bool, ...]] = Counter()
     for point in islice(_candidates(signs, equations, random), 60):
         pattern = tuple(_vanishes(equation, point) for equation in equations)
@@ -195,6 +195,12 @@ def _relations(answer: Tables) -> Iterator[str]:
     for case in answer.get("cases", []):
         yield from case["when"]
         yield from _relations(case)
+
+
+def _meetings(answer: Tables) -> set[str]:
+    """Return what is 0 where two of the modes are one, whether the answer speaks of that or not."""
+    values = sorted({mode["eigenvalue"] for mode in answer.get("modes", []) if "CRootOf" not in mode["eigenvalue"]})
+    return {f"({one})-({other})" for one, other in combinations(values, 2)}
 
 
 def _sides(relation: str) -> list[str]:
