@@ -59,13 +59,18 @@ class Branched(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield that there is an answer or a question that is open, and that every root in the answer is real."""
-        if self.answer.get(self.main) is None and self.answer.get("question") is None and self.verdict != "no":
+        if self.answer.get(self.main) is None and self.answer.get("question") is None and self.has_answer:
             reject(f"the {self.main} of {self.task} is missing")
         signs = {**self.answer["taken"], **self.answer["chosen"]}
         above = tuple(delta if sign == "positive" else -delta for delta, sign in signs.items())
         e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, above=above)
         for root in sorted(all_roots(*self.matrices), key=lambda root: root.name):
             yield Claim(relation(root.argument, ">=", 0), e, f"{root.name} is real")
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether there is one in general."""
+        return self.verdict != "no"
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
@@ -87,6 +92,11 @@ class Branched(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, the signs that were chosen, and the denominators of the answer."""
+        return self.stated
+
+    @cached_property
+    def stated(self) -> tuple[Condition, ...]:
+        """What this branch stands on, the cases left aside."""
         listed = {condition.expression for condition in self.domain}
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         beyond = {f for delta in self.answer["chosen"] for f, _ in delta.numerator.factors()[1]}
@@ -101,7 +111,7 @@ class Branched(Result):
         found: list[Case] = []
         signs = self.plant.symbols.signs
         zeros: list[Scalar] = [*self.further_zeros]
-        zeros += [c.expression for c in self.holds_where if c.kind == "claim" and c.operator == "!="]
+        zeros += [c.expression for c in self.stated if c.kind == "claim" and c.operator == "!="]
         before: tuple[Condition, ...] = ()
         for delta, sign in self.answer["chosen"].items():
             if sign_of(delta, signs) not in {"nonpositive", "nonnegative"}:

@@ -12,18 +12,19 @@ from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, reject
 from symobs.analysis.gramian_page import write_gramian
 from symobs.analysis.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
+from symobs.analysis.meetings import distances, systems_of
 from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.errors import InputError
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.exponential import NoClosedForm
 from symobs.exact.functions import symbols_in
 from symobs.exact.quasi import Table, determinant, integral, matrix_at, product, table_of, transposed
 from symobs.formula import Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
-from symobs.method import Result, choose, method, task
+from symobs.method import Case, Result, choose, method, task
 from symobs.page import Page, relation
 from symobs.record import dataclass
 from symobs.stability import Stability, stability
@@ -94,8 +95,22 @@ class Gramian(Branched):
 
     @property
     def verdict(self) -> str:
-        """`no` where an integral over all time does not exist."""
-        return "no" if self.decay.verdict == "no" else super().verdict
+        """`no` where an integral over all time does not exist, not even where less is seen."""
+        if not self.has_answer:
+            return "conditional" if self._kept else "no"
+        return super().verdict
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether what is seen in general decays, if it must."""
+        return self.decay.verdict != "no"
+
+    @cached_property
+    def _kept(self) -> tuple[Case, ...]:
+        """The cases in which there is an integral over all time, though what is seen in general does not decay."""
+        if self.has_answer:
+            return ()
+        return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
 
     @cached_property
     def decay(self) -> Stability:
@@ -108,6 +123,9 @@ class Gramian(Branched):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """Also the conditions for an integral over all time to exist."""
+        if self._kept:
+            there = product_of(distances(systems_of(self._kept) or ()))
+            return (*self.domain, Condition("existence", there, "=="))
         exists = self.decay.positive if self.answer["matrix"] is not None else ()
         beyond = [Condition("existence", value, ">") for value in exists]
         return (*super().holds_where, *beyond)
@@ -121,9 +139,7 @@ class Gramian(Branched):
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
-        """Where the kernel may be another one."""
-        if self.answer["matrix"] is None:
-            return ()
+        """Where the kernel may be another one, and more of what grows unseen."""
         return vanishing_factors(self.existence, self.plant.symbols.signs)
 
     def claims(self) -> Iterator[Claim]:

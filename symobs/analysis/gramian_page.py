@@ -11,13 +11,15 @@ from symobs.analysis.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.analysis.pages import given, hidden, hidden_polynomial
+from symobs.analysis.pages import HIDDEN, given, hidden, hidden_polynomial
 from symobs.conditions import vanishing_factors
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import substitute
-from symobs.formula import Exactly, Literal, Quotient
+from symobs.formula import Exactly, Literal, Quotient, Together
 from symobs.formula.calculus import since_start
-from symobs.page import predicate, relation
+from symobs.page import predicate, relation, sentence
 from symobs.stability import as_inequality
 from symobs.system import StateSpace
 
@@ -133,7 +135,7 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     answer = result.answer
     seen = define_seen(result, page)
     if result.decay.verdict == "no":
-        page.conclude("gramian_diverges", predicate("unstable", seen))
+        page.conclude(f"gramian_diverges_{answer['of']}", predicate("unstable", seen))
         return
     page.set("W", answer["matrix"])
     W = page["W"]
@@ -143,24 +145,32 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     if where:
         found = [as_inequality(value, result.plant.symbols.signs) for value in where]
         listed = tuple(relation(left, operator, right) for left, operator, right in found)
-        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", seen), listed), equation=equation)
+        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", seen), listed))
     else:
-        page.conclude("gramian_infinite", predicate("stable", seen), equation=equation)
+        page.conclude(f"gramian_infinite_{answer['of']}", predicate("stable", seen))
+    count = answer["rank"]["kernel"].shape[1]
+    if count:
+        nothing = relation(W @ page[HIDDEN[answer["of"]][0]], answer["rank"]["kernel"] * 0)
+        page.conclude("lyapunov_with_kernel", nothing, equation=equation, nothing=nothing)
+    else:
+        page.conclude("lyapunov_alone", equation=equation)
     page.equal(relation(W, answer["matrix"]), answer=True)
     page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
 def define_seen(result: Gramian, page: Page) -> Term:
-    """Return χ, or its part that the output sees: the quotient by the polynomial of the hidden modes."""
-    kernel: Matrix = result.answer["rank"]["kernel"]
+    """Return χ, or its part that the output sees (the input moves): the quotient by the polynomial of the other modes."""
+    kernel, of = result.answer["rank"]["kernel"], result.answer["of"]
     tell_polynomial(page)
-    if not kernel.shape[1] or result.answer["of"] == "controllability":
+    if not kernel.shape[1]:
         return page["chi"]
-    page.set("N", kernel)
-    X = page.set("X", result.answer["rank"]["restricted"])
-    page.conclude_silently(*hidden(page, is_observer=True))
-    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0]).formula))
-    page.equal(relation(seen, result.answer["seen"]), say="seen_part")
+    letters = HIDDEN[of]
+    page.set(letters[0], kernel)
+    X = page.set(letters[1], result.answer["rank"]["restricted"])
+    page.conclude_silently(*hidden(page, of == "observability", letters))
+    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0], letters[1]).formula))
+    shown = relation(seen, result.answer["seen"]), relation(page[letters[0]], kernel)
+    page.equal(*shown, say=f"part_{of}")
     return seen
 
 
@@ -173,9 +183,13 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
     M = page.define("M", total, say="finite_sum_is")
     kernel: Matrix = result.answer["rank"]["kernel"]
     if not kernel.shape[1]:
-        determinant = relation(M.apply("det"), M.value.determinant())
-        suffix = "_controllability" if result.answer["of"] == "controllability" else ""
-        page.conclude(f"kernel_none{suffix}", determinant=determinant)
+        value = M.value.determinant()
+        key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
+        key = "kernel_none_of_sum" if result.answer["matrix"] is None else key
+        says = Conclude(sentence(key, {"determinant": relation(M.apply("det"), value)}), (relation(value, "!=", 0),))
+        factors = vanishing_factors([value], result.plant.symbols.signs)
+        apart = Together(tuple(relation(factor, "!=", 0) for factor in factors))
+        page.steps.append(CaseStep(apart, (), (says,)) if factors else says)
         return
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":
         return

@@ -80,10 +80,27 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     order = A.shape[0]
     if order > (_MOST_WITH_PARAMETERS if (A.names | C.names) else _MOST_STATES):
         return {**nothing, "question": f"Lyapunov's equation for {order} states"}
-    W = lyapunov(A, C, discrete=plant.is_discrete)
+    W = _of_what_is_seen(A, C, test, discrete=plant.is_discrete)
     if W is None:
         return {**nothing, "question": "Lyapunov's equation has no unique solution"}
     return {"matrix": W, "determinant": W.determinant(), "seen": seen}
+
+
+def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete: bool) -> Matrix | None:
+    """Solve Lyapunov's equation for the part that is seen: with x₁ = Q x, Q rows of 𝒪, A₁ Q = Q A and W = QᵀW₁Q."""
+    order = range(A.shape[0])
+    if not test["rank"]:
+        return Matrix.zeros(*A.shape)
+    if test["rank"] == A.shape[0]:
+        return lyapunov(A, C, discrete=discrete)
+    Q: Matrix = test["matrix"].select(test["rows"], order)
+    square = Q.select(range(Q.shape[0]), test["columns"]).T
+
+    def through(rows: Matrix) -> Matrix:  # Y with Y Q = rows
+        return square.solve(rows.select(range(rows.shape[0]), test["columns"]).T).T.normal()
+
+    W = lyapunov(through(Q @ A), through(C), discrete=discrete)
+    return None if W is None else (Q.T @ W @ Q).normal()
 
 
 def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:

@@ -9,9 +9,7 @@ from dataclasses import field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
-from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Claim
-from symobs.conditions import Condition, vanishing_factors
 from symobs.design.family import Family
 from symobs.design.names import fresh_names
 from symobs.design.several import SeveralOutputs
@@ -312,40 +310,12 @@ class GainDesign(Result):
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
-        """What is true where det 𝒪 (det 𝒞) vanishes: a gain that survives there, or none."""
-        desired = self.desired
-        if desired is None:
+        """What is true on the strata where modes, gain, or whether there is one are others than in general."""
+        if self.desired is None:
             return ()
+        from symobs.design.gain_cases import cases_of  # noqa: PLC0415 - a gain in a loop of many is not asked for them
 
-        def solve(plant: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-            found = type(self).of(plant, desired.substitute(values), self.method, self.zero, self.wish)
-            own = self.answer[self.letter]
-            if own is None or found.answer[self.letter] is None:
-                return found
-            try:  # the gain of the main line, where it is still there
-                kept = own.substitute(values)
-            except ZeroDivisionError:
-                return found
-            return found.with_answer(self.letter, kept) if plant.admits(kept) else found
-
-        left = self.existence
-        if self.zero and self.answer[self.letter] is None and self.divides and self.plant.field.names:
-            return common_zeros(self.plant, self.needed, solve) if self.needed else ()
-        if self._pair.is_observable:
-            return (*carried(self.plant, self.test.case_tree, solve), *strata(self.plant, self._chosen, solve))
-        if len(left) <= 1:
-            return strata(self.plant, left, solve)
-        shared = set.intersection(*(set(vanishing_factors([c], self.plant.symbols.signs)) for c in left))
-        elsewhere = Case(tuple(Condition("existence", c, "==") for c in left), {}, None)
-        return (*strata(self.plant, shared, solve), elsewhere)
-
-    @cached_property
-    def _chosen(self) -> tuple[Scalar, ...]:
-        """What the gain divides by because it is this one of many: where it vanishes another one serves."""
-        if not isinstance(self._pair, SeveralOutputs) or self.answer[self.letter] is None:
-            return ()
-        lost = {c.expression for case in self.test.case_tree for c in case.when}
-        return tuple(c.expression for c in self.holds_where if c.kind == "claim" and c.expression not in lost)
+        return cases_of(self, self.desired)
 
     @cached_property
     def stability(self) -> Stability:

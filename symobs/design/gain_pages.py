@@ -350,8 +350,10 @@ def _case(page: Page, case: Case, side: Side) -> None:
     try:
         _on_stratum(page, case, result, side)
     finally:
-        steps, page.steps, page.environment = page.steps, outer, environment
-    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps)))
+        inside, steps = page.environment, page.steps
+        page.steps, page.environment = outer, environment
+    anew = [name for name in side.hidden if page.knows(name) and inside.values[name] != environment.values[name]]
+    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
 def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:

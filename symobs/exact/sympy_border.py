@@ -9,8 +9,8 @@ import sympy  # noqa: TID253 - this module is imported only where SymPy objects 
 
 from symobs.errors import InexactInput, InputError
 from symobs.exact import functions
-from symobs.exact.field import EIGENVALUE
 from symobs.exact.complex import Complex
+from symobs.exact.field import EIGENVALUE
 from symobs.exact.matrix import Matrix
 from symobs.exact.real import RealRoot
 from symobs.exact.root_sum import RootSum

@@ -27,18 +27,22 @@ PHRASES: dict[str, str] = {
     "gramian_by_lyapunov": "Since the derivative of $exp_Atᵀ P_l exp_At$ is $- exp_Atᵀ Cᵀ C exp_At$, the Gramian is the same expression for every "
     "sign of the discriminant:",
     "gramian_in_case": "Entry by entry,",
-    "gramian_infinite": "The integral over all time exists, since what the output sees decays. It solves Lyapunov's equation "
-    "{equation}, whose only solution is",
-    "seen_part": "Of this the output sees the part that is left without the hidden modes,",
-    "gramian_diverges": "What the output sees does not decay, so the integral over all time does not exist.",
+    "gramian_infinite_observability": "The integral over all time exists, since what the output sees decays.",
+    "gramian_infinite_controllability": "The integral over all time exists, since what the input moves decays.",
+    "lyapunov_alone": "It solves Lyapunov's equation {equation}, whose only solution is",
+    "lyapunov_with_kernel": "It solves Lyapunov's equation {equation}, and of its solutions it is the one with {nothing},",
+    "part_observability": "Of this the output sees the part that is left without the hidden modes,",
+    "part_controllability": "Of this the input moves the part that is left without the modes that it does not move,",
+    "gramian_diverges_observability": "What the output sees does not decay, so the integral over all time does not exist.",
+    "gramian_diverges_controllability": "What the input moves does not decay, so the integral over all time does not exist.",
     "gramian_open": "Whether the integral over all time exists is not decided here: {question}.",
-    "gramian_exists_if": "The integral over all time exists exactly where {where}. It solves Lyapunov's equation {equation}, whose only "
-    "solution is",
+    "gramian_exists_if": "The integral over all time exists exactly where {where}.",
     "gramian_steps": "Over a horizon of {steps} steps the Gramian is the sum",
     "finite_sum": "Finite sum.",
     "finite_sum_is": "The same kernel belongs to the finite sum over the powers of $A$,",
     "kernel_none": "Its determinant is {determinant}, so it has no kernel, and neither has $W$: the initial state can be found "
     "from the output.",
+    "kernel_none_of_sum": "Its determinant is {determinant}, so it has no kernel.",
     "kernel_none_controllability": "Its determinant is {determinant}, so it has no kernel, and neither has $W$: every state can be "
     "reached.",
     "kernel_shared": "Gramian, finite sum and $O$ have the same kernel. For",
@@ -86,7 +90,8 @@ PHRASES: dict[str, str] = {
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "gramian_infinite": ("stable",),
-    "gramian_diverges": ("unstable",),
+    "gramian_diverges_observability": ("unstable",),
+    "gramian_diverges_controllability": ("unstable",),
 }
 
 RESTS_ON: dict[str, str] = {
