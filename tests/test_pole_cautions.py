@@ -99,3 +99,35 @@ def test_there_are_laws_of_both_kinds() -> None:
 
 def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
     assert "A caution." not in page(symobs.observer(plant(), poles="-p, -q"))
+
+
+HIDDEN = [
+    # the observer cannot move the mode 1, nor does K look at it: F = 2/(s + 4)
+    (("[1 0; 0 -1]", "[1; 1]", "[0 1]"), "1, -3", "1, -2", "no", "of the modes that cancel in it, 1, not all lie in"),
+    (("[a 0; 0 -1]", "[1; 1]", "[0 1]"), "a, -3", "a, -2", "conditional", "a, are stable exactly where a < 0"),
+    (("[-1 0; 0 -2]", "[1; 1]", "[0 1]"), "-1, -3", "-1, -4", "yes", ""),
+    (
+        ("[1 0 0; 0 -1 0; 0 0 -2]", "[1 0; 1 0; 0 1]", "[0 1 0; 0 0 1]"),
+        "1, -3, -4",
+        "1, -2, -5",
+        "no",
+        "not all lie in",
+    ),
+]
+
+
+@pytest.mark.parametrize(("matrices", "control", "observer", "stable", "words"), HIDDEN)
+def test_a_mode_that_F_does_not_show_is_told(
+    matrices: tuple[str, str, str], control: str, observer: str, stable: str, words: str
+) -> None:
+    design = symobs.compensator(symobs.StateSpace(*matrices), control_poles=control, observer_poles=observer)
+    assert (design.F_stable, design.compensator_stable) == ("yes", stable)
+    found = " ".join(page(design).split())
+    assert ("does not show the whole compensator" in found) == bool(words)
+    assert words in found
+
+
+def test_a_compensator_that_F_shows_whole_is_stable_as_F_is() -> None:
+    design = symobs.compensator(plant(), control_poles="-2, -2", observer_poles="-10, -10")
+    assert (design.F_stable, design.compensator_stable) == ("yes", "yes")
+    assert "whole compensator" not in page(design)

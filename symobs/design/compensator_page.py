@@ -14,6 +14,7 @@ from symobs.design.gain_pages import (
     name_entries,
     write_gain,
 )
+from symobs.design.hidden_law import caution_hidden
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.observer import page_style, write_observer
 from symobs.design.responses import plot_estimate
@@ -337,7 +338,11 @@ def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
 
 
 def cautions(page: Page, design: OutputFeedback) -> None:
-    """Warn where an expert would: a repeated control pole is defective, so its exponential alone does not bound x."""
+    """Warn where an expert would: of modes that F does not show, and of a repeated control pole.
+
+    Such a pole is defective, so its exponential alone does not bound x.
+    """
+    caution_hidden(page, design)
     plant = design.plant
     desired = design.feedback.desired
     if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:

@@ -266,6 +266,13 @@ class OutputFeedback(Result):
         return "conditional" if len(met) == 2 else "undecided"
 
     @cached_property
+    def law_stability(self) -> str:
+        """Whether the compensator by itself is stable, with the modes that F does not show."""
+        from symobs.design.hidden_law import law_stability  # noqa: PLC0415 - gains in a loop of many are not asked
+
+        return law_stability(self)
+
+    @cached_property
     def _is_unavoidably_unstable(self) -> bool:
         """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
         plant = self.plant
@@ -287,6 +294,7 @@ class OutputFeedback(Result):
         return {
             **answers,
             "F_stable": self.own_stability,
+            "compensator_stable": self.law_stability,
             "compensator_matrix": self.own_matrix,
             "closed_loop_polynomial": self.loop_polynomial,
             "closed_loop": self.loop,

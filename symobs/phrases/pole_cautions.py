@@ -17,6 +17,9 @@ PHRASES: dict[str, str] = {
     "stays_state_feedback_discrete": "A pole asked for lies on the unit circle: with this feedback the loop does not come to rest by itself.",
     "law_unstable_continuous": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie in the open left half plane.",
     "law_unstable_discrete": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie inside the unit circle.",
+    "hides_continuous": "$F$ does not show the whole compensator: of the modes that cancel in it, {modes}, not all lie in the open left half plane, so without the plant the law is unstable.",
+    "hides_discrete": "$F$ does not show the whole compensator: of the modes that cancel in it, {modes}, not all lie inside the unit circle, so without the plant the law is unstable.",
+    "some_hidden": "$F$ does not show the whole compensator: the modes that cancel in it, {modes}, are stable exactly where {where}.",
 }
 
 _TELL: dict[str, tuple[str, ...]] = {
@@ -24,6 +27,8 @@ _TELL: dict[str, tuple[str, ...]] = {
     "stays": ("unstable", "marginal"),
     "lasts": ("unstable",),
     "law": ("unstable",),
+    "hides": ("unstable",),
+    "some": (),
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {key: _TELL[key.partition("_")[0]] for key in PHRASES}
