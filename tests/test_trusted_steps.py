@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import FrozenInstanceError, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import MISSING, FrozenInstanceError, fields, replace
+from typing import Any, get_args
 
 import pytest
 
@@ -20,6 +20,7 @@ from symobs.derivation import (
     Section,
     Sentence,
     Solve,
+    Step,
     Survey,
     Tabulate,
     Where,
@@ -48,9 +49,6 @@ from symobs.region.routh import routh_table
 from tests import drawn_by_hand as hand
 from tests.steps import A_IS, C_IS, CHI, START, A, C, F, X, a, b, c, checked, literal, refused, s, said, slot
 
-if TYPE_CHECKING:
-    from symobs.derivation import Step
-
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
 chi, phi = Letter("chi"), Letter("phi")
@@ -65,8 +63,21 @@ def test_what_cannot_be_read_is_refused_with_its_line() -> None:
     with pytest.raises(DerivationRejected, match="a step of kind str cannot be read") as caught:
         checked("prose")  # type: ignore[arg-type]
     assert caught.value.facts["line"] == "prose"
+    assert caught.value.repair == "please report this: it is a bug of symobs"
     with pytest.raises(FrozenInstanceError):
         Derivation((), START).steps = ()  # type: ignore[misc]
+
+
+KINDS = get_args(Step)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]) -> None:
+    step = kind(*[None for part in fields(kind) if part.default is MISSING])
+    assert {getattr(step, part.name) for part in fields(kind)} <= {None, (), False}
+    for part in fields(kind):
+        with pytest.raises(FrozenInstanceError):
+            setattr(step, part.name, None)
 
 
 # -- every part of a step is read ---------------------------------------------------------------------------------------

@@ -49,7 +49,7 @@ TESTS = {
     "pole_paths.py": "trusted_pictures",
     "responses.py": "trusted_pictures",
     "tables.py": "routh",
-    "translation.py": "conventions derivation trusted_steps",
+    "translation.py": "trusted_translation",
     "rejection.py": "derivation trusted_steps",
     "registry.py": "trusted_results",
     "result.py": "derivation trusted_results",
