@@ -238,6 +238,9 @@ def test_a_document_is_told_in_its_convention() -> None:
     document = Document("", "", (found,))
     assert (document.convention, document.text, document.detail, document.templates) == (STANDARD, "", "full", None)
     assert document.derivations == (found.derivation,)
+    for place in ("full", None):
+        with pytest.raises(TypeError):
+            Document("", "", (found,), STANDARD, "", place)  # type: ignore[call-arg, arg-type]
     other = replace(document, convention=convention_named("S1"))
     (derivation,) = other.derivations
     L = found.answer["L"]

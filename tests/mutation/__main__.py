@@ -51,7 +51,7 @@ TESTS = {
     "tables.py": "routh",
     "translation.py": "trusted_translation",
     "rejection.py": "derivation trusted_steps",
-    "registry.py": "trusted_results",
+    "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
 }
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
