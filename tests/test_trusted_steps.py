@@ -73,8 +73,9 @@ KINDS = get_args(Step)
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]) -> None:
-    step = kind(*[None for part in fields(kind) if part.default is MISSING])
-    assert {getattr(step, part.name) for part in fields(kind)} <= {None, (), False}
+    given = Sentence("test_plain")
+    step = kind(*[given for part in fields(kind) if part.default is MISSING])
+    assert {getattr(step, part.name) for part in fields(kind)} <= {given, None, (), False}
     for part in fields(kind):
         with pytest.raises(FrozenInstanceError):
             setattr(step, part.name, None)
