@@ -475,6 +475,16 @@ def test_rounding_is_not_seen_however_far_off_a_course_begins() -> None:
             assert abs(growing - 10**40 * mpmath.exp(mpmath.mpf(k) / 5) * 2**64) <= 2
 
 
+def test_terms_of_either_sign_come_to_an_end() -> None:
+    """−t eᵗ beside eᵗ: what is left of a negative term, rounded down, is -1 for good."""
+    found = responses._stepped(Matrix.of([[1, -1], [0, 1]]), (Fraction(0), Fraction(1)), Fraction(1, 4), 9)
+    with mpmath.workprec(300):
+        for j, (mixed, growing) in enumerate(found):
+            t = mpmath.mpf(j) / 4
+            assert abs(mixed + t * mpmath.exp(t) * 2**64) <= 2
+            assert abs(growing - mpmath.exp(t) * 2**64) <= 2
+
+
 TURNING = Environment(
     variable="z",
     values={"A": Matrix.of([[2, 1], [0, -1]])},
@@ -507,6 +517,7 @@ def test_courses_of_discrete_time_are_met_exactly() -> None:
     assert samples(output, second, first, low="-1/2") == ["x, which leaves the window,"]
     for end in (2, 4):
         assert samples(output, end=end) == ["instants other than 0, 1, 2, ..."]
+        assert samples(replace(output, heights=(0, 0, 0, 0)), end=end) == ["instants other than 0, 1, 2, ..."]
     for place in range(4):
         for off in (1, -1):  # half of one is seen
             heights = [height + off * (k == place) for k, height in enumerate(output.heights)]

@@ -45,7 +45,7 @@ TESTS = {
     "regions.py": "trusted_regions",
     "flows.py": "trusted_flows",
     "places.py": "trusted_pictures",
-    "pictures.py": "pictures trusted_pictures",
+    "pictures.py": "trusted_drawings trusted_pictures",
     "pole_paths.py": "trusted_pictures",
     "responses.py": "trusted_pictures",
     "tables.py": "routh",
