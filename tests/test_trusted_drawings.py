@@ -128,7 +128,6 @@ SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
 )
 def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, Any], *, expected: bool) -> None:
     """Of a place, 0.1 to the sides and 0.2 up and down."""
-    value = value if isinstance(value, Scalar) else Scalar.of(value)
     assert pictures._passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
 
 
