@@ -81,6 +81,25 @@ def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]
             setattr(step, part.name, None)
 
 
+def test_data_mean_nothing_where_a_denominator_vanishes() -> None:
+    n = Scalar.symbol("n")
+
+    def domain(*values: Any) -> tuple[Scalar, ...]:
+        return checked(*(Given((said(Letter("P"), value),)) for value in values)).domain
+
+    assert domain(1 / h) == (h,)
+    assert domain(Matrix.of([[1, 1 / h], [k / n, 1]])) == (h, n)
+    assert domain(Sum((literal(1), Sum((literal(1 / h), literal(1 / k))), literal(1 / n)))) == (h, k, n)
+    assert domain(h / a) == domain(h) == ()  # a is positive
+    two = checked(Given((said(Letter("P"), 1 / h), said(Letter("Q"), 1 / k)))).domain
+    assert two == checked(Given((said(Letter("P"), 1 / h),)), Given((said(Letter("Q"), 1 / h / k),))).domain == (h, k)
+
+
+@pytest.mark.parametrize("terms", [(A, Letter("Q")), (Letter("Q"), A)])
+def test_every_letter_of_a_formula_is_established(terms: tuple[Letter, ...]) -> None:
+    refused(A_IS, Equal((said(Sum(terms), A),)), match="Q is used before it is established")
+
+
 # -- every part of a step is read ---------------------------------------------------------------------------------------
 
 
