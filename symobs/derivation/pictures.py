@@ -30,9 +30,8 @@ if TYPE_CHECKING:
     from symobs.formula import Environment, Formula, Relation
     from symobs.picture import Curve, End, Interval, Picture, Place
 
-#: Parts of a window: what is near a curve or an end, what the middle of a drawn segment may lie off its curve, and how
-#: far a pole may lie from its path.
-_NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200)
+#: Parts of a window: what is near a curve or an end, and what the middle of a drawn segment may lie off its curve.
+_NEAR, _BETWEEN = Fraction(1, 500), Fraction(1, 50)
 #: A condition of stability is all but zero where it is so much smaller than at the points around.
 _SMALLER = 16
 #: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
@@ -40,7 +39,6 @@ _PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
 #: The last pictures in which nothing was false, and of what: a page asks before it shows one, and again when it is
 #: checked.  A picture cannot be changed, so the same one shows the same; another one of equal parts is looked at anew.
 _FAITHFUL: deque[tuple[Picture, tuple[object, ...]]] = deque(maxlen=4)
-_NOWHERE = (Fraction(0), Fraction(0))
 _ON_SEGMENT = (Fraction(2, 7), Fraction(5, 9), Fraction(3, 4))
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 _SIGNS: dict[str, Callable[[Fraction], bool]] = {
