@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.derivation import pictures
-from symobs.derivation.pictures import _Test, faults, relations_of
-from symobs.exact import Scalar
+from symobs.derivation.pictures import _Test, faults, is_faithful, relations_of
+from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import square_root
 from symobs.formula import Environment, Letter
 from symobs.picture import Curve, End, LinePicture, Mark, RegionPicture
@@ -48,8 +48,9 @@ def test_a_place_is_stable_or_not() -> None:
     assert asked(s + 1 / h1, "h1").is_stable(Fraction(1)) is True
     for value, expected in (("1/2", True), ("-1/2", True), (1, False), (-2, False)):
         assert asked(z + h1, "h1", discrete=True).is_stable(Fraction(value)) is expected
-    with pytest.raises(ValueError, match="zip"):
-        test.is_stable(Fraction(1))
+    dropped = asked(h2 * s**2 + s + 1, "h2")
+    assert dropped.is_stable(Fraction(1)) is True
+    assert dropped.is_stable(Fraction(0)) is False  # a root has gone to infinity
 
 
 def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
@@ -63,6 +64,9 @@ def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
     leading = asked(h1**2 * s + 1, "h1")
     assert leading.is_excluded((Fraction(1),), around)
     assert not leading.is_excluded((Fraction("1.01"),), around)
+    for sign in (1, -1):  # the leading coefficient alone, which 30 − h² hides in the condition
+        assert asked(sign * (h1**2 * s + 30 - h1**2), "h1").is_excluded((Fraction(1),), around)
+        assert not asked(sign * (h1**2 * s + 30 - h1**2), "h1").is_excluded((Fraction("1.01"),), around)
     second = asked(s**2 + s + h1**2, "h1")
     assert second.is_excluded((Fraction(1),), around)
     assert not second.is_excluded((Fraction("1.01"),), around)
@@ -87,11 +91,10 @@ def test_an_equation_is_a_polynomial_without_double_factors() -> None:
     assert difference(h1, 1) in {h1 - 1, 1 - h1}
     assert difference((h1 - h2) ** 3 * h1, 0) in {(h1 - h2) * h1, (h2 - h1) * h1}
     assert difference(h2, 1 / h1) in {h1 * h2 - 1, 1 - h1 * h2}
-    assert difference(Letter("P"), 1) in {h1 * h2 - 1, 1 - h1 * h2}
+    assert difference(Letter("P"), 1) == difference(Matrix.of([[h1 * h2]]), 1) in {h1 * h2 - 1, 1 - h1 * h2}
     assert difference(h1, b, b=3) in {h1 - 3, 3 - h1}
     for constant in (difference(h1, h1), difference(1, 2), difference(h1, 1, ">")):
-        assert constant.is_zero or constant.is_constant
-    assert difference(h1, 1, ">").is_zero
+        assert constant == Scalar.of(1)
     assert relations_of(RegionPicture(AXES, SQUARE, (), (Curve((), said(h1, 1)), Curve((), said(h2, 2))))) == (
         said(h1, 1),
         said(h2, 2),
@@ -210,6 +213,9 @@ def test_some_points_of_a_curve_are_asked_about(monkeypatch: pytest.MonkeyPatch)
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 23, 3)]
     assert {x for x, _ in places} == {Fraction(-2, 10**4), Fraction(2, 10**4)}
     places.clear()
+    pictures._are_boundaries(Curve(points[:21], said(h1, 0)), SQUARE, asked(s, *AXES))
+    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 20, 2)]
+    places.clear()
     pictures._are_boundaries(Curve(points[:5], said(h1, 0)), SQUARE, asked(s, *AXES))
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in (1, 2, 3)]
 
@@ -310,6 +316,21 @@ def test_the_middle_of_a_segment_may_lie_farther_off() -> None:
         found = told(replace(HALF, curves=(WALL, replace(curve, boundary=True)), marks=()), STABLE)
         assert (found == []) == is_near
         assert is_near or len(found) == 1
+
+
+def test_a_middle_out_of_sight_is_not_looked_at() -> None:
+    curve = Curve((at(-600, 1440), at(600, 1440)), said(250 * h2, h1**2))
+    assert told(replace(HALF, curves=(WALL, curve)), STABLE) == []
+
+
+def test_a_window_has_an_inside() -> None:
+    for window in (
+        ((Fraction(0), Fraction(0)), WINDOW[1]),
+        ((Fraction(1), Fraction(0)), WINDOW[1]),
+        (WINDOW[0], (Fraction(0), Fraction(0))),
+        (WINDOW[0], (Fraction(1), Fraction(0))),
+    ):
+        assert told(replace(HALF, window=window), STABLE) == ["the window is empty"]
 
 
 def test_an_equation_is_of_the_axes_and_not_constant() -> None:
@@ -521,4 +542,29 @@ def test_an_equation_that_means_another_thing_is_looked_at_anew(monkeypatch: pyt
 
 
 def test_the_last_four_pictures_are_remembered() -> None:
-    assert pictures._FAITHFUL.maxlen == 4
+    known = Environment(values={"chi": s + k})
+
+    def found(picture: LinePicture) -> list[str]:
+        return list(faults(picture, CHI, known, discrete=False))
+
+    seen = [LinePicture("k", LINE, ((end(0), None),)) for _ in range(5)]
+    assert [found(picture) for picture in seen] == [[]] * 5
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "_of_line", lambda *_: iter(["it was looked at"]))
+        assert [found(picture) for picture in seen] == [["it was looked at"], [], [], [], []]
+
+
+def test_the_polynomial_may_stand_in_a_matrix_of_one_entry() -> None:
+    picture = LinePicture("k", LINE, ((end(0), None),))
+    known = Environment(values={"chi": Matrix.of([[s + k]])})
+    assert list(faults(picture, CHI, known, discrete=False)) == []
+    assert is_faithful(picture, CHI, known, discrete=False) is True
+    assert is_faithful(picture, Letter("phi"), known, discrete=False) is False
+
+
+def test_every_number_that_is_drawn_for_is_allowed() -> None:
+    numbers = (("a", Scalar.of(1)), ("b", Scalar.of(-1)), ("c", Scalar.of(0)))
+    chi = s + k + Scalar.symbol("b") + Scalar.symbol("a") + Scalar.symbol("c")
+    signs = {"a": "positive", "b": "positive", "c": "nonzero"}
+    assert on_line((end(0), None), chi=chi, drawn_for=numbers) == []
+    assert told(LinePicture("k", LINE, ((end(0), None),), drawn_for=numbers), chi, **signs) == ["b = -1", "c = 0"]

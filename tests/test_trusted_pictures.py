@@ -227,6 +227,15 @@ def test_a_pole_is_where_it_is() -> None:
     assert poles(replace(back, paths=(good.paths[0][::-1],)), s + k) == []
 
 
+def test_a_page_shows_poles_of_its_own_polynomial() -> None:
+    good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
+    assert told(good, s + k) == []
+    assert told(good, s + k + 1)[0] == "(0, 0) is a pole at k = 0"
+    assert told(good, s + k + h1) == [f"the polynomial {s + k + h1} depends on k alone"]
+    assert told(replace(good, drawn_for=(("h1", Scalar.of(0)),)), s + k + h1) == []
+    assert told(good, Scalar.symbol("z") + k, discrete=True)[0] == "the poles are those in s"
+
+
 def test_all_poles_are_drawn_each_once() -> None:
     """(s + k) (s + k + 1) has −k and −k − 1."""
     first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
@@ -530,6 +539,8 @@ def test_courses_are_of_the_time_of_their_plant() -> None:
     response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE, PARTS)
     assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["another time"]
     assert list(faults(response, Letter("A"), DECAY, discrete=False)) == []
+    wrong = replace(response, courses=(course(1, 1, 2),))
+    assert list(faults(wrong, Letter("A"), DECAY, discrete=False)) == ["the course of x"]
 
 
 def test_a_course_too_long_to_compute_is_refused() -> None:

@@ -110,12 +110,12 @@ def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
 
 
 def _difference(relation: Relation, environment: Environment, numbers: dict[str, Scalar]) -> Scalar:
-    """Return a polynomial that vanishes where the equation holds, each factor once; 0 where there is no equation."""
+    """Return a polynomial that vanishes where the equation holds, each factor once; 1 where there is no equation."""
     if relation.operators != ("=",):
-        return Scalar.of(0)
+        return Scalar.of(1)
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     factors = (left - right).substitute(numbers).numerator.factors()[1]
-    return product_of(factor for factor, _ in factors) if factors else Scalar.of(0)
+    return product_of(factor for factor, _ in factors)
 
 
 class _Test:
@@ -189,7 +189,7 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             yield plain_relation(curve.equation, test.variable)
         elif curve.boundary not in _are_boundaries(curve, picture.window, test):
             yield f"{plain_relation(curve.equation, test.variable)} is {'a' if curve.boundary else 'no'} boundary"
-    drawn = [value for value in equations.values() if value]
+    drawn = list(equations.values())
     excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
     for area in picture.areas:
         for place in area:
