@@ -361,6 +361,17 @@ def test_an_area_has_its_edges_on_curves_or_on_the_border() -> None:
     assert told(replace(HALF, areas=(nearly,), marks=()), STABLE) == []
 
 
+def test_every_edge_of_every_area_is_on_some_curve() -> None:
+    second = Curve((at(100, 500), at(400, 500)), said(h2, 500))
+    assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), curves=(WALL, second)), STABLE) == []
+    assert told(replace(HALF, areas=((*RIGHT[:3], at(40, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
+    sloping = at(40, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
+    assert "an edge at (450, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
+    below, above = (*RIGHT[:2], at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), *RIGHT[2:])
+    for areas in ((below, (*above, at(3, 500))), ((*above, at(3, 500)), below)):
+        assert "an edge at (3, 500)" in told(replace(HALF, areas=areas, marks=()), STABLE)
+
+
 def test_what_is_shaded_is_stable_and_what_is_stable_is_shaded() -> None:
     whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
     found = told(replace(HALF, areas=(whole,), marks=()), STABLE)
@@ -374,6 +385,13 @@ def test_what_is_shaded_is_stable_and_what_is_stable_is_shaded() -> None:
     halves = ((at(0, -1000), at(500, -1000), at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), at(500, 1000), at(0, 1000)))
     assert told(replace(HALF, areas=halves), STABLE) == []
     assert told(replace(HALF, areas=halves[:1]), STABLE)[0] == "(100, 3) is stable"
+
+
+def test_what_is_too_narrow_to_be_seen_is_not_asked_for() -> None:
+    for width, is_seen in ((4, False), (5, True)):
+        strip = at(-100, -1000), at(width - 100, -1000), at(width - 100, 1000), at(-100, 1000)
+        found = told(replace(HALF, areas=(RIGHT, strip), marks=()), STABLE)
+        assert len(found) == 9 * is_seen
 
 
 def test_a_place_that_is_taken_out_is_not_asked_for() -> None:
