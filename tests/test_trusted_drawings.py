@@ -387,6 +387,20 @@ def test_what_is_shaded_is_stable_and_what_is_stable_is_shaded() -> None:
     assert told(replace(HALF, areas=halves[:1]), STABLE)[0] == "(100, 3) is stable"
 
 
+def test_a_mark_speaks_of_its_place_and_of_the_shade_there() -> None:
+    whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
+    for kind in ("stable", "unstable"):
+        marks = (Mark(at(-100, 3), kind),)
+        assert f"(-100, 3) is {kind}" in told(replace(HALF, areas=(whole,), marks=marks), STABLE)
+
+
+def test_a_place_beside_a_curve_may_be_shaded_or_not() -> None:
+    """Of the places all over the window seven have h1 = −11.04, between where it ends and where it is drawn to end."""
+    right = tuple((x - 10 if x == 0 else x, y) for x, y in RIGHT)
+    wall = Curve((at(-12, -1000), at(-12, 1000)), said(h1, -12))
+    assert told(replace(HALF, areas=(right,), curves=(wall,), marks=()), STABLE + 12) == []
+
+
 def test_what_is_too_narrow_to_be_seen_is_not_asked_for() -> None:
     for width, is_seen in ((4, False), (5, True)):
         strip = at(-100, -1000), at(width - 100, -1000), at(width - 100, 1000), at(-100, 1000)
@@ -407,12 +421,13 @@ def test_a_place_that_is_taken_out_is_not_asked_for() -> None:
 
 
 def test_a_hole_that_is_drawn_roughly_is_seen_from_around() -> None:
-    """(h1 − 1)² + h2²/4 is 1 at the place and 9, 1 and 5 around, of which the least counts; then none is enough."""
+    """(h1 − x)² + (h2 − y)²/4 is at the place a 16th of what it is 2 to the sides and 4 up and down, or less."""
     whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
     picture = RegionPicture(AXES, WINDOW, (whole,), (), (Mark(at(0, 0), "excluded"),))
-    for x, y, is_out in (("0.4", 0, True), ("0.41", 0, False), ("-0.4", 0, True), (0, "0.8", True), (0, "0.81", False)):
-        chi = s + (h1 - Scalar.of(Fraction(x))) ** 2 + (h2 - Scalar.of(Fraction(y))) ** 2 / 4
-        assert (told(picture, chi) == []) is is_out, (x, y)
+    for off in ("0.4", "-0.4", "0.41", "-0.41"):
+        for x, y in ((Fraction(off), Fraction(0)), (Fraction(0), 2 * Fraction(off))):
+            chi = s + (h1 - Scalar.of(x)) ** 2 + (h2 - Scalar.of(y)) ** 2 / 4
+            assert (told(picture, chi) == []) is off.endswith("4"), (x, y)
 
 
 # -- lines ------------------------------------------------------------------------------------------------------------------

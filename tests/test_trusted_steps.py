@@ -448,6 +448,14 @@ def test_what_stands_inside_is_checked(step: Step) -> None:
 ON = Environment(signs={"a": "positive", "b": "real", "c": "real", "h": "real", "k": "real"})
 
 
+def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
+    assumed, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
+    checked(assumed, used)
+    for when in (said(h * (h - 1), 0), said(k * k, 2)):
+        refused(assumed, Case(when, (), (used,)))
+        checked(assumed, Case(when, (), ()), used)
+
+
 def case(when: Relation | Together, *steps: Step, **put_in: Scalar | int) -> Case:
     values = tuple((name, v if isinstance(v, Scalar) else Scalar.of(v)) for name, v in put_in.items())
     return Case(when, values, steps)

@@ -213,7 +213,7 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             "unstable": not is_stable and not is_filled,
             "excluded": test.is_excluded((x, y), around),
         }
-        if not agrees.get(mark.kind, False):
+        if not agrees.get(mark.kind):
             yield f"{written(mark.place)} is {mark.kind}"
     for place in _grid(picture.window):
         is_apart = not any(_passes(value, test.axes, place, near) for value in drawn)
@@ -358,7 +358,7 @@ def _of_line(picture: LinePicture, test: _Test) -> Iterator[str]:
         around = [(place - near,), (place + near,)]
         is_stable = test.is_stable(place)
         agrees = {"stable": is_stable, "unstable": not is_stable, "excluded": test.is_excluded((place,), around)}
-        if not agrees.get(kind, False):
+        if not agrees.get(kind):
             yield f"{place} is {kind}"
 
 
