@@ -127,6 +127,7 @@ SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
         (h1**2 + h2**2, ("0.01", "0.01"), False),  # the point is not on the cross
         (h1**2 + h2**2 + 1, (0, 0), False),
         (h1**2 + 1, (0, 0), False),
+        (Scalar.of(1), (0, 0), False),
     ],
 )
 def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, Any], *, expected: bool) -> None:

@@ -223,12 +223,11 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
 
 def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
     """Whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
-    signs: set[bool] = set()
-    for x, y in ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)):
-        found = _sign(value, axes, (place[0] + x * step[0], place[1] + y * step[1]))
-        signs.add(found > 0)
-        if found == 0 or len(signs) == 2:
-            return True
+    (x, y), (dx, dy) = place, step
+    here = _sign(value, axes, place)
+    ends = (x - dx, y), (x + dx, y), (x, y - dy), (x, y + dy)
+    if any(here * _sign(value, axes, end) <= 0 for end in ends):
+        return True
     return any(_has_root(value, axes, place, step, along) for along in (0, 1))
 
 

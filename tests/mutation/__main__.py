@@ -78,7 +78,7 @@ def main(arguments: Sequence[str]) -> int:
     names = sorted({name for path in paths for name in TESTS.get(path.name, "").split()})
     tests = [str(HERE / "tests" / f"test_{name}.py") for name in names]
     with tempfile.TemporaryDirectory() as folder:
-        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json")
+        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
         os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
         code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
     report.close()
