@@ -221,6 +221,20 @@ def test_some_points_of_a_curve_are_asked_about(monkeypatch: pytest.MonkeyPatch)
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in (1, 2, 3)]
 
 
+def test_the_places_beside_a_curve_lie_across_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it is seen: the window is a square to the eye, however many units it has."""
+    places: list[Place] = []
+    monkeypatch.setattr(_Test, "is_stable", lambda _, *place: places.append(place))
+    wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
+    slope = tuple(at(100 + j, 100 + j) for j in range(3))
+    pictures._are_boundaries(Curve(slope, said(h1, h2)), wide, asked(s, *AXES))
+    assert places == [at("100.5", 103), at("101.5", 99)]
+    places.clear()
+    bent = at(0, "-1/2"), at(0, 0), at(0, "1/2"), at("9/10", "9/10")
+    pictures._are_boundaries(Curve(bent, said(h1, 0)), SQUARE, asked(s, *AXES))
+    assert places[:2] == [at("-1/5000", 0), at("1/5000", 0)]
+
+
 def test_places_on_a_segment() -> None:
     assert pictures._along(at(0, 0), at(252, -504)) == (
         at(0, 0),
@@ -252,6 +266,14 @@ def test_what_lies_inside_of_an_area() -> None:
         assert pictures._contains(L_SHAPE, at(*inside))
     for outside in ((2, 2), (5, "1/2"), (-1, "1/2"), ("1/2", 5), (2, -1)):
         assert not pictures._contains(L_SHAPE, at(*outside))
+
+
+def test_edges_to_the_left_are_counted() -> None:
+    horseshoe = (at(0, 0), at(30, 0), at(30, 9), at(20, 9), at(20, 5), at(10, 5), at(10, 9), at(0, 9))
+    for x, expected in ((-5, False), (5, True), (15, False), (25, True), (35, False)):
+        assert pictures._contains(horseshoe, at(x, 7)) is expected
+    for x, expected in ((0, False), (10, True), (20, False), (30, True)):  # an edge is of what lies to its left
+        assert pictures._contains(horseshoe, at(x, 7)) is expected
 
 
 def test_places_inside_of_an_area() -> None:
@@ -462,6 +484,38 @@ def test_a_piece_that_is_short_is_asked_for_within() -> None:
     assert on_line((end(0), end("2.9")), chi=chi) == []
 
 
+def test_how_far_inside_of_its_piece_an_end_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps: list[Fraction] = []
+
+    def kept(_: End, step: Fraction, *__: Any) -> list[str]:
+        steps.append(step)
+        return []
+
+    monkeypatch.setattr(pictures, "_of_end", kept)
+    for width, step in ((3, 1), (6, 2), (60, 2)):
+        steps.clear()
+        assert on_line((end(0), end(width)), chi=s + k * (width - k)) == []
+        assert steps == [step, -step]
+
+
+def test_an_end_has_an_outer_side() -> None:
+    assert on_line((end(1), end(4)), chi=s + k * (4 - k)) == []
+    assert on_line((end(5), end(5)), chi=s + k - 4).count("5 is an end") == 2
+
+
+def test_every_piece_and_every_mark_is_looked_at() -> None:
+    assert on_line((None, end(0)), (end(100), None), chi=s - k)[0] == "150 is stable"
+    marks = ((Fraction(100), "stable"), (Fraction(-100), "stable"), (Fraction(50), "unstable"))
+    assert on_line((end(0), None), marks=marks) == ["-100 is stable", "50 is unstable"]
+
+
+def test_what_cannot_be_seen_between_pieces_is_not_asked_for() -> None:
+    wide = (Fraction(-1000), Fraction(1000))
+    for width, is_seen in ((8, False), (9, True)):
+        found = on_line((None, end(0)), (end(width), None), chi=s + 1, window=wide)
+        assert any(fault.endswith("is not stable") for fault in found) is is_seen
+
+
 def test_stretches_are_asked_for_at_seven_places() -> None:
     assert list(pictures._between(Fraction(0), Fraction(8))) == [1, 2, 3, 4, 5, 6, 7]
     assert next(pictures._between(Fraction(8), Fraction(16))) == 9
@@ -469,13 +523,6 @@ def test_stretches_are_asked_for_at_seven_places() -> None:
     assert on_line(chi=s + 1) == [f"{-500 + 125 * j} is not stable" for j in range(1, 8)]
     assert on_line((None, None), chi=s - 1) == [f"{-500 + 125 * j} is stable" for j in range(1, 8)]
     assert on_line((None, None), chi=s + 1) == on_line(chi=s - 1) == []
-    # 4 parts that are stable and cannot be seen, and 5 that can.
-    for width, seen in ((4, False), (5, True)):
-        chi = s + k * (k - width)
-        pieces = (None, end(0)), (end(width), None)
-        other = s - k * (k - width)
-        assert on_line(*pieces, chi=chi) == []
-        assert (on_line(chi=other) == []) or seen
     pieces = (None, end(-100)), (end(100), None)
     assert on_line(*pieces, chi=s + 1)[:7] == [f"{-100 + 25 * j} is not stable" for j in range(1, 8)]
 
@@ -523,6 +570,7 @@ def test_what_is_written_at_an_end_is_its_place() -> None:
         ("2.01", False),
         ("-2.01", False),
         ("", False),
+        ("'2", False),
         (Scalar.of(2), True),
         (Scalar.of(-3), False),
         (square_root(Scalar.of(3)), True),
@@ -599,6 +647,7 @@ def test_the_polynomial_may_stand_in_a_matrix_of_one_entry() -> None:
 def test_every_number_that_is_drawn_for_is_allowed() -> None:
     numbers = (("a", Scalar.of(1)), ("b", Scalar.of(-1)), ("c", Scalar.of(0)))
     chi = s + k + Scalar.symbol("b") + Scalar.symbol("a") + Scalar.symbol("c")
-    signs = {"a": "positive", "b": "positive", "c": "nonzero"}
     assert on_line((end(0), None), chi=chi, drawn_for=numbers) == []
-    assert told(LinePicture("k", LINE, ((end(0), None),), drawn_for=numbers), chi, **signs) == ["b = -1", "c = 0"]
+    assert told(
+        LinePicture("k", LINE, ((end(0), None),), drawn_for=numbers), chi, a="positive", b="positive", c="nonzero"
+    ) == ["b = -1", "c = 0"]
