@@ -17,9 +17,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
-from symobs.derivation.tables import findings_of
+from symobs.derivation.tables import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula import Environment, Letter, Sum
+from symobs.formula import Environment, Letter, Relation, Sum
+from symobs.formula.plain import plain_relation
 from symobs.notation import THEOREMS
 from symobs.page import Page
 from symobs.phrases import PHRASES, RESTS_ON
@@ -483,10 +484,16 @@ def test_another_variable_is_named_and_free() -> None:
     checked(*steps, start=Environment(variable="z"), discrete=True)
 
 
-def test_epsilon_is_no_parameter_of_the_page() -> None:
+def test_epsilon_is_nothing_else_on_the_page() -> None:
     steps = shown([1, 0, 3, h1])
     checked(*steps)
     refused(*steps, start=Environment(signs={"epsilon": "real"}))
+    refused(*steps, start=Environment(coefficients={"epsilon": h2}))
+    refused(*shown([1, 0, 3, h1], variable="epsilon"))
+
+
+def test_a_table_of_two_rows() -> None:
+    checked(*shown([1, h1]))
 
 
 def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
@@ -498,6 +505,7 @@ def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
     refused(define, case)
     there = Tabulate(CHI, routh_table(whole([1, -1, 3, 2])), "s")
     checked(define, replace(case, steps=(there,)))
+    checked(*steps, start=Environment(relations=(h1 - 2,)))
 
 
 @pytest.mark.parametrize(
@@ -509,11 +517,17 @@ def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
         ([-1, b, omega], {}, "routh_criterion_negative"),
         ([b, 1, omega], {}, "routh_criterion_where"),
         ([b, 1, omega], {"b": "nonzero"}, "routh_criterion_where"),
+        ([b, omega], {"b": "nonzero", "omega": "nonzero"}, "routh_criterion_where"),
         ([b, 0, omega, 1], {"b": "nonzero"}, "routh_not_stable"),
         ([b, 0, omega, 1], {"b": "positive"}, "routh_not_stable"),
         ([b, 0, omega, 1], {}, "routh_epsilon"),
         ([1, 2, 1], {}, "routh_positive"),
         ([-1, -2, -1], {}, "routh_negative"),
+        ([Fraction(-1, 2), -2, -1], {}, "routh_negative"),
+        ([1, 2, 3, 4, 5], {}, "routh_changes"),
+        ([1, -1], {}, "routh_changes"),
+        ([1, 0, 3, 2], {}, "routh_changes"),
+        ([1, 0, 1], {}, "routh_changes_axis"),
     ],
 )
 def test_what_is_said_of_a_table(coefficients: list[Any], signs: dict[str, str], key: str) -> None:
@@ -527,6 +541,34 @@ def test_a_leading_coefficient_that_may_vanish_forbids_a_verdict() -> None:
     numbers = whole([h1, 0, 1, 1])
     assert located([1, 1]) == (0, 0)
     assert "routh_not_stable" not in {f.key for f in findings_of(routh_table(numbers), numbers, "s", {})}
+
+
+def test_what_is_said_of_numbers_of_roots_and_of_the_leading_coefficient() -> None:
+    def told(coefficients: Sequence[Any]) -> list[str]:
+        numbers = whole(coefficients)
+        *_, last = findings_of(routh_table(numbers), numbers, "s", {})
+        return [plain_relation(slot, "s") if isinstance(slot, Relation) else str(slot) for _, slot in last.slots]
+
+    assert told([1, 2, 3, 4, 5]) == ["changes sign twice", "two roots lie"]
+    assert told([1, 0, 1]) == ["does not change sign", "no root lies", "two roots lie"]
+    assert told([b, 1, omega]) == ["b != 0"]
+
+
+def test_the_first_auxiliary_polynomial_divides_and_no_other() -> None:
+    numbers = whole([1, 0, 2, 0, 1])
+    table = routh_table(numbers)
+    assert origins(table) == "carar"
+    divides = Sentence("routh_divides", (("auxiliary", literal((s**2 + 1) ** 2)),))
+    assert divides in findings_of(table, numbers, "s", {})
+    assert divides not in findings_of(table, whole([1, 0, 3, 0, 1]), "s", {})
+
+
+def test_what_the_letter_of_the_last_determinant_means() -> None:
+    assert last_determinant(s**3 + h1 * s**2 + h2 * s + 5, "s") == {"Delta_2": h1 * h2 - 5}
+    assert last_determinant(s**3 + h1 * s**2 + 2 * s + 1, "s") == {"Delta_2": 2 * h1 - 1}
+    assert last_determinant(s**2 + h1 * s + 1, "s") == {"Delta_1": h1}
+    for polynomial in (s + h1, s**3 + 2 * s + 1, s**3 + h1 * s**2 + h2 * s + h3):  # a root, numbers, three parameters
+        assert last_determinant(polynomial, "s") == {}
 
 
 def test_a_page_shows_a_table_and_what_it_says() -> None:

@@ -24,7 +24,7 @@ from symobs.certificate import (
 )
 from symobs.error_bounds import Bound
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar
+from symobs.exact import EIGENVALUE, Matrix, Scalar
 from symobs.exact.modular import Point, VanishingDenominator
 from symobs.formula import (
     Apply,
@@ -324,6 +324,22 @@ def test_relations_may_keep_values_from_zero() -> None:
     assert verify(said(b, "!=", 0), Environment(relations=(b * b - 2,))) == EXACTLY
     assert verify(said(b, "!=", 0), Environment(relations=(b * b - b,))) == FALSE
     assert verify(said(b - 1, "!=", 0), Environment(relations=(b * b - b,))) == FALSE
+
+
+def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
+    """With an eigenvalue in it, which may be complex, and with several entries of which one does not vanish."""
+    root = Scalar.symbol(EIGENVALUE)
+    single, several = said(root + b, "!=", 0), said(Matrix.column([b * c, c * (b - 1)]), "!=", Matrix.zeros(2, 1))
+    for relation, known, relations in ((single, root + b, (root**2 + 1,)), (several, c, (a * a - 2,))):
+        for where in ("assumed", "domain"):
+            conditions: dict[str, Any] = {where: (known,)}
+            assert verify(relation, Environment(relations=relations, **conditions)) == EXACTLY
+            assert verify(relation, Environment(**conditions)) == EXACTLY
+        assert verify(relation, Environment(relations=relations)) == FALSE
+        assert verify(relation, Environment(relations=relations, assumed=(c - 7,))) == FALSE
+    both = said((root + b) * (root + c), "!=", 0)
+    assert verify(both, Environment(assumed=(root + b,), domain=(root + c,))) == EXACTLY
+    assert verify(both, Environment(assumed=(root + b,))) == FALSE
 
 
 def test_a_scalar_is_one_number() -> None:

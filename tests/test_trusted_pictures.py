@@ -227,6 +227,15 @@ def test_a_pole_is_where_it_is() -> None:
     assert poles(replace(back, paths=(good.paths[0][::-1],)), s + k) == []
 
 
+def test_a_page_shows_poles_of_its_own_polynomial() -> None:
+    good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
+    assert told(good, s + k) == []
+    assert told(good, s + k + 1)[0] == "(0, 0) is a pole at k = 0"
+    assert told(good, s + k + h1) == [f"the polynomial {s + k + h1} depends on k alone"]
+    assert told(replace(good, drawn_for=(("h1", Scalar.of(0)),)), s + k + h1) == []
+    assert told(good, Scalar.symbol("z") + k, discrete=True)[0] == "the poles are those in s"
+
+
 def test_all_poles_are_drawn_each_once() -> None:
     """(s + k) (s + k + 1) has −k and −k − 1."""
     first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
@@ -378,6 +387,7 @@ def test_a_course_that_stays_is_drawn_so() -> None:
     twice = course(2, 2, signal="y", row=(2,))
     assert courses(course(1, 1, 1), twice) == ["a window that begins at 0 and that courses fill"]
     assert courses(course(1, 1, 1), parts=PARTS // 2) == ["the course of x"]
+    assert courses(replace(course(1, 1, 1), heights=(1, 1, 1)), parts=1) == []
     assert courses(course(1, 1, 1), start=(1, 1)) == ["a start of x"]
     assert courses(course(1, 1, 1), start=()) == ["a start of x"]
     assert courses(course(3, 3, 3), start=(3,)) == []
@@ -464,10 +474,73 @@ def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
             assert abs(growing - mpmath.exp(20 * k) * 2**64) <= 2
 
 
+def test_rounding_is_not_seen_however_far_off_a_course_begins() -> None:
+    """10⁴⁰ e^{2t} beside what stays 0."""
+    start = (Fraction(0), Fraction(10**40))
+    found = responses._stepped(Matrix.of([[0, 0], [0, 2]]), start, Fraction(1, 10), 11)
+    with mpmath.workprec(1000):
+        for k, (zero, growing) in enumerate(found):
+            assert zero == 0
+            assert abs(growing - 10**40 * mpmath.exp(mpmath.mpf(k) / 5) * 2**64) <= 2
+
+
+def test_terms_of_either_sign_come_to_an_end() -> None:
+    """−t eᵗ beside eᵗ: what is left of a negative term, rounded down, is -1 for good."""
+    found = responses._stepped(Matrix.of([[1, -1], [0, 1]]), (Fraction(0), Fraction(1)), Fraction(1, 4), 9)
+    with mpmath.workprec(300):
+        for j, (mixed, growing) in enumerate(found):
+            t = mpmath.mpf(j) / 4
+            assert abs(mixed + t * mpmath.exp(t) * 2**64) <= 2
+            assert abs(growing - mpmath.exp(t) * 2**64) <= 2
+
+
+TURNING = Environment(
+    variable="z",
+    values={"A": Matrix.of([[2, 1], [0, -1]])},
+    signals={"x": None, "y": Product((Literal(Matrix.of([[1, 3]])), Letter("x")))},
+    sizes={"x": 2},
+    dynamics={"x": Product((Letter("A"), Letter("x")))},
+)
+
+
+def samples(*drawn: Course, end: int = 3, low: str = "-1", high: str = "11", count: int = 2) -> list[str]:
+    """What is wrong with courses that begin at (1, 1): x₁ is 1, 3, 5, 11 and x₂ is 1, −1, 1, −1."""
+    window = ((Fraction(0), Fraction(end)), (Fraction(low), Fraction(high)))
+    start = (Fraction(1), Fraction(1))
+    response = TimeResponse(("x",), (start,), drawn, window, count, discrete=True)
+    return list(faults_of_response(response, Letter("A"), TURNING))
+
+
+def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1, 0)) -> Course:
+    return Course(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
+
+
+def test_courses_of_discrete_time_are_met_exactly() -> None:
+    first = sampled(1, 3, 5, 11, component=1)
+    second = sampled(1, -1, 1, -1, component=2, row=(0, 1))
+    output = sampled(4, 0, 8, 8, signal="y", row=(1, 3))
+    assert samples(first, second) == samples(output) == samples(first, second, output) == []
+    assert samples(output, low="0", high="8") == []
+    for low, high in (("1/2", "8"), ("0", "15/2")):
+        assert samples(output, low=low, high=high) == ["y, which leaves the window,"]
+    assert samples(output, second, first, low="-1/2") == ["x, which leaves the window,"]
+    for end in (2, 4):
+        assert samples(output, end=end) == ["instants other than 0, 1, 2, ..."]
+        assert samples(replace(output, heights=(0, 0, 0, 0)), end=end) == ["instants other than 0, 1, 2, ..."]
+    for place in range(4):
+        for off in (1, -1):  # half of one is seen
+            heights = [height + off * (k == place) for k, height in enumerate(output.heights)]
+            assert samples(replace(output, heights=tuple(heights))) == ["the course of y"]
+    assert samples(output, count=3) == ["the course of y"]
+    assert samples(second, first, replace(output, heights=(8, 0, 16, 17))) == ["the course of y"]
+
+
 def test_courses_are_of_the_time_of_their_plant() -> None:
     response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE, PARTS)
     assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["another time"]
     assert list(faults(response, Letter("A"), DECAY, discrete=False)) == []
+    wrong = replace(response, courses=(course(1, 1, 2),))
+    assert list(faults(wrong, Letter("A"), DECAY, discrete=False)) == ["the course of x"]
 
 
 def test_a_course_too_long_to_compute_is_refused() -> None:

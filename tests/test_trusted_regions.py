@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -19,14 +18,12 @@ from symobs.derivation.regions import (
 )
 from symobs.derivation.steps import Sentence, Survey
 from symobs.exact import Scalar
-from symobs.formula import Environment, Letter, Literal
+from symobs.exact.functions import square_root
+from symobs.formula import Environment, Letter, Literal, Relation
 from symobs.formula.plain import plain_relation
 from symobs.region.line import LineRegion
 from symobs.region.plane import PlaneRegion
 from tests.steps import said
-
-if TYPE_CHECKING:
-    from symobs.formula import Relation
 
 s, z, h, k, m, a = (Scalar.symbol(name) for name in "szhkma")
 IN_S = Environment(signs={"a": "positive"})
@@ -35,10 +32,17 @@ CHI = Letter("chi")
 
 def words(sentence: Sentence) -> tuple[str, ...]:
     """Return the key of a sentence, and what stands in its slots."""
-    slots = (slot for _, slot in sentence.slots)
+    return (sentence.key, *(written(slot) for _, slot in sentence.slots))
+
+
+def written(slot: object) -> str:
+    """Return what stands in a slot as plain text."""
     return (
-        sentence.key,
-        *(str(s.value) if isinstance(s, Literal) else s if isinstance(s, str) else "=" for s in slots),
+        str(slot.value)
+        if isinstance(slot, Literal)
+        else plain_relation(slot, "s")
+        if isinstance(slot, Relation)
+        else str(slot)
     )
 
 
@@ -48,8 +52,9 @@ def found(polynomial: Scalar, known: Environment = IN_S) -> list[tuple[str, ...]
     return [words(sentence) for sentence in findings_of_region(region)]
 
 
+ROOT_OF_TWO = square_root(Scalar.of(2))
 CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
-ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "the only real root", "=")
+ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "the only real root", "h**3 - 2 = 0")
 ON_A_LINE = {
     "half": (s + h, [("points_decide", "one point", "one interval")], ["h > 0"]),
     "empty": ((s - 1) * (s + h), [("region_empty",)], []),
@@ -65,6 +70,25 @@ ON_A_LINE = {
         ["h < -2", "-1 < h < 1", "h > 2"],
     ),
     "whole": (s + h**2 + 1, [], [""]),
+    "never": (s**2 - h, [("region_empty",)], []),
+    "two cuts": (
+        s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
+        [
+            ("points_decide", "two points", "three intervals"),
+            ("point_missing", "h", "1"),
+            ("point_missing", "h", "2"),
+        ],
+        ["h < 1", "1 < h < 2", "h > 2"],
+    ),
+    "two roots": (
+        s + (h**3 - 2) * (5 - h**3),
+        [
+            ("points_decide", "two points", "one interval"),
+            ROOT,
+            ("number_is_root", "CRootOf(h**3 - 5, 0)", "the only real root", "h**3 - 5 = 0"),
+        ],
+        ["CRootOf(h**3 - 2, 0) < h < CRootOf(h**3 - 5, 0)"],
+    ),
 }
 
 
@@ -96,10 +120,25 @@ def test_what_is_said_of_pieces_of_a_plane() -> None:
     assert ("connected_unbounded",) in without_origin
     circle = found(s**2 + s + (h**2 + k**2 - 1) ** 2)
     assert ("pieces", "two pieces", "one of them is") in circle
-    assert ("curve_missing", "=") in circle
+    assert ("curve_missing", "h**2 + k**2 - 1 = 0") in circle
     assert ("connected_bounded",) in found(s**2 + s + 1 - h**2 - k**2)
     assert found((s - 1) * (s + h + k)) == [("region_empty",)]
-    assert any(one[0] == "number_is_root" for one in found(s**2 + (h**3 - 2) * s + k))
+    assert found(s**2 - h * k) == [("region_empty",)]
+    for polynomial in (s**2 + (h**3 - 2) * s + k, s**2 + (2 - h**3) * s + k):
+        assert found(polynomial)[2:] == [ROOT]
+    holes = [one for one in found(s**2 + s + (h**2 - 1) ** 2 + k**2) if one[0] == "hole"]
+    assert holes == [("hole", "-1", "0", "h", "k"), ("hole", "1", "0", "h", "k")]
+    assert not any(one[0] == "hole" for one in found(s**2 + s + h**2 + (k**3 - 2) ** 2))  # ∛2 is not written
+    assert found(s**2 + s + h**2 * k**2)[2:] == [("curve_missing", "k = 0"), ("curve_missing", "h = 0")]
+
+
+def test_only_pieces_that_the_signs_allow_are_counted() -> None:
+    known = Environment(signs={"a": "positive", "k": "positive"})
+    assert found(s**2 + h * s + a, known) == [
+        ("cells_decide", "two open pieces", "one of them is"),
+        ("connected_unbounded",),
+    ]
+    assert found(s + a + k, known) == [("connected_unbounded",)]
 
 
 def test_parts_of_a_plane_are_its_own() -> None:
@@ -119,6 +158,10 @@ def test_parts_of_a_plane_are_its_own() -> None:
     for parts in wrong:
         assert not are_the_parts(region, parts)
         assert not is_survey(replace(step, parts=parts), polynomial, IN_S, discrete=False)
+    for check in ("are_parts", "are_whole"):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(regions, check, lambda *_: False)
+            assert not are_the_parts(region, right)
 
 
 def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
@@ -156,7 +199,12 @@ def test_what_is_known_by_inequalities_only() -> None:
     assert said_of((s + h - m) * (s + k) * (s + h + m)) == []
     closed = (s + h) * (s + 1 - h) * (s + k) * (s + 2 - k) * (s + m) * (s + 3 - m)
     assert said_of(closed) == ["box_bounded"]
+    bound = Scalar.symbol("b")
+    assert said_of((s + h) * (s + bound - h) * (s + k) * (s + m)) == []  # there is such an h only where b > 0
+    assert said_of((s + h) * (s + k) * (s + m), Environment(signs=dict.fromkeys(names, "positive"))) == []
+    assert said_of((z + h) * (z + k) * (z + m), Environment(variable="z")) == ["box_bounded"]
     step = Survey(CHI, names, (Sentence("box_unbounded"),))
+    assert is_survey(replace(step, findings=()), open_box, IN_S, discrete=False) is False
     assert is_survey(step, open_box, IN_S, discrete=False)
     for findings in (
         (),
@@ -182,6 +230,7 @@ def test_what_is_known_by_inequalities_only() -> None:
         (s + h, ((k, ">"),), False),
         (s + h, ((1 / h, ">"),), True),
         (s + h, (), False),
+        (s - h, (), False),
         (s**2 + s * (h - 1) + 2 - h, ((h - 1, ">"), (2 - h, ">")), True),
         (s**2 + s * (h - 1) + 2 - h, ((2 - h, ">"),), False),
         (s**2 + s * (h - 1) + 2 - h, ((h - 1, ">"),), False),
@@ -189,6 +238,12 @@ def test_what_is_known_by_inequalities_only() -> None:
         (CUT, ((2 - h, ">"),), False),
         (s + h**2 + 1, (), True),
         ((s - 1) * (s + h), ((h, ">"), (-h, ">")), True),
+        (s**2 - h, ((h, ">"),), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"), (h + ROOT_OF_TWO, ">")), True),
+        (s + 2 - h**2, ((h + ROOT_OF_TWO, ">"), (ROOT_OF_TWO - h, ">")), True),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"),), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"), (h - ROOT_OF_TWO, ">")), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, "!="), (h + ROOT_OF_TWO, ">")), False),
         (s**2 + h * s + k, ((h, ">"), (k, ">")), True),
         (s**2 + h * s + k, ((h, ">"),), False),
         (s**2 + h * s + k, ((h, ">"), (k, ">"), (m, ">")), False),
@@ -212,3 +267,15 @@ def test_what_the_sign_of_a_parameter_says_need_not_be_said() -> None:
         assert holds_exactly(region, ((inequality, ">"),))
         assert holds_exactly(region, ((inequality, ">"), (more, ">")))
         assert not holds_exactly(region, ((inequality - 1, ">"),))
+
+
+def test_nor_where_the_other_end_is_irrational() -> None:
+    for sign, kept, left_out in (("positive", ROOT_OF_TWO - h, h), ("negative", h + ROOT_OF_TWO, -h)):
+        region = region_of(s + 2 - h**2, Environment(signs={"h": sign}), discrete=False)
+        assert isinstance(region, LineRegion)
+        assert holds_exactly(region, ((kept, ">"),))
+        assert not holds_exactly(region, ((left_out, ">"),))
+        assert not holds_exactly(region, ((kept + 1, ">"),))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(regions, "is_region", lambda *_: False)
+            assert not holds_exactly(region, ((kept, ">"),))

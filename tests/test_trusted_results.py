@@ -219,10 +219,14 @@ def test_answers_leave_as_sympy_objects() -> None:
     class Fieldless(Squared):
         @property
         def fields(self) -> Any:
-            raise AttributeError("what failed inside")
+            raise AttributeError(f"what failed inside of {self.answer['number']}")
 
-    with pytest.raises(AttributeError, match="what failed inside"):  # not that there are no fields
-        _ = Fieldless(SERVO, "m", dict(found.answer)).fields
+    class Inheriting(Fieldless):
+        pass
+
+    for kind in (Fieldless, Inheriting):
+        with pytest.raises(AttributeError, match="what failed inside of 3"):  # not that there are no fields
+            _ = kind(SERVO, "m", dict(found.answer)).fields
     assert {"square", "conditions", "cases", "to", "derivation"} <= set(dir(found))
 
 
@@ -238,6 +242,9 @@ def test_a_document_is_told_in_its_convention() -> None:
     document = Document("", "", (found,))
     assert (document.convention, document.text, document.detail, document.templates) == (STANDARD, "", "full", None)
     assert document.derivations == (found.derivation,)
+    for place in ("full", None):
+        with pytest.raises(TypeError):
+            Document("", "", (found,), STANDARD, "", place)  # type: ignore[call-arg, arg-type]
     other = replace(document, convention=convention_named("S1"))
     (derivation,) = other.derivations
     L = found.answer["L"]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import FrozenInstanceError, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import MISSING, FrozenInstanceError, fields, replace
+from typing import Any, get_args
 
 import pytest
 
@@ -20,6 +20,7 @@ from symobs.derivation import (
     Section,
     Sentence,
     Solve,
+    Step,
     Survey,
     Tabulate,
     Where,
@@ -48,9 +49,6 @@ from symobs.region.routh import routh_table
 from tests import drawn_by_hand as hand
 from tests.steps import A_IS, C_IS, CHI, START, A, C, F, X, a, b, c, checked, literal, refused, s, said, slot
 
-if TYPE_CHECKING:
-    from symobs.derivation import Step
-
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
 chi, phi = Letter("chi"), Letter("phi")
@@ -65,8 +63,41 @@ def test_what_cannot_be_read_is_refused_with_its_line() -> None:
     with pytest.raises(DerivationRejected, match="a step of kind str cannot be read") as caught:
         checked("prose")  # type: ignore[arg-type]
     assert caught.value.facts["line"] == "prose"
+    assert caught.value.repair == "please report this: it is a bug of symobs"
     with pytest.raises(FrozenInstanceError):
         Derivation((), START).steps = ()  # type: ignore[misc]
+
+
+KINDS = get_args(Step)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]) -> None:
+    given = Sentence("test_plain")
+    step = kind(*[given for part in fields(kind) if part.default is MISSING])
+    assert {getattr(step, part.name) for part in fields(kind)} <= {given, None, (), False}
+    for part in fields(kind):
+        with pytest.raises(FrozenInstanceError):
+            setattr(step, part.name, None)
+
+
+def test_data_mean_nothing_where_a_denominator_vanishes() -> None:
+    n = Scalar.symbol("n")
+
+    def domain(*values: Any) -> tuple[Scalar, ...]:
+        return checked(*(Given((said(Letter("P"), value),)) for value in values)).domain
+
+    assert domain(1 / h) == (h,)
+    assert domain(Matrix.of([[1, 1 / h], [k / n, 1]])) == (h, n)
+    assert domain(Sum((literal(1), Sum((literal(1 / h), literal(1 / k))), literal(1 / n)))) == (h, k, n)
+    assert domain(h / a) == domain(h) == ()  # a is positive
+    two = checked(Given((said(Letter("P"), 1 / h), said(Letter("Q"), 1 / k)))).domain
+    assert two == checked(Given((said(Letter("P"), 1 / h),)), Given((said(Letter("Q"), 1 / h / k),))).domain == (h, k)
+
+
+@pytest.mark.parametrize("terms", [(A, Letter("Q")), (Letter("Q"), A)])
+def test_every_letter_of_a_formula_is_established(terms: tuple[Letter, ...]) -> None:
+    refused(A_IS, Equal((said(Sum(terms), A),)), match="Q is used before it is established")
 
 
 # -- every part of a step is read ---------------------------------------------------------------------------------------
@@ -415,6 +446,14 @@ def test_what_stands_inside_is_checked(step: Step) -> None:
 # -- strata -------------------------------------------------------------------------------------------------------------
 
 ON = Environment(signs={"a": "positive", "b": "real", "c": "real", "h": "real", "k": "real"})
+
+
+def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
+    assumed, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
+    checked(assumed, used)
+    for when in (said(h * (h - 1), 0), said(k * k, 2)):
+        refused(assumed, Case(when, (), (used,)))
+        checked(assumed, Case(when, (), ()), used)
 
 
 def case(when: Relation | Together, *steps: Step, **put_in: Scalar | int) -> Case:

@@ -321,9 +321,7 @@ def _with_domain(relation: Relation, environment: Environment) -> Environment:
     literals = [value for member in relation.members for value in _literals(member)]
     entries = [entry for value in literals for entry in (value.entries if isinstance(value, Matrix) else (value,))]
     factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
-    return (
-        replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors)))) if factors else environment
-    )
+    return replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors))))
 
 
 def _literals(formula: Formula) -> Iterator[Scalar | Matrix]:

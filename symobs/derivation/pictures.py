@@ -30,9 +30,8 @@ if TYPE_CHECKING:
     from symobs.formula import Environment, Formula, Relation
     from symobs.picture import Curve, End, Interval, Picture, Place
 
-#: Parts of a window: what is near a curve or an end, what the middle of a drawn segment may lie off its curve, and how
-#: far a pole may lie from its path.
-_NEAR, _BETWEEN, _NEAR_POLE = Fraction(1, 500), Fraction(1, 50), Fraction(1, 200)
+#: Parts of a window: what is near a curve or an end, and what the middle of a drawn segment may lie off its curve.
+_NEAR, _BETWEEN = Fraction(1, 500), Fraction(1, 50)
 #: A condition of stability is all but zero where it is so much smaller than at the points around.
 _SMALLER = 16
 #: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
@@ -40,7 +39,6 @@ _PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
 #: The last pictures in which nothing was false, and of what: a page asks before it shows one, and again when it is
 #: checked.  A picture cannot be changed, so the same one shows the same; another one of equal parts is looked at anew.
 _FAITHFUL: deque[tuple[Picture, tuple[object, ...]]] = deque(maxlen=4)
-_NOWHERE = (Fraction(0), Fraction(0))
 _ON_SEGMENT = (Fraction(2, 7), Fraction(5, 9), Fraction(3, 4))
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 _SIGNS: dict[str, Callable[[Fraction], bool]] = {
@@ -112,12 +110,12 @@ def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
 
 
 def _difference(relation: Relation, environment: Environment, numbers: dict[str, Scalar]) -> Scalar:
-    """Return a polynomial that vanishes where the equation holds, each factor once; 0 where there is no equation."""
+    """Return a polynomial that vanishes where the equation holds, each factor once; 1 where there is no equation."""
     if relation.operators != ("=",):
-        return Scalar.of(0)
+        return Scalar.of(1)
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     factors = (left - right).substitute(numbers).numerator.factors()[1]
-    return product_of(factor for factor, _ in factors) if factors else Scalar.of(0)
+    return product_of(factor for factor, _ in factors)
 
 
 class _Test:
@@ -191,7 +189,7 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             yield plain_relation(curve.equation, test.variable)
         elif curve.boundary not in _are_boundaries(curve, picture.window, test):
             yield f"{plain_relation(curve.equation, test.variable)} is {'a' if curve.boundary else 'no'} boundary"
-    drawn = [value for value in equations.values() if value]
+    drawn = list(equations.values())
     excluded = {mark.place for mark in picture.marks if mark.kind == "excluded"}
     for area in picture.areas:
         for place in area:
@@ -215,7 +213,7 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
             "unstable": not is_stable and not is_filled,
             "excluded": test.is_excluded((x, y), around),
         }
-        if not agrees.get(mark.kind, False):
+        if not agrees.get(mark.kind):
             yield f"{written(mark.place)} is {mark.kind}"
     for place in _grid(picture.window):
         is_apart = not any(_passes(value, test.axes, place, near) for value in drawn)
@@ -225,12 +223,11 @@ def _of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: 
 
 def _passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
     """Whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
-    signs: set[bool] = set()
-    for x, y in ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)):
-        found = _sign(value, axes, (place[0] + x * step[0], place[1] + y * step[1]))
-        signs.add(found > 0)
-        if found == 0 or len(signs) == 2:
-            return True
+    (x, y), (dx, dy) = place, step
+    here = _sign(value, axes, place)
+    ends = (x - dx, y), (x + dx, y), (x, y - dy), (x, y + dy)
+    if any(here * _sign(value, axes, end) <= 0 for end in ends):
+        return True
     return any(_has_root(value, axes, place, step, along) for along in (0, 1))
 
 
@@ -360,7 +357,7 @@ def _of_line(picture: LinePicture, test: _Test) -> Iterator[str]:
         around = [(place - near,), (place + near,)]
         is_stable = test.is_stable(place)
         agrees = {"stable": is_stable, "unstable": not is_stable, "excluded": test.is_excluded((place,), around)}
-        if not agrees.get(kind, False):
+        if not agrees.get(kind):
             yield f"{place} is {kind}"
 
 

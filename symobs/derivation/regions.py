@@ -64,7 +64,7 @@ def findings_of_conditions(
 
 def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]:
     """Return what can be said of a region: how it was found, of how many pieces it is, what it surrounds."""
-    if region.critical.never or region.empty:
+    if region.empty:
         return (Sentence("region_empty"),)
     if isinstance(region, LineRegion):
         return tuple(_of_line(region))
@@ -130,15 +130,15 @@ def _region_of(
     discrete: bool,  # noqa: FBT001 - what is cached is called by position
     names: tuple[str, ...],
 ) -> LineRegion | PlaneRegion | None:
-    own = tuple(sorted(polynomial.names - {variable}))
-    if names and tuple(sorted(names)) != own:
+    critical = Critical(polynomial, Boundary(variable, discrete), dict(signs))
+    if names and tuple(sorted(names)) != critical.parameters:
         return None
-    return region_in(Critical(polynomial, Boundary(variable, discrete), dict(signs)), names or own)
+    return region_in(critical, names or critical.parameters)
 
 
 def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, str], ...]) -> bool:
     """Tell whether a polynomial is stable exactly where these values are > 0 (or ≠ 0)."""
-    if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
+    if isinstance(region, LineRegion) and len(region.intervals) == 1:
         (piece,) = region.intervals
         symbol = Scalar.symbol(region.name)
         ends = [(symbol - piece.low.scalar(region.name), ">")] if piece.low is not None else []
@@ -146,7 +146,7 @@ def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, s
         if set(where) == set(ends) - set(_declared(region)):
             return is_region(region, short_list(region))
     names = {name for value, _ in where for name in value.names}
-    if not names <= set(region.critical.parameters) or region.critical.never:
+    if not names <= set(region.critical.parameters):
         return False
     return is_region(region, tuple(Bound(value.numerator * value.denominator, operator) for value, operator in where))
 

@@ -123,7 +123,7 @@ def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count:
     """
     table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
     norm = max(sum(map(abs, row), Fraction(0)) for row in table)
-    largest = max(map(abs, start), default=Fraction(0))
+    largest = max(map(abs, start))
     bits = 2 * _BITS + int(count * norm * _BITS_OF_E) + count.bit_length() + int(largest).bit_length()
     if bits > _MOST_BITS:
         raise ValueError("a course with too much to compute")

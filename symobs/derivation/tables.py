@@ -41,8 +41,8 @@ def is_tabulated(step: Tabulate, value: Scalar, environment: Environment) -> boo
 
 def _divides_by_zero(table: RouthTable, environment: Environment) -> bool:
     """Tell whether something in the first column vanishes because of what is known to be 0 here."""
-    known = [relation for relation in environment.relations if relation]
-    return bool(known) and any(entry.numerator in Ideal.of(known) for entry in table.first_column)
+    known = Ideal.of(environment.relations)
+    return any(entry.numerator in known for entry in table.first_column)
 
 
 def findings_of(
@@ -82,7 +82,7 @@ def _counted(table: RouthTable, coefficients: Sequence[Scalar]) -> Sentence:
         return Sentence("routh_misleads", (small, ("right", slots["right"]), ("axis", slots["axis"])))
     if axis:
         return Sentence("routh_changes_axis", tuple(slots.items()))
-    if table.is_regular and changes == 0:
+    if changes == 0:  # no root on the right, none on the axis
         return Sentence("routh_positive" if coefficients[0].fraction() > 0 else "routh_negative")
     return Sentence("routh_changes", tuple((name, slots[name]) for name in ("changes", "right")))
 

@@ -172,10 +172,10 @@ def _with_own_unknowns(steps: Any, final: Environment, convention: Convention, *
 
 def _unknowns(steps: Any, letter: str, final: Environment) -> Iterator[str]:
     """Yield the symbols that stand for entries of a gain while it is sought."""
-    known = set(final.signs) | (set(final.values[letter].names) if letter in final.values else set())
+    known = set(final.signs) | (final.values[letter].names if letter in final.values else set())
     for relation in _relations(steps):
         if relation.members[0] == Letter(letter):
-            for literal in relation.members[1:]:
+            for literal in relation.members:
                 entries = (
                     literal.value.entries if isinstance(literal, Literal) and isinstance(literal.value, Matrix) else ()
                 )
@@ -243,7 +243,7 @@ def _values(relation: Relation, names: frozenset[str]) -> Iterator[Matrix]:
     head = relation.members[0]
     head = head.operand if isinstance(head, Transpose) else head
     if isinstance(head, Letter) and head.name in names:
-        for member in relation.members[1:]:
+        for member in relation.members:
             if isinstance(member, Literal) and isinstance(member.value, Matrix) and not member.value.is_zero:
                 yield from (member.value, member.value.T)
 

@@ -40,7 +40,7 @@ class Task:
     function: Callable[..., Result]
     keywords: Mapping[str, str]
     summary: str
-    alone: bool = False
+    alone: bool
 
 
 _TASKS: dict[str, Task] = {}
@@ -90,8 +90,8 @@ def _kind(annotation: Any) -> str:
     """Return the name of a kind: of the text `Poles | None` as of the types themselves."""
     if isinstance(annotation, str):
         return annotation.split(" ")[0]
-    kinds = getattr(annotation, "__metadata__", None)
-    return str(kinds[0]) if kinds else _kind(get_args(annotation)[0])
+    kinds: tuple[str, ...] = getattr(annotation, "__metadata__", ())
+    return kinds[0] if kinds else _kind(get_args(annotation)[0])
 
 
 def method(name: str, *, source: str) -> Callable[[Callback], Callback]:
@@ -137,7 +137,7 @@ def tasks() -> Mapping[str, Task]:
 
 def task_named(name: str) -> Task | None:
     """Return a task, None where there is none; a module of its name is looked at first: a run pays for what it needs."""
-    if name not in _TASKS and name.isidentifier():
+    if name not in _TASKS:
         for package in symobs.TASK_PACKAGES:
             if name in {found.name for found in _modules(package)}:
                 importlib.import_module(f"{package}.{name}")
@@ -177,7 +177,7 @@ def format_named(name: str) -> Any:
 
     A module with the format's name is looked at first, so that a run which needs one format does not pay for all.
     """
-    if name.isidentifier() and name in {found.name for found in _modules(symobs.FORMAT_PACKAGE)}:
+    if name in {found.name for found in _modules(symobs.FORMAT_PACKAGE)}:
         importlib.import_module(f"{symobs.FORMAT_PACKAGE}.{name}")
     if name not in _FORMATS and name not in formats():
         message = f"{name[:40]!r} is not an output format"

@@ -181,7 +181,7 @@ class Result(Faces):
         """Return an answer as SymPy objects; Python asks here too where a property of the class has failed."""
         for kind in type(self).__mro__:
             if name in vars(kind):
-                return vars(kind)[name].__get__(self, type(self))  # its own error, not that there is no such name
+                return vars(kind)[name].__get__(self)  # its own error, not that there is no such name
         from symobs.face import to_sympy  # noqa: PLC0415 - SymPy is the face only
 
         objects = {} if name.startswith("_") else self.plant.symbols.objects

@@ -262,7 +262,7 @@ class PlaneRegion:
     @property
     def empty(self) -> bool:
         """Whether nothing is stable."""
-        return not any(cell.stable for cell in self.cells)
+        return self.critical.never or not any(cell.stable for cell in self.cells)
 
     @property
     def everywhere(self) -> bool:

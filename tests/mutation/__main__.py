@@ -45,13 +45,13 @@ TESTS = {
     "regions.py": "trusted_regions",
     "flows.py": "trusted_flows",
     "places.py": "trusted_pictures",
-    "pictures.py": "pictures trusted_pictures",
+    "pictures.py": "trusted_drawings trusted_pictures",
     "pole_paths.py": "trusted_pictures",
     "responses.py": "trusted_pictures",
     "tables.py": "routh",
-    "translation.py": "conventions derivation trusted_steps",
+    "translation.py": "trusted_translation",
     "rejection.py": "derivation trusted_steps",
-    "registry.py": "trusted_results",
+    "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
 }
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
@@ -78,7 +78,7 @@ def main(arguments: Sequence[str]) -> int:
     names = sorted({name for path in paths for name in TESTS.get(path.name, "").split()})
     tests = [str(HERE / "tests" / f"test_{name}.py") for name in names]
     with tempfile.TemporaryDirectory() as folder:
-        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json")
+        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
         os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
         code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
     report.close()

@@ -26,7 +26,7 @@ import coverage
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
     from types import CodeType
 
     from tests.mutation.mutants import Mutant
@@ -36,6 +36,8 @@ HERE = Path(__file__).parents[2]
 GRACE, MEMORY = 15, 4 * 2**30
 #: The tests of one mutant take at most this many seconds, the quickest first.
 LONGEST = 6.0
+#: And those of one that is known to say the same, which were all asked when it was found to.
+LONGEST_OF_KNOWN = 1.0
 #: A test that takes longer than this is not asked.
 LONGEST_TEST = 6.0
 #: Tests that have found a mutant of the same function lately are asked first.
@@ -48,9 +50,14 @@ class Trial:
     """What pytest runs instead of all tests: the map of which touch which lines, then every mutant."""
 
     def __init__(
-        self, paths: Sequence[Path], mutants: Iterable[Mutant], report: Callable[[Mutant, str, str], None], kept: Path
+        self,
+        paths: Sequence[Path],
+        mutants: Iterable[Mutant],
+        report: Callable[[Mutant, str, str], None],
+        kept: Path,
+        known: Collection[tuple[str, str]],
     ) -> None:
-        self.paths, self.mutants, self.report, self.kept = paths, mutants, report, kept
+        self.paths, self.mutants, self.report, self.kept, self.known = paths, mutants, report, kept, known
         self.seconds: dict[str, float] = {}
         self.touching: dict[str, dict[int, list[str]]] = {}
         self.lately: dict[str, list[str]] = defaultdict(list)
@@ -99,13 +106,14 @@ class Trial:
         found = {name for line in touched for name in lines.get(line, ())} & items.keys()
         last = self.lately[mutant.where]
         order = sorted(found, key=lambda name: (-last.index(name) - 1 if name in last else 0, self.seconds[name]))
+        longest = LONGEST_OF_KNOWN if (mutant.file, mutant.key) in self.known else LONGEST
         chosen: list[str] = []
         total = 0.0
         for name in order:
             if self.seconds[name] > LONGEST_TEST:
                 continue
             total += self.seconds[name]
-            if chosen and total > LONGEST:
+            if chosen and total > longest:
                 break
             chosen.append(name)
         return chosen
