@@ -118,10 +118,16 @@ LINES = {
         "dx̂/dt = (A + B K + M C)x̂ - M y",
         "det(sI - A_cl) = det(sI - A - B K)det(sI - A - M C)",
         "⎡A + B K     -B K⎤",
+        "u = [-2 -2] x̂",
     ],
-    "S2": ["the pair (A, C) is observable", "u = -K x₀", "e₀ = x - x₀"],
+    "S2": [
+        "the pair (A, C) is observable",
+        "u = -K x₀",
+        "e₀ = x - x₀",
+        "dx₀₁/dt = -3x₀₁ + x₀₂ + 3y, dx₀₂/dt = -2x₀₁ + u + 2y",
+    ],
     "S3": ["the pair (A, C) is observable", "u = -K x̂"],
-    "S4": ["u = K x̂", "A - H C", "the pair [A, C] is observable", "u = K x - K e", "H(y - C x̂)"],
+    "S4": ["u = K x̂", "A - H C", "the pair [A, C] is observable", "u = K x - K e", "H(y - C x̂)", "u = [-2 -2] x̂"],
 }
 
 
@@ -266,6 +272,15 @@ def test_signs_are_set_as_a_book_sets_them() -> None:
     assert turned.relation(Relation((L, Literal(M)), ("=",))) == Relation((L, Literal(-M)), ("=",))
     assert turned.formula(L) == L
     assert turned.whole(Product((L, L))) == Product((L, L))
+    x, z = Letter("x"), Letter("z")
+    written = Relation((Letter("u"), Negative(Product((Literal(M), x)))), ("=",))
+    assert turned.relation(written) == Relation((Letter("u"), Product((Literal(-M), x))), ("=",))
+    assert turned.relation(Relation((z, Product((Literal(M), x))), ("=",))).members[1] == Product((Literal(M), x))
+    both = Sum((Product((L, x)), Product((L, z))))
+    turned_sum = Sum((Negative(Product((L, x))), Negative(Product((L, z)))))
+    assert turned.relation(Relation((A, both), ("=",))).members[1] == turned_sum
+    assert turned.whole(Sum((A, Negative(both)))) == Sum((A, both))
+    assert turned.whole(Product((Sum((L, Negative(A))), x))) == Negative(Product((Sum((L, A)), x)))
 
 
 def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:

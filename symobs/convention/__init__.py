@@ -67,13 +67,21 @@ class Convention:
 
     def forms(self, *, reduced: bool) -> Mapping[str, LetterForm]:
         """Return the forms of the letters that are written differently."""
-        changed = self.written(reduced=reduced)
+        changed = self._with_components(self.written(reduced=reduced))
         forms = {name: letter_form(text, LETTERS[name]) for name, text in changed.items()}
         forms |= {f"{name}_at": form.alone for name, form in forms.items() if f"{name}_at" in FUNCTIONS}
         for name, sign, factors in (("chi_K", self.feedback_sign, "BK"), ("chi_L", self.observer_sign, "LC")):
             if sign > 0 or not changed.keys().isdisjoint(factors):
                 forms |= of_polynomial(name, sign, [forms.get(letter, LETTERS[letter]) for letter in factors])
         return forms | of_determinant(forms["W_t"]) if "W_t" in forms else forms
+
+    @staticmethod
+    def _with_components(written: Mapping[str, str]) -> Mapping[str, str]:
+        """Return the letters with those of the estimate's components: x_01, x_02 where the estimate is x_0."""
+        estimate = written.get("x_hat", "")
+        numbered = estimate if estimate[-1:].isdigit() else f"{estimate}_"
+        components = {name: f"{numbered}{name[-1]}" for name in ("x_hat_1", "x_hat_2") if estimate}
+        return {**components, **written}
 
     @property
     def law(self) -> str:

@@ -131,6 +131,15 @@ def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredP
     return CompensatorDesign.designed(plant, control, observer, "separation")
 
 
+@method("compensator/duality", source="S1, pole placement for observer and state feedback side by side (before 14:53)")
+def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
+    """Place the eigenvalues of Aᵀ − CᵀLᵀ and of A − BK side by side, transpose; then use x̂ for x."""
+    if not plant.inputs == plant.outputs == 1:
+        message = f"the method duality needs one input and one output, the plant has {plant.inputs} and {plant.outputs}"
+        raise InputError(message, where="specification.method", repair="leave the method out, or write separation")
+    return CompensatorDesign.designed(plant, control, observer, "duality")
+
+
 @method("compensator/minimal_order", source="S0, section 4.6: compensator with a minimal-order observer")
 def minimal_order(
     plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
@@ -211,8 +220,8 @@ def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
     if observer not in _METHODS:
         message = f"{observer[:40]!r} is not a kind of observer"
         raise InputError(message, where="specification.observer", repair='write "full" or "minimal"')
-    if observer == "minimal" and method_name == "separation":
-        message = "the method separation has an observer of full order"
+    if observer == "minimal" and method_name in {"separation", "duality"}:
+        message = f"the method {method_name} has an observer of full order"
         raise InputError(
             message, where="specification.method", repair='leave the method out, or write observer = "full"'
         )

@@ -18,6 +18,7 @@ from symobs.design.hidden_law import caution_hidden
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.observer import page_style, write_observer
 from symobs.design.responses import plot_estimate
+from symobs.design.side_by_side_page import can_stand_side_by_side, write_side_by_side
 from symobs.design.state_feedback import StateFeedbackDesign
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
@@ -52,12 +53,17 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     plant = design.plant
     large = design.answer["F"] is not None and design.answer["F"].size > LARGE
-    with page.section("state_feedback"):
-        write_gain(page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
-        if large:
-            name_entries(page, "K")
+    beside = design.method == "duality" and can_stand_side_by_side(design)
+    if beside:
+        write_side_by_side(page, design)
+    else:
+        with page.section("state_feedback"):
+            write_gain(page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+    if large:
+        name_entries(page, "K")
     with page.section("observer"):
-        write_gain(page, design.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+        if not beside:
+            write_gain(page, design.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
         if large:
             name_entries(page, "L")
         if design.answer["L"] is not None:

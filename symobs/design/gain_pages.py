@@ -76,7 +76,7 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         _impossible(page, design, side)
         if not design.zero or not design.divides:
             for case in design.case_tree:
-                _case(page, case, side)
+                write_case(page, case, side)
         return
     if not design.fixed_polynomial.is_one:
         _with_fixed_modes(page, design, side)
@@ -101,7 +101,7 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
     page.in_decimals(side.gain)
     _verified(page, design, side)
     for case in design.case_tree:
-        _case(page, case, side)
+        write_case(page, case, side)
 
 
 def closed_loop_matrix(page: Page, side: Side) -> Term:
@@ -336,7 +336,7 @@ def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> N
     page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
-def _case(page: Page, case: Case, side: Side) -> None:
+def write_case(page: Page, case: Case, side: Side) -> None:
     """Say what is true on a stratum."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))

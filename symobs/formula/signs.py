@@ -88,12 +88,22 @@ class Turned:
                 return signs[0] and exponent % 2 == 1, inner
             case Integral() if signs[0] == signs[1]:
                 return signs[0], inner
+            case Sum() if all(signs):
+                return True, inner
             case Block():
                 shown = [sign for sign, (_, part) in zip(signs, parts, strict=True) if not _is_zero(part)]
                 if all(shown) and shown:
                     return True, inner
-        turned = tuple(Negative(part) if negative else part for negative, part in parts)
-        return False, with_children(formula, turned)
+        return False, with_children(formula, tuple(_with_sign(*part) for part in parts))
+
+    def _absorbed(self, formula: Formula) -> Formula:
+        """Return −N x as (−N) x where N is what a letter was: the letter is −N now, and the book writes what it is."""
+        match formula:
+            case Negative(Product((Literal(Matrix() as table), *rest))) | Product(
+                (Negative(Literal(Matrix() as table)), *rest)
+            ) if table in self.values:
+                return Product((Literal(-table), *rest))
+        return formula
 
     def _writes(self, formula: Formula) -> bool:
         """Whether a formula writes out the value of one of the letters."""
@@ -106,13 +116,27 @@ class Turned:
     def relation(self, relation: Relation) -> Relation:
         """Return the same chain in the new letters; where its first member is a negative, all members turn."""
         if not any(map(self.concerns, relation.members)):
-            return relation
+            first, *rest = relation.members
+            return Relation((first, *map(self._absorbed, rest)), relation.operators)
         signed = [self.signed(member, written=place > 0) for place, member in enumerate(relation.members)]
         if not signed[0][0]:
-            members = [Negative(part) if negative else part for negative, part in signed]
+            members = [_member(*part) for part in signed]
             return Relation(tuple(_in_step(relation.members, members)), relation.operators)
         members = [part if negative else negated(part) for negative, part in signed]
         return Relation(tuple(members), tuple(_TURNED_AROUND.get(sign, sign) for sign in relation.operators))
+
+
+def _with_sign(negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `signed` returns them
+    return Negative(formula) if negative else formula
+
+
+def _member(negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `signed` returns them
+    """Return one side of a relation, where a sum needs no parentheses around it."""
+    match formula:
+        case Sum(terms) if negative:
+            return Sum(tuple(part.operand if isinstance(part, Negative) else Negative(part) for part in terms))
+        case _:
+            return _with_sign(negative, formula)
 
 
 def negated(formula: Formula) -> Formula:
@@ -130,6 +154,8 @@ def negated(formula: Formula) -> Formula:
             return Sum(tuple(map(negated, terms)))
         case Block(rows):
             return Block(tuple(tuple(part if _is_zero(part) else negated(part) for part in row) for row in rows))
+        case Product((Literal(Matrix() as unit), *_)) if all(entry.is_zero or entry.is_one for entry in unit.entries):
+            return Negative(formula)
         case Product((Literal(Matrix()) | Block() as first, *rest)):
             return Product((negated(first), *rest))
         case Transpose(operand) if not isinstance(operand, Letter):

@@ -30,6 +30,7 @@ from symobs.phrases import (
     reduced_order,
     regions,
     routh,
+    side_by_side,
     time,
     time_varying,
     titles,
@@ -47,6 +48,7 @@ _MODULES = (
     coordinates,
     time,
     gains,
+    side_by_side,
     families,
     compensation,
     minimal_order,
@@ -91,6 +93,9 @@ OPENS = frozenset(key for module in _MODULES for key in getattr(module, "OPENS",
 
 #: Phrases that only explain, and refer to nothing but what was just shown: a shorter page leaves them out.
 EXPLAINS = frozenset(key for module in _MODULES for key in getattr(module, "EXPLAINS", ()))
+
+#: Titles of sections whose own sections stand side by side on the page, row by row.
+BESIDE = frozenset(key for module in _MODULES for key in getattr(module, "BESIDE", ()))
 
 #: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
 SPELLS_OUT = frozenset(key for module in _MODULES for key in getattr(module, "SPELLS_OUT", ()))

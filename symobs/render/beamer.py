@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.method import output_format
 from symobs.phrases import PHRASES
-from symobs.render.blocks import Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.render.blocks import Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
 from symobs.render.escape import escape
 from symobs.render.latex import LatexWriter, has_drawings
 from symobs.render.latex_printer import LatexPrinter
@@ -100,6 +100,6 @@ class _SlideWriter(LatexWriter):
         """Return one block."""
         written = super().block(block)
         is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
-        if is_tall or isinstance(block, Drawing | PictureBlock | TableBlock):
+        if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written

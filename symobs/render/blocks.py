@@ -110,17 +110,37 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
+@dataclass(frozen=True)
+class Columns:
+    """Blocks side by side under their heads, row by row; each row has a cell for each head."""
+
+    heads: tuple[Inlines, ...]
+    rows: tuple[tuple[tuple[Block, ...], ...], ...]
+
+
 Block: TypeAlias = (
-    Title | Heading | Paragraph | Display | Verified | Caution | Drawing | PictureBlock | TableBlock | CaseBlock
+    Title
+    | Heading
+    | Paragraph
+    | Display
+    | Verified
+    | Caution
+    | Drawing
+    | PictureBlock
+    | TableBlock
+    | CaseBlock
+    | Columns
 )
 
 
 def every(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Yield all blocks, those inside cases too."""
+    """Yield all blocks, those inside cases and columns too."""
     for block in blocks:
         yield block
         if isinstance(block, CaseBlock):
             yield from every(block.blocks)
+        elif isinstance(block, Columns):
+            yield from every(inner for row in block.rows for cell in row for inner in cell)
 
 
 def opened(page: tuple[Block, ...]) -> tuple[Title, tuple[Block, ...]]:

@@ -20,6 +20,7 @@ from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
+    Columns,
     Display,
     Drawing,
     Heading,
@@ -190,6 +191,8 @@ class HtmlWriter:
                 inside.unnumbered = self.unnumbered
                 label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
+            case Columns():
+                return self._columns(block)
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text: words escaped, mathematics as MathML."""
@@ -214,6 +217,15 @@ class HtmlWriter:
             return f"<h{depth}>{words}</h{depth}>"
         place = number.rstrip(".").replace(".", "-") or f"part-{next(self.unnumbered)}"
         return f'<h{depth} id="{self.prefix}s-{place}">{words}</h{depth}>'
+
+    def _columns(self, block: Columns) -> str:
+        """A table with a column of blocks for each head."""
+        inset = self.printer.width - (self.printer.width - _INSET) / len(block.heads)
+        inside = HtmlWriter(self.printer, prefix=None, level=self.level + 1, inset=inset)
+        heads = "".join(f'<th scope="col">{self.sentence(head)}</th>' for head in block.heads)
+        rows = ["".join(f"<td>{inside.body(cell)}</td>" for cell in row) for row in block.rows]
+        body = "\n".join(f"<tr>{row}</tr>" for row in rows)
+        return f'<div class="table">\n<table class="columns">\n<tr>{heads}</tr>\n{body}\n</table>\n</div>'
 
     def _display(self, mathematics: str) -> str:
         return f'<div class="display">{mathematics}</div>'

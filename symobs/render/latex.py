@@ -12,6 +12,7 @@ from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
+    Columns,
     Display,
     Drawing,
     Heading,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from symobs.sheet import Sheet
 
 _INSET = 1.5  # em, as in the templates
+_GUTTER = 0.06  # between columns, of the line
 
 
 @output_format
@@ -161,9 +163,26 @@ class LatexWriter:
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
                 body = LatexWriter(self.printer, inset=_INSET).body(blocks)
                 return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{body}\n\\end{{inset}}"
-
+            case Columns():
+                return self._columns(block)
             case Title(text):
                 return escape(text)
+
+    def _columns(self, block: Columns) -> str:
+        """Return rows of boxes, which a page may end between; the line between the columns goes through."""
+        count = len(block.heads)
+        part = round((1 - _GUTTER * (count - 1)) / count, 4)
+        writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
+        opening, closing = (
+            rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright\rule{{0pt}}{{2.6ex}}",
+            r"\par\kern5pt\end{minipage}",
+        )
+        cells = [[rf"\textbf{{{self.sentence(head)}}}" for head in block.heads]]
+        cells += [[writer.body(cell) for cell in row] for row in block.rows]
+        between = f"{closing}\\hfill\\vrule\\hfill\n{opening}"
+        head, *rows = [rf"\noindent{opening}{between.join(row)}{closing}\par\nointerlineskip" for row in cells]
+        body = "\n".join([head, r"\nobreak\hrule\nobreak\vskip0pt", *rows])
+        return f"\\par\\medskip{{\\parskip=0pt\n{body}\n}}\\medskip"
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text: words escaped, mathematics between dollars."""

@@ -19,6 +19,7 @@ from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
+    Columns,
     Display,
     Drawing,
     Heading,
@@ -162,6 +163,16 @@ class MarkdownWriter:
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")
+            case Columns(heads, rows):
+                writer = MarkdownWriter(self.printer, level=self.level + 1)
+                writer.printer.width = self.printer.width / len(heads)
+                lines = [[self.sentence(head) for head in heads], [":---"] * len(heads)]
+                lines += [["<br>".join(map(writer.in_a_cell, cell)) for cell in row] for row in rows]
+                return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+    def in_a_cell(self, block: Block) -> str:
+        """Return a block on one line, its mathematics as in running text."""
+        return re.sub(r"\$\$ (.*?) \$\$", r"$\\displaystyle \1$", self.block(block)).replace("\n", "<br>")
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
         """Return a display on one line: lines of their own would begin with the marks of what stands around them."""

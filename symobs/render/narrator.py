@@ -27,13 +27,14 @@ from symobs.derivation import (
     Tabulate,
     Where,
 )
-from symobs.formula import Literal, Together
+from symobs.formula import Together
 from symobs.notation import THEOREMS
-from symobs.phrases import OPENS, PHRASES, RESTS_ON
+from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
     Block,
     CaseBlock,
     Caution,
+    Columns,
     Display,
     Drawing,
     Heading,
@@ -45,6 +46,7 @@ from symobs.render.blocks import (
     Title,
     Verified,
 )
+from symobs.render.columns import in_rows
 from symobs.render.conventions import letters_used, stated_conventions
 from symobs.render.detail import at_detail
 from symobs.render.prose import filled, joined, with_reference
@@ -57,7 +59,6 @@ if TYPE_CHECKING:
     from symobs.formula import Formula, Relation
     from symobs.method import Document
     from symobs.notation import LetterForm
-    from symobs.region.routh import RouthTable
     from symobs.render.printer import Printer
 
 P = TypeVar("P", bound="Printer[Any]")
@@ -254,8 +255,10 @@ class _Page:
                 self.blocks.append(Drawing(name, labels))
             case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
                 self.say(sentence)
+                from symobs.render.tables import remarks  # noqa: PLC0415 - only pages with tables
+
                 self.blocks.append(
-                    TableBlock(table, variable, _remarks(table, variable), filled(Sentence("routh_where")))
+                    TableBlock(table, variable, remarks(table, variable), filled(Sentence("routh_where")))
                 )
                 for finding in findings:
                     self.say(finding)
@@ -282,10 +285,24 @@ class _Page:
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         self.blocks.append(Heading(number, filled(title, self.convention)))
         self.numbers.append(0)
+        columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
+        self.blocks += self.side_by_side(columns)
         for step in steps:
-            if isinstance(step, Section) or step not in self.told:
+            if step not in columns and (isinstance(step, Section) or step not in self.told):
                 self.tell_step(step)
         self.numbers.pop()
+
+    def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
+        """Yield sections beside each other, each cell written on a page of its own."""
+        rows: list[tuple[tuple[Block, ...], ...]] = []
+        for row in in_rows([column.steps for column in columns]):
+            cells = [_Page(self.convention, given=self.given, numbers=self.theorems) for _ in row]
+            for cell, steps in zip(cells, row, strict=True):
+                for step in steps:
+                    cell.tell_step(step)
+            rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
+        if rows:
+            yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
 
     def tell_survey(self, step: Survey) -> None:
         """Tell what is found, and the parts of a region one below the other."""
@@ -324,22 +341,6 @@ class _Page:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
-
-
-def _remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
-    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
-    remarks: list[tuple[Inlines, ...]] = []
-    for row in table.rows:
-        if row.origin == "epsilon":
-            small = Literal(row.entries[0])
-            remarks.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
-        elif row.origin == "auxiliary":
-            polynomial = Literal(table.auxiliary(row, variable))
-            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
-            remarks.append((full, filled(Sentence("routh_row_derivative"))))
-        else:
-            remarks.append(())
-    return tuple(remarks)
 
 
 def _is_statement(step: Step) -> bool:

@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Generic
 
+from symobs.derivation import Sentence
 from symobs.exact import Scalar
 from symobs.formula import Formula, Literal, Negative, Product, Quotient, Relation, Sum
 from symobs.notation import symbol_latex
 from symobs.record import dataclass
 from symobs.render.glyphs import B
+from symobs.render.prose import filled
 from symobs.render.scalars import is_leaf
 
 if TYPE_CHECKING:
@@ -147,3 +149,19 @@ def _made(value: Scalar, table: RouthTable, names: Names) -> Formula:
     before = table.rows[i - 2].entries
     crossed = Negative(Product((short(before[0]), short(above[j + 1]))))
     return Quotient(Sum((Product((short(above[0]), short(before[j + 1]))), crossed)), short(above[0]))
+
+
+def remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
+    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
+    found: list[tuple[Inlines, ...]] = []
+    for row in table.rows:
+        if row.origin == "epsilon":
+            small = Literal(row.entries[0])
+            found.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
+        elif row.origin == "auxiliary":
+            polynomial = Literal(table.auxiliary(row, variable))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
+            found.append((full, filled(Sentence("routh_row_derivative"))))
+        else:
+            found.append(())
+    return tuple(found)

@@ -14,6 +14,7 @@ from symobs.phrases import PHRASES
 from symobs.render.blocks import (
     CaseBlock,
     Caution,
+    Columns,
     Display,
     Drawing,
     Heading,
@@ -24,6 +25,7 @@ from symobs.render.blocks import (
     Verified,
     opened,
 )
+from symobs.render.columns import RULE, beside
 from symobs.render.diagrams import sketch
 from symobs.render.narrator import narrate, printer_for
 from symobs.render.plots_text import character_plot
@@ -121,6 +123,12 @@ class TextWriter:
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
+            case Columns(heads, rows):
+                narrow = (width - len(RULE) * (len(heads) - 1)) // len(heads)
+                writer = TextWriter(self.printer, narrow)
+                titles = [underlined(wrapped(self.sentence(head), narrow), "-", narrow) for head in heads]
+                cells = [titles, *([writer.body(cell) for cell in row] for row in rows)]
+                return f"\n{beside([''] * len(heads), narrow)}\n".join(beside(row, narrow) for row in cells)
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text with its mathematics."""

@@ -1,0 +1,42 @@
+"""Blocks side by side: which steps make a row, and how lines of characters stand beside each other."""
+
+from __future__ import annotations
+
+from itertools import zip_longest
+from typing import TYPE_CHECKING
+
+from symobs.phrases import PHRASES
+from symobs.render.text_printer import text_width
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.derivation import Sentence, Step
+
+#: What stands between two columns of characters.
+RULE = " │ "
+
+
+def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]]:
+    """Return runs of steps row by row: a step whose sentence goes on with nothing begins a row."""
+    cut: list[list[tuple[Step, ...]]] = []
+    for run in runs:
+        rows: list[tuple[Step, ...]] = []
+        for step in run:
+            if rows and _begins(step) and any(map(_begins, rows[-1])):
+                rows.append((step,))
+            else:
+                rows[-1:] = [(*(rows[-1] if rows else ()), step)]
+        cut.append(rows)
+    return list(zip_longest(*cut, fillvalue=()))
+
+
+def _begins(step: Step) -> bool:
+    sentence: Sentence | None = getattr(step, "sentence", None)
+    return sentence is not None and not PHRASES[sentence.key][:1].islower()
+
+
+def beside(cells: Sequence[str], width: int) -> str:
+    """Return pieces of text beside each other, each `width` columns wide and padded to the height of the highest."""
+    lines = zip_longest(*(cell.split("\n") for cell in cells), fillvalue="")
+    return "\n".join(RULE.join(f"{part}{' ' * (width - text_width(part))}" for part in line).rstrip() for line in lines)
