@@ -25,7 +25,7 @@ from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import Change, answer_changes, changes, lines_of
 from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
-from tests.plain_fractions import Algebraic, World, determinant, identity, inverse, plus, times
+from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
 from tests.truth import still_true
 
@@ -91,24 +91,11 @@ def holds(part: Result, answer: Mapping[str, Any]) -> bool:
     conditions = getattr(getattr(part, "piece", None), "conditions", ())
     equations = part.plant.equations or [c.expression for c in conditions if c.operator == "=="]
     for world in worlds:
-        _move_to_stratum(world, equations)
+        world.move_to(equations)
     try:
         return all(_holds_at(part, answer, world) for world in worlds)
     except (ArithmeticError, LookupError, TypeError, ValueError):
         return False
-
-
-def _move_to_stratum(world: World, equations: Sequence[Scalar]) -> None:
-    """Let a parameter be a root of the equation that holds, a rational one or that of an irreducible factor."""
-    if len(equations) != 1:
-        return
-    name, *others = sorted(equations[0].names)
-    moved = equations[0].substitute({other: Scalar.of(world.number(other)) for other in others})
-    factors = [factor for factor, _ in moved.numerator.factors()[1] if name in factor.names]
-    lead, *rest = min(factors, key=lambda factor: factor.degree(name)).coefficients(name)
-    monic = [*(c.fraction() / lead.fraction() for c in reversed(rest)), Fraction(1)]
-    root = -monic[0] if len(rest) == 1 else Algebraic.make([Fraction(0), Fraction(1)], monic)
-    world.meanings[name] = root
 
 
 def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:

@@ -21,6 +21,7 @@ from symobs.exact import Matrix
 from symobs.page import Page
 from symobs.problem import read
 from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
+from tests.mutation.claims import drawn
 from tests.mutations import parts_of
 from tests.truth import is_true
 
@@ -73,6 +74,17 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
         assert is_true(result.derivation)
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        434,  # the rank on the stratum 2 k² + 9 k − 27 = 0, whose points are not rational
+        562,  # stable exactly where …, of an F that means nothing at k = −1
+    ],
+)
+def test_every_line_of_a_random_design_holds_in_plain_fractions(number: int) -> None:
+    assert is_true(drawn(number).solve().derivation)
 
 
 # -- lies that agree with each other -----------------------------------------------------------------------------------
