@@ -23,7 +23,7 @@ from symobs.exact.functions import symbols_in
 from symobs.region.proof import Combined, Opposite
 from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
-from tests.mutations import Change, answer_changes, changes, lines_of
+from tests.mutations import Change, Line, answer_changes, changes, lines_of
 from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
 from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
@@ -32,6 +32,7 @@ from tests.truth import still_true
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symobs.derivation import Derivation
     from symobs.design.assignment import Pair
     from symobs.method import Result
     from tests.plain import Rows
@@ -318,6 +319,19 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
         for change in sample(some, most):
-            told, meant = line.told(change.value), line.told(line.step)
+            alone = line.alone(change.value)
             where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
-            count.attempt(where, told.check, partial(still_true, told, meant))
+            count.attempt(where, partial(_check, line, alone), partial(_is_true, line, alone))
+
+
+def _check(line: Line, alone: Derivation) -> None:
+    """Check a changed line, and what follows where something else is established by it: else it is as it was."""
+    after = alone.check()
+    if after != line.after:
+        line.followed(after).check()
+
+
+def _is_true(line: Line, alone: Derivation) -> bool:
+    if alone.check() == line.after:
+        return still_true(alone, line.alone(line.step))
+    return still_true(line.told(*alone.steps), line.told(line.step))

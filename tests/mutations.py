@@ -269,16 +269,25 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
 
 @dataclass(frozen=True)
 class Line:
-    """A step of a derivation with what is established before it and what follows it."""
+    """A step of a derivation with what is established before and after it, and the steps that follow it."""
 
     derivation: Derivation
     start: Environment
     step: Step
+    after: Environment
     rest: tuple[Step, ...]
+
+    def alone(self, step: Step) -> Derivation:
+        """Return nothing but another step in this one's place."""
+        return replace(self.derivation, steps=(step,), start=self.start)
 
     def told(self, step: Step) -> Derivation:
         """Return the derivation from here on with another step in this one's place."""
         return replace(self.derivation, steps=(step, *self.rest), start=self.start)
+
+    def followed(self, after: Environment) -> Derivation:
+        """Return what follows this step, after something else was established."""
+        return replace(self.derivation, steps=self.rest, start=after)
 
 
 def lines_of(derivation: Derivation) -> list[Line]:
@@ -286,9 +295,9 @@ def lines_of(derivation: Derivation) -> list[Line]:
     steps = list(_opened(derivation.steps))
     lines, start = [], derivation.start
     for index, step in enumerate(steps):
-        line = Line(derivation, start, step, tuple(steps[index + 1 :]))
-        lines.append(line)
-        start = replace(derivation, steps=(step,), start=start).check()
+        after = replace(derivation, steps=(step,), start=start).check()
+        lines.append(Line(derivation, start, step, after, tuple(steps[index + 1 :])))
+        start = after
     return lines
 
 
