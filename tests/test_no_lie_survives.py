@@ -22,7 +22,7 @@ from symobs.page import Page
 from symobs.problem import read
 from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
 from tests.mutation.claims import drawn
-from tests.mutations import parts_of
+from tests.mutations import changes, lines_of, parts_of
 from tests.truth import is_true
 
 if TYPE_CHECKING:
@@ -74,6 +74,28 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
         assert is_true(result.derivation)
+
+
+@pytest.mark.parametrize(
+    ("stem", "key", "where"),
+    [
+        ("dominant_pair_pole_advice", "overshoot_held", ".relation.members[1].value*(-1)")
+    ],  # −ω_d, of which only ω_d² was held
+)
+def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -> None:
+    (path,) = (path for path in FILES if path.stem == stem)
+    told = [
+        line.told(change.value)
+        for result in results(path)
+        for line in lines_of(result.derivation)
+        if getattr(getattr(line.step, "sentence", None), "key", None) == key
+        for change in changes(line.step)
+        if change.where == where
+    ]
+    assert told
+    for derivation in told:
+        with pytest.raises(DerivationRejected):
+            derivation.check()
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,8 @@ def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str])
         return True
     if kind in _HOLDS:
         return _compares(kind, new, signs)
+    if kind == "region":
+        return _same_bounds(new, old)
     if kind.startswith(("condition", "property")):
         ratio = _ratio(new, old)
         return ratio is not None and (kind not in {"condition <", "condition >"} or ratio > 0)
@@ -95,6 +97,17 @@ def _ratio(new: list[Any], old: list[Any]) -> Any:
         return None
     ratios = [a / b for a, b in values]
     return None if any(ratio != ratios[0] for ratio in ratios) else ratios[0]
+
+
+def _same_bounds(new: list[Any], old: list[Any]) -> bool:
+    """Tell whether inequalities are the same in turn, each up to a positive factor."""
+    for bounds, others in zip(zip(*new, strict=True), zip(*old, strict=True), strict=True):
+        if {operators for operators, _ in bounds} != {operators for operators, _ in others}:
+            return False
+        ratio = _ratio([value for _, value in bounds], [value for _, value in others])
+        if ratio is None or ratio < 0:
+            return False
+    return True
 
 
 def _ratio_of_tables(new: list[Any], old: list[Any]) -> Any:
