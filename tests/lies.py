@@ -318,10 +318,11 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
+        meant = line.alone(line.step), line.told(line.step)
         for change in sample(some, most):
             alone = line.alone(change.value)
             where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
-            count.attempt(where, partial(_check, line, alone), partial(_is_true, line, alone))
+            count.attempt(where, partial(_check, line, alone), partial(_is_true, line, alone, *meant))
 
 
 def _check(line: Line, alone: Derivation) -> None:
@@ -331,7 +332,8 @@ def _check(line: Line, alone: Derivation) -> None:
         line.followed(after).check()
 
 
-def _is_true(line: Line, alone: Derivation) -> bool:
+def _is_true(line: Line, alone: Derivation, meant: Derivation, rest: Derivation) -> bool:
+    """Tell whether a changed line is true, and what follows where something else is established by it."""
     if alone.check() == line.after:
-        return still_true(alone, line.alone(line.step))
-    return still_true(line.told(*alone.steps), line.told(line.step))
+        return still_true(alone, meant)
+    return still_true(line.told(*alone.steps), rest)
