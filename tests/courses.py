@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from itertools import pairwise
 from operator import mul
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import mpmath
 import sympy
@@ -16,12 +16,23 @@ if TYPE_CHECKING:
 
     from symobs.picture import TimeResponse
 
+Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.
 _DIGITS = 60
 
 
-def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> Iterator[str]:
-    """Yield the points that lie a thousandth of the window or more from where they should."""
+def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> tuple[str, ...]:
+    """Return the points that lie a thousandth of the window or more from where they should."""
+    return _all_untrue(picture, tuple(map(tuple, matrix)))
+
+
+@lru_cache(maxsize=8)
+def _all_untrue(picture: TimeResponse, matrix: Rows) -> tuple[str, ...]:
+    """Return them, the same at every random point."""
+    return tuple(_untrue(picture, matrix))
+
+
+def _untrue(picture: TimeResponse, matrix: Rows) -> Iterator[str]:
     (_, end), (bottom, top) = picture.window
     if picture.discrete:
         yield from _untrue_samples(picture, matrix)
@@ -32,7 +43,7 @@ def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) 
         assert points[0][0] == 0
         assert points[-1][0] == end
         assert all(b[0] - a[0] <= end / 100 for a, b in pairwise(points))
-        states = _states(tuple(map(tuple, matrix)), start, end / (len(points) - 1), len(points))
+        states = _states(matrix, start, end / (len(points) - 1), len(points))
         row, near = [float(part) for part in course.row], float(top - bottom) / 1000
         for (instant, height), state in zip(points, states, strict=True):
             if abs(sum(map(mul, row, state)) - float(height)) > near:
@@ -40,9 +51,7 @@ def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) 
 
 
 @lru_cache(maxsize=8)
-def _states(
-    matrix: tuple[tuple[Fraction, ...], ...], start: tuple[Fraction, ...], step: Fraction, count: int
-) -> list[list[float]]:
+def _states(matrix: Rows, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[float]]:
     """Return the state at 0, h, 2 h, …: e^{Mh} times the one before."""
     with mpmath.workdps(_DIGITS):
         once = mpmath.expm(mpmath.matrix([[_real(entry * step) for entry in row] for row in matrix]))
@@ -52,7 +61,7 @@ def _states(
     return [[float(part) for part in state] for state in states]
 
 
-def _untrue_samples(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> Iterator[str]:
+def _untrue_samples(picture: TimeResponse, matrix: Rows) -> Iterator[str]:
     """Yield the values that are not row · Mᵏ · start, exactly."""
     start = sympy.Matrix([sympy.Rational(str(part)) for start in picture.starts for part in start])
     table = sympy.Matrix([[sympy.Rational(str(entry)) for entry in row] for row in matrix])

@@ -408,7 +408,7 @@ class World:
                 case Survey():
                     yield from self.survey(step)
                 case Plot(TimeResponse() as courses, subject):
-                    yield "=", Fraction(len(list(untrue_courses(courses, self.value(subject)))))
+                    yield "=", Fraction(len(untrue_courses(courses, self.value(subject))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))

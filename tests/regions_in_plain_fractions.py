@@ -194,13 +194,23 @@ class Seen:
     ) -> None:
         self.parts, self.axes, self.drawn_for = polynomial.coefficients(variable), axes, drawn_for
         self.polynomial, self.variable, self.discrete = polynomial, variable, discrete
+        self.verdicts: dict[tuple[Fraction, ...], bool] = {}
+        self.signs: dict[tuple[Relation, Place], int] = {}
 
     def coefficients(self, *place: Fraction) -> list[Fraction]:
         point = {**self.drawn_for, **dict(zip(self.axes, place, strict=True))}
         return coefficients_at(self.polynomial, self.variable, point)
 
     def stable(self, *place: Fraction) -> bool:
-        return is_stable(self.coefficients(*place), discrete=self.discrete)
+        if place not in self.verdicts:
+            self.verdicts[place] = is_stable(self.coefficients(*place), discrete=self.discrete)
+        return self.verdicts[place]
+
+    def sign(self, equation: Relation, place: Place) -> int:
+        if (equation, place) not in self.signs:
+            point = {**self.drawn_for, **dict(zip(self.axes, place, strict=True))}
+            self.signs[equation, place] = sign_at(equation, point)
+        return self.signs[equation, place]
 
     def around(self, step: Sequence[Fraction], *place: Fraction) -> set[bool]:
         """Return what is said of a place and of those a step away."""
@@ -221,7 +231,6 @@ def all_faults(picture: OfPolynomial, polynomial: Scalar, variable: str, discret
 
 def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
     """Yield what a picture shows that is not so."""
-    numbers = {name: Fraction(str(value)) for name, value in picture.drawn_for}
     axes = (
         (picture.moved,)
         if isinstance(picture, PoleMap)
@@ -229,13 +238,26 @@ def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete
         if isinstance(picture, RegionPicture)
         else (picture.axis,)
     )
-    seen = Seen(polynomial, variable, axes, numbers, discrete=discrete)
+    seen = _seen(polynomial, variable, axes, picture.drawn_for, discrete)
     if isinstance(picture, RegionPicture):
         yield from _of_region(picture, seen)
     elif isinstance(picture, LinePicture):
         yield from _of_line(picture, seen)
     else:
         yield from _of_poles(picture, seen)
+
+
+@lru_cache(maxsize=4)
+def _seen(
+    polynomial: Scalar,
+    variable: str,
+    axes: tuple[str, ...],
+    drawn_for: tuple[tuple[str, Scalar], ...],
+    discrete: bool,  # noqa: FBT001
+) -> Seen:
+    """Return what is known of a polynomial: pictures that differ in one place ask it for the same."""
+    numbers = {name: Fraction(str(value)) for name, value in drawn_for}
+    return Seen(polynomial, variable, axes, numbers, discrete=discrete)
 
 
 def _of_marks(marks: Sequence[tuple[tuple[Fraction, ...], str]], seen: Seen, step: Sequence[Fraction]) -> Iterator[str]:
@@ -277,7 +299,7 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
     yield from (f"{place} lies outside" for place in outside)
     for curve in picture.curves:
         for place in [*curve.points, *((_middle(a, b)) for a, b in pairwise(curve.points))]:
-            signs = {_sign(curve.equation, seen, other) for other in _cross(place, (step[0] * 5, step[1] * 5))}
+            signs = {seen.sign(curve.equation, other) for other in _cross(place, (step[0] * 5, step[1] * 5))}
             if signs <= {1} or signs <= {-1}:
                 yield f"{place} lies on {curve.equation}"
     for area in picture.areas:
@@ -287,8 +309,7 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
                 for p, (low, high), s in zip(place, picture.window, step, strict=True)
             )
             on_curve = any(
-                len({_sign(curve.equation, seen, other) for other in _cross(place, step)}) > 1
-                for curve in picture.curves
+                len({seen.sign(curve.equation, other) for other in _cross(place, step)}) > 1 for curve in picture.curves
             )
             if not on_border and not on_curve and seen.around(step, *place) == {False}:
                 yield f"an edge at {place}"
@@ -325,11 +346,6 @@ def _within(place: Place, picture: RegionPicture, step: Sequence[Fraction]) -> b
 def _cross(place: Place, step: Sequence[Fraction]) -> list[Place]:
     x, y = place
     return [place, (x - step[0], y), (x + step[0], y), (x, y - step[1]), (x, y + step[1])]
-
-
-def _sign(equation: Relation, seen: Seen, place: Place) -> int:
-    point = {**seen.drawn_for, **dict(zip(seen.axes, place, strict=True))}
-    return sign_at(equation, point)
 
 
 def sign_at(equation: Relation, point: Mapping[str, Fraction]) -> int:
