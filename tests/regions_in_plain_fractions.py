@@ -195,7 +195,7 @@ class Seen:
         self.parts, self.axes, self.drawn_for = polynomial.coefficients(variable), axes, drawn_for
         self.polynomial, self.variable, self.discrete = polynomial, variable, discrete
         self.verdicts: dict[tuple[Fraction, ...], bool] = {}
-        self.signs: dict[tuple[Relation, Place], int] = {}
+        self.signs: dict[Relation, dict[tuple[Place, Place], set[int]]] = {}
 
     def coefficients(self, *place: Fraction) -> list[Fraction]:
         point = {**self.drawn_for, **dict(zip(self.axes, place, strict=True))}
@@ -206,11 +206,17 @@ class Seen:
             self.verdicts[place] = is_stable(self.coefficients(*place), discrete=self.discrete)
         return self.verdicts[place]
 
-    def sign(self, equation: Relation, place: Place) -> int:
-        if (equation, place) not in self.signs:
-            point = {**self.drawn_for, **dict(zip(self.axes, place, strict=True))}
-            self.signs[equation, place] = sign_at(equation, point)
-        return self.signs[equation, place]
+    def signs_around(self, equation: Relation) -> Callable[[Place, Place], set[int]]:
+        """Return what tells the signs of left − right at a place and on the ends of its cross, once of each place."""
+        known = self.signs.setdefault(equation, {})
+
+        def signs(place: Place, step: Place) -> set[int]:
+            if (place, step) not in known:
+                points = ({**self.drawn_for, **dict(zip(self.axes, p, strict=True))} for p in _cross(place, step))
+                known[place, step] = {sign_at(equation, point) for point in points}
+            return known[place, step]
+
+        return signs
 
     def around(self, step: Sequence[Fraction], *place: Fraction) -> set[bool]:
         """Return what is said of a place and of those a step away."""
@@ -297,9 +303,10 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
             yield f"{mark.place} is filled, or is not"
     outside = [place for area in picture.areas for place in area if not _within(place, picture, step)]
     yield from (f"{place} lies outside" for place in outside)
-    for curve in picture.curves:
+    told = [seen.signs_around(curve.equation) for curve in picture.curves]
+    for curve, signs_at in zip(picture.curves, told, strict=True):
         for place in [*curve.points, *((_middle(a, b)) for a, b in pairwise(curve.points))]:
-            signs = {seen.sign(curve.equation, other) for other in _cross(place, (step[0] * 5, step[1] * 5))}
+            signs = signs_at(place, (step[0] * 5, step[1] * 5))
             if signs <= {1} or signs <= {-1}:
                 yield f"{place} lies on {curve.equation}"
     for area in picture.areas:
@@ -308,10 +315,11 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
                 min(abs(p - low), abs(p - high)) <= s
                 for p, (low, high), s in zip(place, picture.window, step, strict=True)
             )
-            on_curve = any(
-                len({seen.sign(curve.equation, other) for other in _cross(place, step)}) > 1 for curve in picture.curves
-            )
-            if not on_border and not on_curve and seen.around(step, *place) == {False}:
+            if (
+                not on_border
+                and not any(len(signs_at(place, step)) > 1 for signs_at in told)
+                and seen.around(step, *place) == {False}
+            ):
                 yield f"an edge at {place}"
     yield from _of_boundaries(picture, seen, step)
 
