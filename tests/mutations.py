@@ -29,7 +29,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.phrases import slots_of
-from symobs.picture import Curve, Mark, PoleMap
+from symobs.picture import Course, Curve, Mark, PoleMap
 from symobs.region.inequalities import Bound
 from symobs.region.routh import ORIGINS, RouthRow, RouthTable
 
@@ -144,6 +144,10 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, (Curve, Mark, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
+    elif isinstance(item, Course):
+        yield from _of_heights(item)
+        for change in _of_parts(replace(item, heights=())):
+            yield replace(change, value=replace(change.value, heights=item.heights))
     elif isinstance(item, NODES):
         yield from _of_formula(item)
         yield from _of_parts(item)
@@ -178,6 +182,16 @@ def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
         yield from (Change(f".kind {kind}", "structure", replace(item, kind=kind)) for kind in sorted(kinds))
     else:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
+
+
+def _of_heights(course: Course) -> Iterator[Change]:
+    """Yield a course with one height changed by the least there is, which none may see, and by what can be seen."""
+    heights = course.heights
+    step = max(2, max(map(abs, heights)) // 20)
+    for index, height in enumerate(heights):
+        for by in (1, -step if height >= 0 else step):
+            changed = (*heights[:index], height + by, *heights[index + 1 :])
+            yield Change(f".heights[{index}]{by:+}", "number", replace(course, heights=changed))
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:

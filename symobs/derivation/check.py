@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import vanishing_factors
+from symobs.derivation.exponents import EXPONENTS, is_its_own
 from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
 from symobs.derivation.region_claims import is_exactly
 from symobs.derivation.rejection import BUG, reject
@@ -230,6 +231,8 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
+        if isinstance(slot, Relation) and sentence.key in EXPONENTS and not is_its_own(sentence.key, slot, environment):
+            reject(f"{plain_relation(slot, environment.variable)}, of another exponential,")
         if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
