@@ -79,8 +79,11 @@ def test_every_line_holds_in_plain_fractions(path: Path) -> None:
 @pytest.mark.parametrize(
     ("stem", "key", "where"),
     [
-        ("dominant_pair_pole_advice", "overshoot_held", ".relation.members[1].value*(-1)")
-    ],  # −ω_d, of which only ω_d² was held
+        ("dominant_pair_pole_advice", "overshoot_held", ".relation.members[1].value*(-1)"),  # −ω_d: only ω_d² was held
+        ("dominant_pair_pole_advice", "overshoot_held", ".sentence.slots[0][1].members[0].value*0"),  # 0 <= M_p is true
+        ("dominant_pair_pole_advice", "overshoot_close", ".sentence.slots[0][1].members[0].value*2"),
+        ("dominant_pair_pole_advice", "decayed", ".sentence.slots[0][1].members[0].value*(-1)"),
+    ],
 )
 def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -> None:
     (path,) = (path for path in FILES if path.stem == stem)
