@@ -66,6 +66,10 @@ _OTHER_WORDS = [
     ("routh_criterion_positive", "routh_criterion_negative"),
     ("connected_bounded", "connected_unbounded"),
     ("box_bounded", "box_unbounded"),
+    ("full_rank_observability", "no_observability"),
+    ("full_rank_controllability", "no_controllability"),
+    ("stack_yes", "stack_no"),
+    ("case_stack", "case_stack_yes"),
 ]
 #: Sentences whose counting words are made, and checked, by what they count.
 _COUNTING = {"points_decide", "cells_decide", "pieces", "number_is_root", "routh_changes", "routh_changes_axis"}
