@@ -23,15 +23,16 @@ from symobs.exact.functions import symbols_in
 from symobs.region.proof import Combined, Opposite
 from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
-from tests.mutations import Change, answer_changes, changes, lines_of
+from tests.mutations import Change, Line, answer_changes, changes, lines_of
 from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
-from tests.plain_fractions import Algebraic, World, determinant, identity, inverse, plus, times
+from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
 from tests.truth import still_true
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symobs.derivation import Derivation
     from symobs.design.assignment import Pair
     from symobs.method import Result
     from tests.plain import Rows
@@ -91,24 +92,11 @@ def holds(part: Result, answer: Mapping[str, Any]) -> bool:
     conditions = getattr(getattr(part, "piece", None), "conditions", ())
     equations = part.plant.equations or [c.expression for c in conditions if c.operator == "=="]
     for world in worlds:
-        _move_to_stratum(world, equations)
+        world.move_to(equations)
     try:
         return all(_holds_at(part, answer, world) for world in worlds)
     except (ArithmeticError, LookupError, TypeError, ValueError):
         return False
-
-
-def _move_to_stratum(world: World, equations: Sequence[Scalar]) -> None:
-    """Let a parameter be a root of the equation that holds, a rational one or that of an irreducible factor."""
-    if len(equations) != 1:
-        return
-    name, *others = sorted(equations[0].names)
-    moved = equations[0].substitute({other: Scalar.of(world.number(other)) for other in others})
-    factors = [factor for factor, _ in moved.numerator.factors()[1] if name in factor.names]
-    lead, *rest = min(factors, key=lambda factor: factor.degree(name)).coefficients(name)
-    monic = [*(c.fraction() / lead.fraction() for c in reversed(rest)), Fraction(1)]
-    root = -monic[0] if len(rest) == 1 else Algebraic.make([Fraction(0), Fraction(1)], monic)
-    world.meanings[name] = root
 
 
 def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
@@ -330,7 +318,22 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
+        meant = line.alone(line.step), line.told(line.step)
         for change in sample(some, most):
-            told, meant = line.told(change.value), line.told(line.step)
+            alone = line.alone(change.value)
             where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
-            count.attempt(where, told.check, partial(still_true, told, meant))
+            count.attempt(where, partial(_check, line, alone), partial(_is_true, line, alone, *meant))
+
+
+def _check(line: Line, alone: Derivation) -> None:
+    """Check a changed line, and what follows where something else is established by it: else it is as it was."""
+    after = alone.check()
+    if after != line.after:
+        line.followed(after).check()
+
+
+def _is_true(line: Line, alone: Derivation, meant: Derivation, rest: Derivation) -> bool:
+    """Tell whether a changed line is true, and what follows where something else is established by it."""
+    if alone.check() == line.after:
+        return still_true(alone, meant)
+    return still_true(line.told(*alone.steps), rest)

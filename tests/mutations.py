@@ -29,7 +29,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.phrases import slots_of
-from symobs.picture import Curve, Mark, PoleMap
+from symobs.picture import Course, Curve, Mark, PoleMap
 from symobs.region.inequalities import Bound
 from symobs.region.routh import ORIGINS, RouthRow, RouthTable
 
@@ -66,6 +66,10 @@ _OTHER_WORDS = [
     ("routh_criterion_positive", "routh_criterion_negative"),
     ("connected_bounded", "connected_unbounded"),
     ("box_bounded", "box_unbounded"),
+    ("full_rank_observability", "no_observability"),
+    ("full_rank_controllability", "no_controllability"),
+    ("stack_yes", "stack_no"),
+    ("case_stack", "case_stack_yes"),
 ]
 #: Sentences whose counting words are made, and checked, by what they count.
 _COUNTING = {"points_decide", "cells_decide", "pieces", "number_is_root", "routh_changes", "routh_changes_axis"}
@@ -144,6 +148,10 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, (Curve, Mark, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
+    elif isinstance(item, Course):
+        yield from _of_heights(item)
+        for change in _of_parts(replace(item, heights=())):
+            yield replace(change, value=replace(change.value, heights=item.heights))
     elif isinstance(item, NODES):
         yield from _of_formula(item)
         yield from _of_parts(item)
@@ -178,6 +186,16 @@ def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
         yield from (Change(f".kind {kind}", "structure", replace(item, kind=kind)) for kind in sorted(kinds))
     else:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
+
+
+def _of_heights(course: Course) -> Iterator[Change]:
+    """Yield a course with one height changed by the least there is, which none may see, and by what can be seen."""
+    heights = course.heights
+    step = max(2, max(map(abs, heights)) // 20)
+    for index, height in enumerate(heights):
+        for by in (1, -step if height >= 0 else step):
+            changed = (*heights[:index], height + by, *heights[index + 1 :])
+            yield Change(f".heights[{index}]{by:+}", "number", replace(course, heights=changed))
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:
@@ -269,16 +287,25 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
 
 @dataclass(frozen=True)
 class Line:
-    """A step of a derivation with what is established before it and what follows it."""
+    """A step of a derivation with what is established before and after it, and the steps that follow it."""
 
     derivation: Derivation
     start: Environment
     step: Step
+    after: Environment
     rest: tuple[Step, ...]
+
+    def alone(self, step: Step) -> Derivation:
+        """Return nothing but another step in this one's place."""
+        return replace(self.derivation, steps=(step,), start=self.start)
 
     def told(self, step: Step) -> Derivation:
         """Return the derivation from here on with another step in this one's place."""
         return replace(self.derivation, steps=(step, *self.rest), start=self.start)
+
+    def followed(self, after: Environment) -> Derivation:
+        """Return what follows this step, after something else was established."""
+        return replace(self.derivation, steps=self.rest, start=after)
 
 
 def lines_of(derivation: Derivation) -> list[Line]:
@@ -286,9 +313,9 @@ def lines_of(derivation: Derivation) -> list[Line]:
     steps = list(_opened(derivation.steps))
     lines, start = [], derivation.start
     for index, step in enumerate(steps):
-        line = Line(derivation, start, step, tuple(steps[index + 1 :]))
-        lines.append(line)
-        start = replace(derivation, steps=(step,), start=start).check()
+        after = replace(derivation, steps=(step,), start=start).check()
+        lines.append(Line(derivation, start, step, after, tuple(steps[index + 1 :])))
+        start = after
     return lines
 
 

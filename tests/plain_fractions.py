@@ -408,16 +408,17 @@ class World:
                 case Survey():
                     yield from self.survey(step)
                 case Plot(TimeResponse() as courses, subject):
-                    yield "=", Fraction(len(list(untrue_courses(courses, self.value(subject)))))
+                    yield "=", Fraction(len(untrue_courses(courses, self.value(subject))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
                 case Case(when, substitution, inside):
                     stratum = self.copy()
-                    if isinstance(when, Relation) and when.operators == ("=",) and not substitution:
-                        stratum.meanings[EIGENVALUE] = self.eigenvalue(when)
+                    relations = when.relations if isinstance(when, Together) else (when,)
+                    if not substitution:
+                        stratum.move_to([_equation(relation) for relation in relations if relation.operators == ("=",)])
                     stratum.meanings |= dict(substitution)
-                    for relation in when.relations if isinstance(when, Together) else (when,):
+                    for relation in relations:
                         (operator,) = relation.operators
                         kind = f"condition {operator}" if operator in {"<", ">"} else "condition"
                         yield kind, single(self.difference(relation))
@@ -482,18 +483,25 @@ class World:
         return self.variable == "z"
 
     def polynomial_of(self, subject: Formula) -> Scalar | None:
-        """Return the value of a letter that is a polynomial in the variable, up to a number, None where it is none."""
+        """Return a letter's polynomial in the variable up to a number, of a quotient that of its poles; None without one."""
+        value = self.scalar_of(subject)
+        if value is None:
+            return None
+        value = value.denominator if self.is_quotient(value) else value
+        return None if value.names & set(self.meanings) else value
+
+    def scalar_of(self, subject: Formula) -> Scalar | None:
+        """Return the value of a letter up to a number, None where it is no scalar."""
         if isinstance(subject, Negative):
-            return self.polynomial_of(subject.operand)
+            return self.scalar_of(subject.operand)
         if isinstance(subject, Sum) and len(set(subject.terms)) == 1:
-            return self.polynomial_of(subject.terms[0])
+            return self.scalar_of(subject.terms[0])
         value = self.letters.get(subject.name) if isinstance(subject, Letter) else None
         value = value.value if isinstance(value, Literal) else value
-        if not isinstance(value, Scalar):
-            return None
-        if self.variable in value.denominator.names:
-            value = value.denominator  # whose roots are the poles
-        return None if value.names & set(self.meanings) else value
+        return value if isinstance(value, Scalar) else None
+
+    def is_quotient(self, value: Scalar | None) -> bool:
+        return value is not None and self.variable in value.denominator.names
 
     def names_of(self, subject: Formula) -> frozenset[str]:
         value = self.polynomial_of(subject)
@@ -503,7 +511,10 @@ class World:
     def is_stable(self, subject: Formula, point: Mapping[str, Fraction]) -> bool:
         value = self.polynomial_of(subject)
         assert value is not None
-        return regions.is_stable(coefficients_at(value, self.variable, point), discrete=self.is_discrete)
+        coefficients = coefficients_at(value, self.variable, point)
+        if self.is_quotient(self.scalar_of(subject)) and not any(coefficients):
+            raise ZeroDivisionError(point)
+        return regions.is_stable(coefficients, discrete=self.is_discrete)
 
     def region(self, fact: Exactly) -> Iterator[tuple[str, Any]]:
         """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
@@ -514,21 +525,21 @@ class World:
         for point in regions.points(tuple(names), self.signs, self.seed):
             try:
                 wrong += self.is_stable(about, point) != regions.all_hold(fact.where, point)
-            except ZeroDivisionError:  # there is no polynomial there
+            except ZeroDivisionError:  # there is no such function there
                 continue
         yield "=", Fraction(wrong)
 
-    def eigenvalue(self, when: Relation) -> Fraction:
-        """Return a root of the equation in λ."""
-        world = replace(self, variable=EIGENVALUE)
-        left, right = (world.coefficients(member.value) for member in when.members)  # type: ignore[union-attr, arg-type]
-        size = max(len(left), len(right))
-        left, right = ([*part, *([Fraction(0)] * (size - len(part)))] for part in (left, right))
-        found = [a - b for a, b in zip(left, right, strict=True)]
-        while not found[-1]:
-            found.pop()
-        monic = [c / found[-1] for c in found]
-        return -monic[0] if len(monic) == 2 else Algebraic.make([Fraction(0), Fraction(1)], monic)
+    def move_to(self, equations: Sequence[Scalar]) -> None:
+        """Let λ, or a parameter, be a root of the one equation that holds: a rational one or that of an irreducible factor."""
+        if len(equations) != 1 or not equations[0].names:
+            return
+        (equation,) = equations
+        name = EIGENVALUE if EIGENVALUE in equation.names else min(equation.names)
+        moved = equation.substitute({other: Scalar.of(self.number(other)) for other in equation.names - {name}})
+        factors = [factor for factor, _ in moved.numerator.factors()[1] if name in factor.names]
+        lead, *rest = min(factors, key=lambda factor: factor.degree(name)).coefficients(name)
+        monic = [*(c.fraction() / lead.fraction() for c in reversed(rest)), Fraction(1)]
+        self.meanings[name] = -monic[0] if len(rest) == 1 else Algebraic.make([Fraction(0), Fraction(1)], monic)
 
     def difference(self, relation: Relation) -> Any:
         return plus(self.value(relation.members[0]), times(Fraction(-1), self.value(relation.members[1])))
@@ -588,6 +599,13 @@ class World:
             return ("of", tuple(self.coefficients(root.factor)), root.index)
         radicand = self.scalar(root.radicand)
         return ("at", self.scalar(root.centre), radicand, root.sign if radicand else 1)
+
+
+def _equation(relation: Relation) -> Scalar:
+    left, right = (member.value for member in relation.members)  # type: ignore[union-attr]
+    assert isinstance(left, Scalar)
+    assert isinstance(right, Scalar)
+    return left - right
 
 
 def _symbols(member: Formula) -> frozenset[str]:

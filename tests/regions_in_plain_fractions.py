@@ -194,13 +194,29 @@ class Seen:
     ) -> None:
         self.parts, self.axes, self.drawn_for = polynomial.coefficients(variable), axes, drawn_for
         self.polynomial, self.variable, self.discrete = polynomial, variable, discrete
+        self.verdicts: dict[tuple[Fraction, ...], bool] = {}
+        self.signs: dict[Relation, dict[tuple[Place, Place], set[int]]] = {}
 
     def coefficients(self, *place: Fraction) -> list[Fraction]:
         point = {**self.drawn_for, **dict(zip(self.axes, place, strict=True))}
         return coefficients_at(self.polynomial, self.variable, point)
 
     def stable(self, *place: Fraction) -> bool:
-        return is_stable(self.coefficients(*place), discrete=self.discrete)
+        if place not in self.verdicts:
+            self.verdicts[place] = is_stable(self.coefficients(*place), discrete=self.discrete)
+        return self.verdicts[place]
+
+    def signs_around(self, equation: Relation) -> Callable[[Place, Place], set[int]]:
+        """Return what tells the signs of left − right at a place and on the ends of its cross, once of each place."""
+        known = self.signs.setdefault(equation, {})
+
+        def signs(place: Place, step: Place) -> set[int]:
+            if (place, step) not in known:
+                points = ({**self.drawn_for, **dict(zip(self.axes, p, strict=True))} for p in _cross(place, step))
+                known[place, step] = {sign_at(equation, point) for point in points}
+            return known[place, step]
+
+        return signs
 
     def around(self, step: Sequence[Fraction], *place: Fraction) -> set[bool]:
         """Return what is said of a place and of those a step away."""
@@ -221,7 +237,6 @@ def all_faults(picture: OfPolynomial, polynomial: Scalar, variable: str, discret
 
 def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
     """Yield what a picture shows that is not so."""
-    numbers = {name: Fraction(str(value)) for name, value in picture.drawn_for}
     axes = (
         (picture.moved,)
         if isinstance(picture, PoleMap)
@@ -229,13 +244,26 @@ def faults(picture: OfPolynomial, polynomial: Scalar, variable: str, *, discrete
         if isinstance(picture, RegionPicture)
         else (picture.axis,)
     )
-    seen = Seen(polynomial, variable, axes, numbers, discrete=discrete)
+    seen = _seen(polynomial, variable, axes, picture.drawn_for, discrete)
     if isinstance(picture, RegionPicture):
         yield from _of_region(picture, seen)
     elif isinstance(picture, LinePicture):
         yield from _of_line(picture, seen)
     else:
         yield from _of_poles(picture, seen)
+
+
+@lru_cache(maxsize=4)
+def _seen(
+    polynomial: Scalar,
+    variable: str,
+    axes: tuple[str, ...],
+    drawn_for: tuple[tuple[str, Scalar], ...],
+    discrete: bool,  # noqa: FBT001
+) -> Seen:
+    """Return what is known of a polynomial: pictures that differ in one place ask it for the same."""
+    numbers = {name: Fraction(str(value)) for name, value in drawn_for}
+    return Seen(polynomial, variable, axes, numbers, discrete=discrete)
 
 
 def _of_marks(marks: Sequence[tuple[tuple[Fraction, ...], str]], seen: Seen, step: Sequence[Fraction]) -> Iterator[str]:
@@ -275,9 +303,10 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
             yield f"{mark.place} is filled, or is not"
     outside = [place for area in picture.areas for place in area if not _within(place, picture, step)]
     yield from (f"{place} lies outside" for place in outside)
-    for curve in picture.curves:
+    told = [seen.signs_around(curve.equation) for curve in picture.curves]
+    for curve, signs_at in zip(picture.curves, told, strict=True):
         for place in [*curve.points, *((_middle(a, b)) for a, b in pairwise(curve.points))]:
-            signs = {_sign(curve.equation, seen, other) for other in _cross(place, (step[0] * 5, step[1] * 5))}
+            signs = signs_at(place, (step[0] * 5, step[1] * 5))
             if signs <= {1} or signs <= {-1}:
                 yield f"{place} lies on {curve.equation}"
     for area in picture.areas:
@@ -286,11 +315,11 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
                 min(abs(p - low), abs(p - high)) <= s
                 for p, (low, high), s in zip(place, picture.window, step, strict=True)
             )
-            on_curve = any(
-                len({_sign(curve.equation, seen, other) for other in _cross(place, step)}) > 1
-                for curve in picture.curves
-            )
-            if not on_border and not on_curve and seen.around(step, *place) == {False}:
+            if (
+                not on_border
+                and not any(len(signs_at(place, step)) > 1 for signs_at in told)
+                and seen.around(step, *place) == {False}
+            ):
                 yield f"an edge at {place}"
     yield from _of_boundaries(picture, seen, step)
 
@@ -325,11 +354,6 @@ def _within(place: Place, picture: RegionPicture, step: Sequence[Fraction]) -> b
 def _cross(place: Place, step: Sequence[Fraction]) -> list[Place]:
     x, y = place
     return [place, (x - step[0], y), (x + step[0], y), (x, y - step[1]), (x, y + step[1])]
-
-
-def _sign(equation: Relation, seen: Seen, place: Place) -> int:
-    point = {**seen.drawn_for, **dict(zip(seen.axes, place, strict=True))}
-    return sign_at(equation, point)
 
 
 def sign_at(equation: Relation, point: Mapping[str, Fraction]) -> int:

@@ -21,7 +21,8 @@ from symobs.exact import Matrix
 from symobs.page import Page
 from symobs.problem import read
 from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
-from tests.mutations import parts_of
+from tests.mutation.claims import drawn
+from tests.mutations import changes, lines_of, parts_of
 from tests.truth import is_true
 
 if TYPE_CHECKING:
@@ -73,6 +74,46 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
         assert is_true(result.derivation)
+
+
+@pytest.mark.parametrize(
+    ("stem", "key", "where"),
+    [
+        ("dominant_pair_pole_advice", "overshoot_held", ".relation.members[1].value*(-1)"),  # −ω_d: only ω_d² was held
+        ("dominant_pair_pole_advice", "overshoot_held", ".sentence.slots[0][1].members[0].value*0"),  # 0 <= M_p is true
+        ("dominant_pair_pole_advice", "overshoot_close", ".sentence.slots[0][1].members[0].value*2"),
+        ("boundary_mode", "no_observability", ".sentence.slots[0][1].members[2].value+1"),  # of 2 states, 1 < 3 as well
+        ("boundary_mode", "no_observability", ".sentence.words"),
+        ("hidden_state_two_outputs", "no_observability", ".sentence.words"),
+        ("frozen_time_misleads", "stack_no", ".sentence.words"),
+        ("dominant_pair_pole_advice", "decayed", ".sentence.slots[0][1].members[0].value*(-1)"),
+    ],
+)
+def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -> None:
+    (path,) = (path for path in FILES if path.stem == stem)
+    told = [
+        line.told(change.value)
+        for result in results(path)
+        for line in lines_of(result.derivation)
+        if getattr(getattr(line.step, "sentence", None), "key", None) == key
+        for change in changes(line.step)
+        if change.where == where
+    ]
+    assert told
+    for derivation in told:
+        with pytest.raises(DerivationRejected):
+            derivation.check()
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        434,  # the rank on the stratum 2 k² + 9 k − 27 = 0, whose points are not rational
+        562,  # stable exactly where …, of an F that means nothing at k = −1
+    ],
+)
+def test_every_line_of_a_random_design_holds_in_plain_fractions(number: int) -> None:
+    assert is_true(drawn(number).solve().derivation)
 
 
 # -- lies that agree with each other -----------------------------------------------------------------------------------

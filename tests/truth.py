@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections import deque
 from fractions import Fraction
-from math import prod
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import sympy
 
 from symobs.exact import Scalar
 from symobs.formula import Literal, Negative, Power, Product, Quotient
-from tests.plain_fractions import Compared, World, is_matrix, single
+from tests.plain import at_number, multiply
+from tests.plain_fractions import Compared, World, inverse, is_matrix, single
+from tests.regions_in_plain_fractions import is_stable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,12 +26,12 @@ _FITTED, _TESTED = 10, 4
 Readings: TypeAlias = "list[list[tuple[str, Any]]]"
 
 
-def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scale: int = 0) -> Readings:
+def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scale: Fraction | None = None) -> Readings:
     """Return what a derivation says at random points; `scale` puts that multiple of the variable in its place."""
     found = []
     for seed in points:
         world = World.of(derivation.start, seed)
-        if scale:
+        if scale is not None:
             world.meanings[world.variable] = Scalar.of(scale * world.number(world.variable))
         found.append(list(world.read(derivation.steps)))
     return found
@@ -51,7 +53,7 @@ def still_true(changed: Derivation, original: Derivation) -> bool:
         told = readings(changed)
     except (ArithmeticError, ValueError, TypeError, LookupError, AssertionError):
         return False
-    meant = readings(original)
+    meant = _meant(original)
     if [_family(kind) for kind, _ in told[0]] != [_family(kind) for kind, _ in meant[0]]:
         return False
     for place, kind in enumerate(kind for kind, _ in told[0]):
@@ -59,6 +61,18 @@ def still_true(changed: Derivation, original: Derivation) -> bool:
         if not (_agrees(kind, new, old, original.start.signs) or _has_property(kind, place, changed, original, new)):
             return False
     return True
+
+
+def _meant(original: Derivation) -> Readings:
+    """Return what an original says: it is asked for again by each of its changes."""
+    for known, found in _READ:
+        if known is original:
+            return found
+    _READ.append((original, readings(original)))
+    return _READ[-1][1]
+
+
+_READ: deque[tuple[Derivation, Readings]] = deque(maxlen=2)
 
 
 def _family(kind: str) -> str:
@@ -76,6 +90,8 @@ def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str])
         return True
     if kind in _HOLDS:
         return _compares(kind, new, signs)
+    if kind == "region":
+        return _same_bounds(new, old)
     if kind.startswith(("condition", "property")):
         ratio = _ratio(new, old)
         return ratio is not None and (kind not in {"condition <", "condition >"} or ratio > 0)
@@ -94,6 +110,17 @@ def _ratio(new: list[Any], old: list[Any]) -> Any:
         return None
     ratios = [a / b for a, b in values]
     return None if any(ratio != ratios[0] for ratio in ratios) else ratios[0]
+
+
+def _same_bounds(new: list[Any], old: list[Any]) -> bool:
+    """Tell whether inequalities are the same in turn, each up to a positive factor."""
+    for bounds, others in zip(zip(*new, strict=True), zip(*old, strict=True), strict=True):
+        if {operators for operators, _ in bounds} != {operators for operators, _ in others}:
+            return False
+        ratio = _ratio([value for _, value in bounds], [value for _, value in others])
+        if ratio is None or ratio < 0:
+            return False
+    return True
 
 
 def _ratio_of_tables(new: list[Any], old: list[Any]) -> Any:
@@ -159,20 +186,34 @@ def _terms(polynomial: Scalar, signs: Mapping[str, str]) -> Any:
 
 
 def _has_property(kind: str, place: int, changed: Derivation, original: Derivation, new: list[Any]) -> bool:
-    """Decide a property anew: stability is kept when the variable is scaled, polynomials are told by interpolation."""
-    if kind in {"property stable", "property unstable", "property strictly_proper"}:
-        return _ratio(new, [reading[place][1] for reading in readings(original, scale=2)]) is not None
+    """Decide a property anew, of a polynomial that is told by interpolation.
+
+    Strictly proper stays what is so when its variable is scaled, and in continuous time stable and unstable do too.
+    """
+    if kind == "property strictly_proper" or (kind in _OF_ROOTS and not original.discrete):
+        for scale in (Fraction(2), Fraction(1, 2)):
+            if _ratio(new, [reading[place][1] for reading in readings(original, scale=scale)]) is not None:
+                return True
+    if kind in _OF_ROOTS:
+        found = [_polynomial(changed, place, seed) for seed in range(POINTS)]
+        if found[0] is None or any(polynomial != found[0] for polynomial in found):
+            return False
+        return is_stable(found[0], discrete=changed.discrete) == _OF_ROOTS[kind]
     if kind not in {"property polynomial", "property not_polynomial"}:
         return False
-    values = [(Fraction(k), readings(changed, [0], k)[0][place][1]) for k in range(1, _FITTED + _TESTED + 1)]
-    fitted, tested = values[:_FITTED], values[_FITTED:]
-    return all(_interpolated(fitted, at) == value for at, value in tested) == (kind == "property polynomial")
+    return (_polynomial(changed, place, 0) is not None) == (kind == "property polynomial")
 
 
-def _interpolated(values: list[tuple[Fraction, Fraction]], at: Fraction) -> Fraction:
-    """Return the polynomial through some values at another place, by Lagrange's formula."""
-    total = Fraction(0)
-    for i, (place, value) in enumerate(values):
-        weights = [(at - other) / (place - other) for j, (other, _) in enumerate(values) if i != j]
-        total += value * prod(weights)
-    return total
+_OF_ROOTS = {"property stable": True, "property unstable": False}
+
+
+def _polynomial(derivation: Derivation, place: int, seed: int) -> list[Fraction] | None:
+    """Return the coefficients of what is told at a place, highest power first; None where it is no polynomial."""
+    at = World(seed, derivation.variable, {}).number(derivation.variable)
+    values = [(k * at, readings(derivation, [seed], Fraction(k))[0][place][1]) for k in range(1, _FITTED + _TESTED + 1)]
+    places, told = zip(*values[:_FITTED], strict=True)
+    powers = [[point**k for k in reversed(range(_FITTED))] for point in places]
+    found = [entry for (entry,) in multiply(inverse(powers), [[single(value)] for value in told])]
+    while len(found) > 1 and not found[0]:
+        del found[0]
+    return found if all(at_number(found, point) == single(value) for point, value in values[_FITTED:]) else None

@@ -188,6 +188,7 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
         return
     bound = relation(overshoot_of(omega_d / sigma), "<=", page["M_p"])
     page.define("omega_d", page.value(omega_d), say="overshoot_held", bound=bound)
+    page.conclude_silently(relation(page["omega_d"], page.value(omega_d / sigma) @ page["sigma_d"]))
     more = overshoot_of(omega_d / sigma + third_digit((omega_d / sigma).fraction()))
     page.conclude("overshoot_close", more=relation(more, ">", page["M_p"]))
     s = page.s

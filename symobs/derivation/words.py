@@ -1,0 +1,66 @@
+"""Whether the relation in a sentence is the one that its words speak of, not just any that is true (trusted).
+
+A pair of poles overshoots by exp(−π σ/ω), and by no other number below a bound; a pair is observable because the rank is
+that of a matrix of full rank, and not because of 1 = 1.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symobs.certificate import as_scalar
+from symobs.exact import Scalar
+from symobs.exact.functions import PI, function
+from symobs.formula import Apply, Exact, evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from symobs.formula import Environment, Relation
+
+
+def _one_higher(value: Fraction) -> Fraction:
+    """Return a positive number with its third digit one higher.  Raises ValueError for another number."""
+    if value <= 0:
+        raise ValueError(value)
+    unit = Fraction(1)
+    while value < 100 * unit:
+        unit /= 10
+    while value >= 1000 * unit:
+        unit *= 10
+    return value + unit
+
+
+#: What e is raised to in the relations of sentences, from the values of the letters.
+EXPONENTS: dict[str, Callable[[Mapping[str, Scalar]], Scalar]] = {
+    "decayed": lambda of: -of["sigma_d"] * of["T_s"],
+    "overshoot_held": lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"],
+    "overshoot_close": lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction()),
+}
+
+
+#: Sentences that say of a rank that it is full, and those that say that it is not.
+_OF_FULL_RANK = {f"{key}_{of}" for key in ("full_rank", "generic_rank") for of in ("observability", "controllability")}
+FULL_RANK = _OF_FULL_RANK | {"stack_yes", "case_stack_yes"}
+LOW_RANK = {"no_observability", "no_controllability", "stack_no", "case_stack"}
+
+
+def fits(key: str, relation: Relation, environment: Environment) -> bool:
+    """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
+    if key in EXPONENTS:
+        told = evaluate(relation.members[0], environment, Exact(environment))
+        return bool(told == function("exp", EXPONENTS[key](environment.values)))  # type: ignore[arg-type]
+    return key not in FULL_RANK | LOW_RANK or _is_of_rank(relation, environment, is_full=key in FULL_RANK)
+
+
+def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:
+    """Tell whether a relation is rank = r with the full r, or with a lower one, followed by nothing but the full one."""
+    first, *others = relation.members
+    if not isinstance(first, Apply) or first.function != "rank":
+        return False
+    full = min(evaluate(first.argument, environment, Exact(environment)).shape)
+    ranks = [as_scalar(evaluate(member, environment, Exact(environment))).fraction() for member in others]
+    if is_full:
+        return relation.operators == ("=",) and ranks == [full]
+    return ranks[0] < full and (relation.operators, ranks[1:]) in [(("=",), []), (("=", "<"), [full])]
