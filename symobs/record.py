@@ -71,10 +71,16 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
     made = [(name, part.default_factory) for name, part in parts.items() if part.default_factory is not _MISSING]
     most, total = len(names), len({*taken, *defaults, *(name for name, _ in made)})
     open_to_names = [frozenset(taken) - set(names[:count]) for count in range(most + 1)]
+    whole = most if most == total else None
     finish = getattr(cls, "__post_init__", None)
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
         own = self.__dict__  # a frozen class refuses to be written to in any other way
+        if len(values) == whole and not named:
+            own.update(zip(names, values, strict=True))
+            if finish is not None:
+                finish(self)
+            return
         if defaults:
             own.update(defaults)
         for name, value in zip(names, values):  # noqa: B905 - how many there are is looked at below

@@ -151,21 +151,21 @@ def desired_polynomial(
         message = f"both {names[0]} and {names[1]} are given"
         raise InputError(message, where=first, repair="keep one of them")
     if poles is not None:
-        return _from_poles(read_poles(poles, plant.symbols, first), plant.variable, degree, first)
+        return _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
     return _from_polynomial(polynomial, plant, degree, second)
 
 
-def read_poles(value: object, symbols: Symbols, where: str) -> tuple[Complex, ...]:
-    """Return exact poles from a text or a list of numbers, texts and SymPy expressions."""
+def read_poles(value: object, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
+    """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
-        return parse_poles(value, symbols.names, where=where)
+        return parse_poles(value, symbols.names, variable=variable, where=where)
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
     entries = listed if isinstance(listed, Sequence) else [listed]
     read = [
         read_complex(entry, f"{where}[{index}]") if type(entry).__module__.startswith("sympy") else entry
         for index, entry in enumerate(entries)
     ]
-    return parse_poles(read, symbols.names, where=where)
+    return parse_poles(read, symbols.names, variable=variable, where=where)
 
 
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:

@@ -49,7 +49,12 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
     coefficients = [c / found[0] for c in found]  # the leading coefficient may be of any sign
     if discrete:
         coefficients = bilinear(coefficients)
-    return _decide([*coefficients[:discrete], *lienard_chipart(coefficients)], signs)
+    whole = _decide([*coefficients[:discrete], *lienard_chipart(coefficients)], signs)
+    if whole.verdict == "conditional" and polynomial.size <= FACTORED_UP_TO:
+        parts = [factor for factor, _ in polynomial.numerator.factors()[1] if factor.degree(variable)]
+        if len(parts) > 1 and any(stability(part, variable, signs, discrete=discrete).verdict == "no" for part in parts):
+            return Stability("no")
+    return whole
 
 
 def bilinear(coefficients: Sequence[Scalar]) -> list[Scalar]:

@@ -12,6 +12,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
+from symobs.expression import parse_scalar
 from symobs.stability import (
     Stability,
     as_inequality,
@@ -222,6 +223,20 @@ def test_the_pendulum_of_the_catalogue(polynomial: str, signs: dict[str, str], e
     constant = omega**2 * (1 - h1)
     chi = s**2 + (b + h2) * s + (constant if polynomial == "down" else -constant)
     assert set(stability(chi, "s", signs, discrete=False).inequalities(signs)) == expected
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "discrete"),
+    [
+        ("(s - 1)*(s + h)", False),
+        ("(s - 1)*(s*h + s + 1)", False),
+        ("s*(s^2 + h*s + 1)", False),
+        ("(s - 1)*(s - h)", True),
+    ],
+)
+def test_one_unstable_factor_settles_what_the_coefficients_leave_open(polynomial: str, discrete: bool) -> None:  # noqa: FBT001
+    value = parse_scalar(polynomial, variable="s")
+    assert stability(value, "s", {}, discrete=discrete) == Stability("no")
 
 
 def test_inequalities_of_settled_verdicts() -> None:

@@ -5,7 +5,7 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `Side` says w
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
@@ -346,7 +346,7 @@ def working_pair(pair: Pair, desired: DesiredPolynomial) -> Pair:
     """Return the pair over one context: plant and specification together."""
     names = {name for factor in desired.factors for name in factor.field.names} - {desired.variable}
     working = Field.of((*pair.A.field.names, *pair.c.field.names, *names))
-    return replace(pair, A=pair.A.within(working), c=pair.c.within(working))
+    return type(pair)(pair.A.within(working), pair.c.within(working), pair.variable, pair.equations)
 
 
 def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:

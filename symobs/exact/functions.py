@@ -175,9 +175,15 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
     return sorted(found, key=lambda f: (f.argument.size, f.name))
 
 
+def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
+    """Return the functions among the generators that occur; most fields have none, which is soon seen."""
+    having = [value for value in values if not _KNOWN.keys().isdisjoint(value.field.names)]
+    return frozenset(_KNOWN[name] for value in having for name in value.names if name in _KNOWN)
+
+
 def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
     """Return the square roots that occur in values, also in the arguments of functions."""
-    found = {f for value in values for name in value.names if (f := known(name)) is not None}
+    found = _functions_in(values)
     inner = all_roots(*(f.argument for f in found)) if found else frozenset()
     return frozenset(f for f in found if f.kind == "sqrt") | inner
 
@@ -321,7 +327,9 @@ def identities(
     a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1 and root² − radicand.
     """
     values = tuple(values)
-    found = {f for value in values for name in value.names if (f := known(name)) is not None}
+    found = _functions_in(values)
+    if not found:
+        return {}, ()
     roots = all_roots(*values)
     moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}

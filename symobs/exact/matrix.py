@@ -40,18 +40,16 @@ class Matrix:
     @staticmethod
     def of(entries: Iterable[Sequence[Scalar | int | Fraction]], columns: int | None = None) -> Matrix:
         """Return the matrix with these rows; `columns` is needed only where there is no row."""
-        rows = tuple(tuple(Scalar.of(entry) for entry in row) for row in entries)
-        field = RATIONALS
-        for entry in itertools.chain(*rows):
-            field = field | entry.field
+        rows = tuple([tuple([Scalar.of(entry) for entry in row]) for row in entries])
+        field = reduce(Field.__or__, {entry.field: None for row in rows for entry in row}, RATIONALS)
         shape = (len(rows), len(rows[0]) if rows else (columns or 0))
         if any(len(row) != shape[1] for row in rows):
             message = f"rows of different lengths: {[len(row) for row in rows]}"
             raise ValueError(message)
-        lifted = tuple(tuple(entry.within(field) for entry in row) for row in rows)
+        lifted = [[entry.within(field) for entry in row] for row in rows]
         parts = (entry.denominator_part for entry in itertools.chain(*lifted))
         denominator = reduce(ring.common_multiple, parts, field.one)
-        table = tuple(tuple(entry.over(denominator) for entry in row) for row in lifted)
+        table = tuple([tuple([entry.over(denominator) for entry in row]) for row in lifted])
         matrix = build(field, table, denominator, shape)
         matrix.__dict__["rows"] = rows
         return matrix

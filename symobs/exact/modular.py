@@ -7,6 +7,7 @@ most h / (63 · 2·10¹⁷), there being more than 2·10¹⁷ such primes.
 
 from __future__ import annotations
 
+from math import gcd
 from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mat, nmod, nmod_mat
@@ -24,6 +25,8 @@ POINT_BITS = 61
 PRIME_BITS = 64
 PRIMES_BELOW = 2 * 10**17
 _ZERO = fmpz(0)
+#: The product of the odd primes below 50: most candidates share one, which is sooner seen than that they are composite.
+_SMALL_PRIMES = 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 * 37 * 41 * 43 * 47
 
 
 class VanishingDenominator(Exception):
@@ -76,7 +79,7 @@ def random_prime(generator: random.Random) -> int:
     """Return a random prime of 64 bits."""
     while True:
         candidate = generator.getrandbits(PRIME_BITS) | 1 << (PRIME_BITS - 1) | 1
-        if fmpz(candidate).is_prime():
+        if gcd(candidate, _SMALL_PRIMES) == 1 and fmpz(candidate).is_prime():
             return candidate
 
 

@@ -20,6 +20,8 @@ Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
 
 #: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
 _WHOLE_TEXT, _TOLD = 40, 6
+#: From this many terms on a common divisor is first looked for in a leading coefficient.
+_LONG = 150
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 
@@ -61,8 +63,8 @@ def plus_diagonal(rows: Rows, factor: fmpz_mpoly, addend: fmpz_mpoly) -> Rows:
 def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_mpoly:
     """Return an integer times the coefficient of the highest powers of these generators, one after the other."""
     for index in foreign:
-        for _ in range(int(polynomial.degrees()[index])):
-            polynomial = polynomial.derivative(index)
+        while lower := polynomial.derivative(index):
+            polynomial = lower
     return polynomial
 
 
@@ -82,6 +84,13 @@ def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
         if shared.is_one():
             return True
     return False
+
+
+def common_factor(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
+    """Return the greatest common divisor; where the numerator is long, whether it is 1 is mostly seen in a part of it."""
+    if len(numerator) > _LONG and coprime(denominator, [numerator]):
+        return numerator.context().constant(1)
+    return numerator.gcd(denominator)
 
 
 def determinant(rows: Rows, field: Field) -> fmpz_mpoly:

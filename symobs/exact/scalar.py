@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.exact.field import RATIONALS, Field
-from symobs.exact.ring import by_powers, degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.ring import by_powers, common_factor, degree_bound, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -43,7 +43,7 @@ class Scalar:
         if not numerator:
             return Scalar(field, field.zero, field.one)
         if not denominator.is_one():
-            common = numerator.gcd(denominator)
+            common = common_factor(numerator, denominator)
             if not common.is_one():
                 numerator, denominator = numerator / common, denominator / common
             if denominator.leading_coefficient() < 0:

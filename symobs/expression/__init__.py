@@ -18,6 +18,7 @@ from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
 from symobs.expression.budget import common_denominator_excess
 from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
 from symobs.expression.names import Names, Scope, declared_name
+from symobs.expression.plain import plain_rows
 from symobs.expression.source import shown
 from symobs.expression.tokens import MOST_DIGITS, sharing
 
@@ -49,15 +50,24 @@ def parse_scalar(
 
 
 def parse_matrix(
-    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    beside: Sequence[object] = (),
 ) -> Matrix:
     """Return the matrix of a MATLAB-style text (`[1 0; 0 1]`) or of nested lists of int, Fraction and text.
 
+    The values stand in one context with those of the texts `beside` it, which need not be carried over then.
     Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
     """
     scope = Scope.of(names, variable, where, functions=functions)
     if _is_of_numbers(value):
         return matrix_of_numbers(value)
+    if beside:
+        scope = sharing(scope, beside)
     rows = _rows_of_text(value, scope, where) if isinstance(value, str) else _rows_of_lists(value, scope, where)
     real = [
         [entry if isinstance(entry, Scalar) else _real(entry, _cell(where, i, j)) for j, entry in enumerate(row)]
@@ -69,19 +79,26 @@ def parse_matrix(
     return Matrix.of(real)
 
 
-def parse_poles(value: object, names: Names = None, *, where: str = "", functions: bool = False) -> tuple[Complex, ...]:
+def parse_poles(
+    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+) -> tuple[Complex, ...]:
     """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
 
-    With `functions` square roots are read as generators.  Raises as `parse_scalar` does.
+    With `functions` square roots are read as generators; where there are names, the values stand in one context with
+    `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
     scope = Scope.of(names, None, where, functions=functions)
     if isinstance(value, str):
+        scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
-    scope = sharing(scope, listed)
+    scope = sharing(scope, listed, variable)
+    plain = plain_rows(",".join(listed), scope) if all(isinstance(pole, str) for pole in listed) else None  # type: ignore[arg-type]  # texts
+    if plain is not None and len(plain[0][0]) == len(listed):
+        return tuple(map(Complex.of, plain[0][0]))
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
 
 

@@ -6,6 +6,7 @@ It reads a text or leaves it alone: whatever is wrong, or could mean something e
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from symobs.exact import Field, Scalar
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 _ATOM = r"(?:[A-Za-z][A-Za-z0-9_]*|[0-9]{1,18}(?:\.[0-9]{1,18})?)"
 _CELL = re.compile(rf"[+-]?{_ATOM}(?:[*/]{_ATOM}){{0,8}}")
 _ATOMS = re.compile(rf"([*/+-]?)({_ATOM})")
+_NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _MOST_NAMES = 100
 
 
@@ -30,16 +32,15 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
         lines = [[cell.strip(" ") for cell in inside.split(",")]]
     if "\n" in inside or "\r" in inside or len({len(line) for line in lines}) != 1 or not lines[0]:
         return None
-    if not all(_CELL.fullmatch(cell) for line in lines for cell in line):
+    if not all(map(_CELL.fullmatch, chain.from_iterable(lines))):
         return None
-    atoms = [[_ATOMS.findall(cell) for cell in line] for line in lines]
-    names = {atom for line in atoms for cell in line for _, atom in cell if not atom[0].isdigit()}
+    names = set(_NAMES.findall(inside))
     if len(names) > _MOST_NAMES or not all(_is_symbol(name, scope) for name in names):
         return None
     field = Field.of(names) if scope.context is None else scope.context
     known = {name: Scalar.generator(field, name) for name in names}
     try:
-        return [[_value(cell, known) for cell in line] for line in atoms], bracketed
+        return [[known.get(cell) or _value(_ATOMS.findall(cell), known) for cell in line] for line in lines], bracketed
     except ZeroDivisionError:
         return None
 

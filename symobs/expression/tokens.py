@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
@@ -42,16 +41,17 @@ _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 
 
-def sharing(scope: Scope, values: Iterable[object]) -> Scope:
-    """Return the scope with one context for all texts among the values."""
-    return replace(scope, context=_context_of(value for value in values if isinstance(value, str)))
+def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
+    """Return the scope with one context for all texts among the values, and for the variable of what is made of them."""
+    context = _context_of((value for value in values if isinstance(value, str)), variable)
+    return Scope(scope.names, scope.variable, scope.meter, context, scope.functions)
 
 
-def _context_of(texts: Iterable[str]) -> Field:
+def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
     """Return one context for every name in the texts, so that their values need not be carried from one to another."""
     names = {name for text in texts for name in _NAMES.findall(text)} - set(FUNCTIONS)
     fit = {name for name in names if len(name) <= LONGEST_NAME}
-    return Field.of(fit if len(fit) <= MOST_NAMES else ())
+    return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
 
 
 class Token(str):

@@ -45,11 +45,12 @@ class StateSpace:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         known = known.seen([A, B, C, D])
+        named, texts = known.with_time(), [value for value in (A, B, C, D) if isinstance(value, str)]
         errors: list[SymobsError] = []
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = None if value is None else read_matrix(value, known.with_time(), f"plant.{name}")
+                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts)
             except SymobsError as error:
                 errors.append(error)
         if "A" in parts:

@@ -21,10 +21,15 @@ def has_decimals(value: object) -> bool:
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False
 
 
-def read_matrix(value: object, symbols: Symbols, where: str) -> Matrix:
-    """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix."""
+def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[object] = ()) -> Matrix:
+    """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix.
+
+    That of a text stands in one context with the matrices of the texts `beside` it.
+    """
     if isinstance(value, Matrix):
         return value
+    if isinstance(value, str):
+        return parse_matrix(value, symbols.names, where=where, beside=beside)
     if is_sympy(value) and hasattr(value, "shape"):
         from symobs.exact.sympy_border import matrix_from_sympy  # noqa: PLC0415
 

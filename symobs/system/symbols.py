@@ -128,6 +128,8 @@ def _is_plain_latex(text: str) -> bool:
 
 def sympy_symbols(values: object) -> dict[str, Any]:
     """Return the free SymPy symbols in a value, or in lists of values."""
+    if "sympy" not in sys.modules:
+        return {}
     if isinstance(values, (list, tuple)):
         found: dict[str, Any] = {}
         for value in values:
