@@ -23,10 +23,10 @@ from tests.campaign.solving import Refused, solved
 from tests.campaign.specifications import TASKS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from tests.campaign.asked import Tables
+    from tests.campaign.asked import Difference, Tables
 
 ORACLES = sorted(path.stem for path in discovery.FOLDER.glob("*.py"))
 #: Problems of the slice that all oracles judge.
@@ -272,6 +272,26 @@ def test_a_bug_of_ours_is_found_shrunk_and_written_down(
     assert figures.count("PARI", DIFFERS) == 0
     assert figures.count("PARI", AGREES) == figures.total == 3
     assert "3/0/0" in (tmp_path / "table.txt").read_text(encoding="utf-8")
+
+
+def test_where_doubles_say_otherwise_the_exact_oracle_decides(require_tool: Callable[[str], str]) -> None:
+    require_tool("gp")
+    right = answer_with("observability", "rank")
+    lie = replace(right, answer={**right.answer, "rank": right.answer["rank"] + 1})
+
+    class Rounding:
+        NAME = "python-control"
+        COMMAND = None
+
+        def covers(self, problem: Tables) -> bool:
+            return bool(problem)
+
+        def differences(self, batch: Sequence[Asked]) -> list[Difference]:
+            return ["rank is another one"] * len(batch)
+
+    misled, seen = discovery.judged(Rounding(), [right, lie])
+    assert isinstance(misled, Untold)
+    assert seen == "rank is another one"
 
 
 def test_what_could_not_be_told_is_counted_with_its_reason() -> None:

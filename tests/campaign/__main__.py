@@ -34,15 +34,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     kept = folder / "figures.json"
     figures = Figures.load(kept) if kept.exists() else Figures(options.seed)
     look_again(figures, chosen, folder, options.task)
+    _keep(figures, folder)
     while figures.total + sum(figures.refused.values()) < options.designs:
         left = options.designs - figures.total - sum(figures.refused.values())
         run_batch(figures, chosen, folder, min(options.batch, left), options.task, options.seconds)
-        figures.save(kept)
-        (folder / "table.txt").write_text(figures.table() + "\n", encoding="utf-8")
+        _keep(figures, folder)
         print(_progress(figures, chosen), file=sys.stderr, flush=True)
     print(figures.table())
     wrong = sum(figures.count(name, DIFFERS) for name in chosen)
     return 1 if wrong or any((folder / "failures").glob("crash-*")) else 0
+
+
+def _keep(figures: Figures, folder: Path) -> None:
+    """Write down what is known so far, to read and to go on from."""
+    figures.save(folder / "figures.json")
+    (folder / "table.txt").write_text(figures.table() + "\n", encoding="utf-8")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -98,7 +104,7 @@ def _judge(figures: Figures, oracles: Mapping[str, Oracle], answers: Sequence[As
     """Let every oracle judge what it covers."""
     for name, oracle in oracles.items():
         covered = [answer for answer in answers if oracle.covers(answer.problem)]
-        judgements = oracle.differences(covered) if covered else []
+        judgements = discovery.judged(oracle, covered)
         for answer, judgement in zip(covered, judgements, strict=True):
             figures.judge(name, answer, judgement)
             if isinstance(judgement, str):
@@ -124,7 +130,7 @@ def look_again(figures: Figures, oracles: Mapping[str, Oracle], folder: Path, ta
             figures.answered(answer)
             _judge(figures, oracles, [answer], folder)
         elif (oracle := oracles.get(name.replace("-", " "), oracles.get(name))) is not None:
-            (judgement,) = oracle.differences([answer])
+            (judgement,) = discovery.judged(oracle, [answer])
             if isinstance(judgement, str):
                 continue
             figures.judge(oracle.NAME, answer, judgement)
