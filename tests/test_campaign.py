@@ -281,7 +281,7 @@ def test_where_doubles_say_otherwise_the_exact_oracle_decides(require_tool: Call
 
     class Rounding:
         NAME = "python-control"
-        COMMAND = None
+        COMMAND: str | None = None
 
         def covers(self, problem: Tables) -> bool:
             return bool(problem)
