@@ -20,7 +20,7 @@ from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.tables import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Sum
-from symobs.notation import THEOREMS
+from symobs.notation.theorems import THEOREMS
 from symobs.page import Page
 from symobs.phrases import PHRASES, RESTS_ON
 from symobs.region.root_count import imaginary_axis_roots, right_half_plane_roots

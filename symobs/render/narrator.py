@@ -28,7 +28,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import Literal, Together
-from symobs.notation import THEOREMS
+from symobs.notation.theorems import THEOREMS
 from symobs.phrases import OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
     Block,
