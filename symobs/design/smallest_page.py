@@ -113,9 +113,9 @@ def _proof(
     polynomial = (page.s @ page.identity(proof.hessian.shape[0]) + Q).apply("det")
     rising = polynomial.shown
     if rising.value.size <= _POLYNOMIAL:
-        page.equal(relation(polynomial, rising))
+        page.equal(relation(polynomial, rising), say="smallest_rising")
     positive = predicate("no_negative_coefficient", polynomial)
-    page.conclude("smallest_proved", relation(Q, Q.T), positive, polynomial=polynomial)
+    page.conclude("smallest_proved", relation(Q, Q.T), positive)
 
 
 def _hessian(page: Page, asked: tuple[Pair, DesiredPolynomial], multipliers: Sequence[Term]) -> Term:

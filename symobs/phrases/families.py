@@ -63,8 +63,9 @@ PHRASES: dict[str, str] = {
     "gain by it adds to the coefficients:",
     "smallest_matrix": "With the matrix",
     "smallest_identity": "it is true for every $Delta_g$ that",
+    "smallest_rising": "Here",
     "smallest_identity_of_derivatives": "With the matrix $Q_g$ of half the second derivatives of the left side it is true for every $Delta_g$ that",
-    "smallest_proved": "The matrix $Q_g$ is symmetric, and no coefficient of {polynomial} is negative, so $Q_g$ has no negative eigenvalue. Of a gain with the poles asked for all of $d_1$, $d_2$, … vanish; the sum of the squares of its entries is therefore that of the gain above and something that is not negative.",
+    "smallest_proved": "The matrix $Q_g$ is symmetric, and no coefficient of the determinant of $s I + Q_g$ is negative, so $Q_g$ has no negative eigenvalue. Of a gain with the poles asked for all of $d_1$, $d_2$, … vanish; the sum of the squares of its entries is therefore that of the gain above and something that is not negative.",
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",
@@ -90,6 +91,8 @@ PHRASES: dict[str, str] = {
 NAMING = ("impossible_zero_unless",)
 
 ASSERTS: dict[str, tuple[str, ...]] = {"smallest_proved": ("no_negative_coefficient",)}
+
+SPELLS_OUT = ("smallest_root",)
 
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",
