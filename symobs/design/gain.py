@@ -10,7 +10,7 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs.analysis.strata import carried, common_zeros, strata
-from symobs.certificate import Claim
+from symobs.certificate import Claim, Statement
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.family import Family
 from symobs.design.names import fresh_names
@@ -144,7 +144,7 @@ class GainDesign(Result):
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
-    def claims(self) -> Iterator[Claim]:
+    def claims(self) -> Iterator[Claim | Statement]:
         """Yield det(sI − A + LC) = φ(s) for the gain and its family, or the proof that no gain exists."""
         gain, phi, own = self.answer[self.letter], self.answer["polynomial"], self.pair(self.plant)
         if (self._pair.A, self._pair.c) != (own.A, own.c):

@@ -11,9 +11,10 @@ from itertools import permutations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_result import power_rows
-from symobs.certificate import Claim
+from symobs.certificate import Claim, Statement
 from symobs.design.chains import Chains, cost, shares
 from symobs.design.smallest import NotFound, smallest, smallest_claims
+from symobs.design.stationary import LeastStationary, stationary_claims
 from symobs.errors import InputError
 from symobs.exact import Matrix, kernel, rank
 from symobs.exact.functions import NotWritten
@@ -85,7 +86,7 @@ def _smallest(pair: Pair, desired: DesiredPolynomial, signs: Mapping[str, str]) 
 
 def member_claims(
     pair: Pair, desired: DesiredPolynomial, gain: Matrix, wish: str, signs: Mapping[str, str]
-) -> Iterator[Claim]:
+) -> Iterator[Claim | Statement]:
     """Yield what makes the gain the one asked for."""
     e = Environment(variable=pair.variable)
     if wish == "decoupled":
@@ -94,7 +95,11 @@ def member_claims(
             relation(sum(others, start=first), pair.A.shape[0]), e, "the orders of the output errors add up to n"
         )
     elif rank(pair.c) > 1:
-        yield from smallest_claims(pair, desired, gain, smallest(pair, desired, signs).multipliers, signs)
+        found = smallest(pair, desired, signs)
+        if isinstance(found, LeastStationary):
+            yield from stationary_claims(pair, desired, gain, found)
+        else:
+            yield from smallest_claims(pair, desired, gain, found.multipliers, signs)
     else:
         W = kernel(pair.c.T)
         yield Claim(relation(Term(Literal(pair.c), e).apply("rank"), 1), e, "rank C = 1, so that L*C is unique")

@@ -3,7 +3,7 @@
 Let d₁, …, dₙ be the coefficients of det(sI − A + LC) − φ(s) and l the entries of L.  Where multipliers λₖ make
 lᵀl + Σ λₖ dₖ a polynomial of degree 2 that is convex and has its lowest point at L, every other gain, for which all dₖ
 vanish too, is at least as large: that is the certificate, whatever found the multipliers.  Where C has rank 2 every dₖ
-has degree 2.  Of second order the multipliers always exist; of higher order mostly.
+has degree 2.  Of second order the multipliers always exist; of higher order mostly, and where not see `stationary`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from symobs.certificate import Claim
 from symobs.conditions import sign_of
+from symobs.design.stationary import LeastStationary, bezout, least_stationary
 from symobs.design.zeros import equations_for, unknown_gain
 from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar, modulo
 from symobs.exact.functions import identities, partial, square_root
@@ -94,13 +95,15 @@ def rising(matrix: Matrix, variable: str) -> tuple[Scalar, ...]:
     return (-matrix).normal().characteristic_polynomial(variable).coefficients(variable)[1:]
 
 
-def smallest(pair: Pair, desired: DesiredPolynomial, signs: Mapping[str, str]) -> Smallest:
+def smallest(pair: Pair, desired: DesiredPolynomial, signs: Mapping[str, str]) -> Smallest | LeastStationary:
     """Return the smallest gain; raises `NotFound` with the reason where none is proved to be it."""
     return _smallest(pair, desired, tuple(sorted(signs.items())))
 
 
 @lru_cache(maxsize=64)
-def _smallest(pair: Pair, desired: DesiredPolynomial, declared: tuple[tuple[str, str], ...]) -> Smallest:
+def _smallest(
+    pair: Pair, desired: DesiredPolynomial, declared: tuple[tuple[str, str], ...]
+) -> Smallest | LeastStationary:
     """Do what `smallest` says: the answer is looked for once, its claims and its page ask again for the multipliers."""
     signs = dict(declared)
     order, outputs = pair.A.shape[0], pair.c.shape[0]
@@ -117,11 +120,14 @@ def _smallest(pair: Pair, desired: DesiredPolynomial, declared: tuple[tuple[str,
         raise NotFound(message)
     found = shortest(forms)
     if found is None:
-        message = (
-            "no multipliers were found that prove a gain to be the smallest: with those of the best one the Lagrangian is "
-            "not convex, or the entries are roots of polynomials of degree above 24"
-        )
-        raise NotFound(message)
+        least = least_stationary(pair, desired, forms)
+        if least is None:
+            message = (
+                "with no multipliers is the Lagrangian convex, or its entries are roots of polynomials of degree above 24, "
+                f"and its stationary points are {'too many' if bezout(desired) else 'not all, since a pole is asked for twice'}"
+            )
+            raise NotFound(message)
+        return least
     root, values = found
     entries = _at_root(values, EIGENVALUE, root.scalar())
     return Smallest(unstacked(entries[: order * outputs], order), tuple(entries[order * outputs :]))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.smallest import proof_of, quadratics, smallest, stacked
+from symobs.design.stationary import LeastStationary
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import known
 from symobs.exact.real import RealRoot
@@ -37,10 +38,14 @@ def write_smallest(page: Page, design: GainDesign, side: Side) -> None:
     if not any(gain.entries):
         page.define(side.gain, gain, say=f"smallest_zero_{side.kind}", answer=True)
         return
-    multipliers = smallest(pair, desired, page.plant.symbols.signs).multipliers
+    found = smallest(pair, desired, page.plant.symbols.signs)
+    if isinstance(found, LeastStationary):
+        _least_stationary(page, design, side)
+        return
+    multipliers = found.multipliers
     page.with_roots(gain, *multipliers)
     page.remark(f"smallest_wanted_{side.kind}")
-    _root(page, gain, *multipliers)
+    _root(page, r"\mu", "smallest_root", gain, *multipliers)
     _gain(page, side, gain)
     names = [f"lambda_{k + 1}" for k in range(len(multipliers))]
     terms = [page.set(name, value) for name, value in zip(names, multipliers, strict=True)]
@@ -48,17 +53,30 @@ def write_smallest(page: Page, design: GainDesign, side: Side) -> None:
     _proof(page, design, side, (pair, desired), terms)
 
 
-def _root(page: Page, *values: Scalar | Matrix) -> None:
+def _least_stationary(page: Page, design: GainDesign, side: Side) -> None:
+    """Write the gain whose sum of squares is the least root of the polynomial that all stationary sums obey."""
+    gain = design.answer[side.gain]
+    page.with_roots(gain)
+    page.remark(f"smallest_wanted_{side.kind}")
+    page.remark("smallest_stationary")
+    _root(page, r"\rho", "smallest_sum", gain)
+    _gain(page, side, gain)
+    entries = page.set("entries_g", stacked(design.oriented(gain)))
+    (rho,) = gain.names
+    page.equal(relation(entries.T @ entries, Scalar.symbol(rho)), say="smallest_sum_of_gain")
+
+
+def _root(page: Page, form: str, say: str, *values: Scalar | Matrix) -> None:
     """Introduce μ, the real root of which the answer is made, where it has no closed form."""
     found = {root for value in values for name in value.names if isinstance(root := known(name), RealRoot)}
     for root in found:
         mu = Scalar.symbol(root.name)
-        page.forms[root.name] = r"\mu"
+        page.forms[root.name] = form
         low, high = root.number.between()
         polynomial = root.argument.substitute(dict.fromkeys(root.argument.names, mu))
         ends = [page.term(Decimals(Scalar.of(end))) for end in (low, high)]
         bounds = relation(ends[0], "<", page.value(mu), "<", ends[1])
-        page.equal(relation(page.value(polynomial), 0), bounds, say="smallest_root")
+        page.equal(relation(page.value(polynomial), 0), bounds, say=say)
 
 
 def _gain(page: Page, side: Side, gain: Matrix) -> None:

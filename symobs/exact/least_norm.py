@@ -8,6 +8,7 @@ exact arithmetic before they are returned, and that the vector is the shortest i
 from __future__ import annotations
 
 import itertools
+from operator import itemgetter
 from typing import TYPE_CHECKING, TypeAlias
 
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz_mat, fmpz_poly
@@ -19,7 +20,7 @@ from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from symobs.exact.matrix import Matrix
 
@@ -59,6 +60,20 @@ def shortest(equations: Sequence[Quadratic]) -> tuple[RealNumber, tuple[Scalar, 
     except OverflowError:
         return None
     return None if start is None else _recognised(problem, start)
+
+
+def at_sum_of_squares(
+    equations: Sequence[Quadratic], start: Sequence[float], root: RealNumber
+) -> tuple[Scalar, ...] | None:
+    """Return what `shortest` does for a stationary point near `start`, as polynomials in the sum of squares `root`."""
+    before, problem = ctx.prec, _Problem(equations)
+    try:
+        found = _in_root(problem, start, lambda point: sum((v * v for v in point[: problem.size]), arb(0)).mid(), root)
+    except ZeroDivisionError:
+        return None
+    finally:
+        ctx.prec = before
+    return None if found is None else tuple(_scalar(entry) for entry in found)
 
 
 class _Problem:
@@ -186,7 +201,7 @@ def _recognised(problem: _Problem, start: Sequence[float]) -> tuple[RealNumber, 
             root = _minimal_polynomial(problem, start, place)
             if root is None:
                 return None  # an entry of higher degree than is looked for
-            found = _in_root(problem, start, place, root)
+            found = _in_root(problem, start, itemgetter(place), root)
             if found is not None:
                 return root, tuple(_scalar(entry) for entry in found)
     except ZeroDivisionError:  # the equations of Lagrange are singular there
@@ -206,7 +221,9 @@ def _minimal_polynomial(problem: _Problem, start: Sequence[float], place: int) -
     return None
 
 
-def _in_root(problem: _Problem, start: Sequence[float], place: int, root: RealNumber) -> list[fmpq_poly] | None:
+def _in_root(
+    problem: _Problem, start: Sequence[float], value_of: Callable[[list[arb]], arb], root: RealNumber
+) -> list[fmpq_poly] | None:
     """Return the solution as polynomials in the root, each recognised as one over the derivative of its polynomial."""
     modulus = fmpq_poly(root.polynomial)
     slope = root.polynomial.derivative()
@@ -215,7 +232,7 @@ def _in_root(problem: _Problem, start: Sequence[float], place: int, root: RealNu
     for factor in (2, 5):
         bits = (root.degree + 2) * (factor * height + 2 * _SPARE_BITS)
         solution = problem.refined(start, bits)
-        theta = solution[place]
+        theta = value_of(solution)
         powers = list(itertools.islice(_powers(theta, bits), root.degree))
         scale = sum((int(c) * theta**k for k, c in enumerate(slope.coeffs())), arb(0))
         relations = [_short_relation([*powers, value * scale], bits) for value in solution]

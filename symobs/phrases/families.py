@@ -54,6 +54,11 @@ PHRASES: dict[str, str] = {
     "the entries of $K$, one row transposed under the other. Lagrange's method adds to their squares the coefficients of the difference between the "
     "closed-loop polynomial and the one asked for, each times a multiplier; where the sum is stationary and the coefficients vanish, the gain may be the "
     "smallest.",
+    "smallest_stationary": "The pair is observable and the polynomial asked for has no multiple root: every matrix with this polynomial is cyclic, the "
+    "derivatives of the coefficients are independent, and Lagrange's equations hold for the smallest gain, which exists. They have finitely many "
+    "solutions. The sums of squares at all of them are eigenvalues of one matrix.",
+    "smallest_sum": "The least positive eigenvalue of that matrix is a root of",
+    "smallest_sum_of_gain": "No other gain is smaller, since the sum of the squares of the entries of this one is that least eigenvalue:",
     "smallest_root": "The solution is made of a root of a polynomial,",
     "smallest_long": "The entries of the gain are polynomials in this root, too long to be written out,",
     "smallest_multipliers": "The multipliers are",
@@ -92,7 +97,7 @@ NAMING = ("impossible_zero_unless",)
 
 ASSERTS: dict[str, tuple[str, ...]] = {"smallest_proved": ("no_negative_coefficient",)}
 
-SPELLS_OUT = ("smallest_root",)
+SPELLS_OUT = ("smallest_root", "smallest_sum")
 
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",
