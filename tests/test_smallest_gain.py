@@ -103,11 +103,40 @@ def test_no_gain_of_second_order_is_smaller(number: int, outputs: int) -> None:
 @pytest.mark.parametrize("number", range(6))
 def test_no_gain_of_third_order_is_smaller(number: int) -> None:
     A, C, poles = drawn(3, 2, number)
-    if number != 2:
-        judged(A, C, poles, number)
-        return
-    with pytest.raises(InputError, match="not known exactly"):  # with no multipliers is the Lagrangian convex
-        symobs.observer(symobs.StateSpace(A, C=C), poles=poles, member="smallest")
+    judged(A, C, poles, number)
+
+
+def test_the_least_stationary_gain_where_no_multipliers_prove_it() -> None:
+    A, C, poles = drawn(3, 2, 2)
+    found = judged(A, C, poles, 2)
+    claims = [certificate.claim for certificate in found.certificates]
+    assert any("Lagrange" in claim for claim in claims)
+    assert any("one root between 0 and" in claim for claim in claims)
+    assert "least eigenvalue" in " ".join(found.to("text").split())
+    other = symobs.observer(symobs.StateSpace(A, C=C), poles=poles)
+    with pytest.raises(CertificateRejected):
+        found.with_answer("L", other.answer["L"])
+
+
+#: Plants with many zeros, for which H is singular: a circle of gains is smallest.
+EDGES: list[tuple[list[list[int]], list[list[int]], list[int]]] = [
+    ([[0, 0, -1], [0, 0, 0], [0, 0, 0]], [[0, 1, 0], [1, 0, 0]], [0, 0, -3]),
+    ([[0, 2, 0], [0, -3, 0], [0, 0, 0]], [[1, 0, 0], [0, 0, 1]], [-1, -2, -3]),
+    ([[1, 0, 0], [0, 0, 0], [0, -1, 0]], [[0, 0, 1], [1, 0, 0]], [-3, -4, -3]),
+]
+
+
+@pytest.mark.parametrize("number", range(len(EDGES)))
+def test_one_of_a_circle_of_smallest_gains(number: int) -> None:
+    found = judged(*EDGES[number], number)
+    found.to("latex")
+    turned = found.with_answer("L", found.answer["L"].substitute({}))
+    assert turned.verdict == "yes"
+
+
+def test_interior_multipliers_from_a_plant_whose_zero_gain_is_degenerate() -> None:
+    found = judged([[-1, 2, 0], [0, 0, 0], [0, 0, 0]], [[1, 0, 0], [0, 0, 1]], [0, -2, -3], 1)
+    assert Matrix([[2, 0], [0, 0], [0, 2]]) == found.L
 
 
 # -- answers known by hand -----------------------------------------------------------------------------------------------
@@ -237,7 +266,7 @@ def test_a_stationary_gain_that_is_not_the_smallest_is_rejected() -> None:
 
 @pytest.mark.parametrize("place", [0, 1])
 def test_other_multipliers_are_rejected(place: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    true = smallest.smallest
+    true: Any = smallest.smallest
 
     def lying(*arguments: Any) -> Any:
         found = true(*arguments)

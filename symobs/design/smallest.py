@@ -120,6 +120,9 @@ def _smallest(
         raise NotFound(message)
     found = shortest(forms)
     if found is None:
+        edge = _at_edge(forms, order)
+        if edge is not None:
+            return edge
         least = least_stationary(pair, desired, forms)
         if least is None:
             message = (
@@ -131,6 +134,25 @@ def _smallest(
     root, values = found
     entries = _at_root(values, EIGENVALUE, root.scalar())
     return Smallest(unstacked(entries[: order * outputs], order), tuple(entries[order * outputs :]))
+
+
+def _at_edge(forms: Sequence[Quadratic], order: int) -> Smallest | None:
+    """Return a smallest gain where H is singular, None where there is none."""
+    from symobs.design.edge import at_edge  # noqa: PLC0415 - few gains need it
+    from symobs.exact.edge_norm import multipliers_at_edge  # noqa: PLC0415 - the same
+
+    found = multipliers_at_edge(forms)
+    if found is None:
+        return None
+    root, multipliers = found
+    H = hessian(forms, multipliers)
+    field = Extension(root.minimal_polynomial(EIGENVALUE), EIGENVALUE)
+    if not field.reduce(H.determinant()).is_zero:
+        return None
+    entries = at_edge(forms, H, root, multipliers)
+    if entries is None:
+        return None
+    return Smallest(unstacked(entries, order), tuple(_at_root(multipliers, EIGENVALUE, root.scalar())))
 
 
 def _at_root(values: Sequence[Scalar], name: str, root: Scalar) -> list[Scalar]:

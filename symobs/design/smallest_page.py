@@ -10,7 +10,7 @@ from symobs.design.names import fresh_names, taken_names
 from symobs.design.smallest import proof_of, quadratics, smallest, stacked
 from symobs.design.stationary import LeastStationary
 from symobs.exact import Matrix, Scalar
-from symobs.exact.functions import known
+from symobs.exact.functions import known, roots_in
 from symobs.exact.real import RealRoot
 from symobs.formula import Decimals
 from symobs.formula.term import Term, block
@@ -93,7 +93,8 @@ def _gain(page: Page, side: Side, gain: Matrix) -> None:
         names = list(fresh_names(f"{side.gain.lower()}_", len(names), taken_names(page)))
     letters = [page.name_coefficient(name, entry) for name, entry in zip(names, gain.entries, strict=True)]
     named = Matrix.of([letters[i * columns : (i + 1) * columns] for i in range(rows)])
-    page.define(side.gain, named, *near, say="smallest_long", answer=True)
+    say = "smallest_long_with_roots" if roots_in(gain) else "smallest_long"
+    page.define(side.gain, named, *near, say=say, answer=True)
 
 
 def _shown(page: Page, term: Term) -> Relation:

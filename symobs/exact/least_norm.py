@@ -8,6 +8,7 @@ exact arithmetic before they are returned, and that the vector is the shortest i
 from __future__ import annotations
 
 import itertools
+from math import log
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -25,9 +26,15 @@ if TYPE_CHECKING:
     from symobs.exact.matrix import Matrix
 
 Floats: TypeAlias = list[list[float]]
+#: x, the slope of the dual function, its value and how it bends.
+Dual: TypeAlias = tuple[list[float], list[float], float, Floats]
 
 #: Steps of Newton's method, halvings of one step, and what counts as no step at all.
-_STEPS, _HALVINGS, _STILL = 100, 40, 1e-20
+_STEPS, _HALVINGS, _STILL = 100, 16, 1e-20
+#: The weights of log det H beside the dual function.
+_BARRIERS = (1.0, 0.1, 1e-2, 1e-4, 1e-6, 1e-8)
+#: What is added to the bend of the dual function, as a part of it, where less does not lead upwards.
+_EASED = (1e-12, 1e-6, 1e-3, 0.1, 10.0)
 #: The degrees of minimal polynomials that are looked for one after the other, and the bits each is looked for with.
 _LADDER = ((2, 200), (4, 500), (8, 1_500), (12, 3_500), (18, 8_000), (24, 16_000))
 #: What a lattice's shortest vector must stay below, as a part of what chance would give, to be no chance.
@@ -55,7 +62,7 @@ def shortest(equations: Sequence[Quadratic]) -> tuple[RealNumber, tuple[Scalar, 
     the root is of too high a degree.
     """
     try:
-        problem = _Problem(equations)
+        problem = Problem(equations)
         start = problem.started()
     except OverflowError:
         return None
@@ -66,7 +73,7 @@ def at_sum_of_squares(
     equations: Sequence[Quadratic], start: Sequence[float], root: RealNumber
 ) -> tuple[Scalar, ...] | None:
     """Return what `shortest` does for a stationary point near `start`, as polynomials in the sum of squares `root`."""
-    before, problem = ctx.prec, _Problem(equations)
+    before, problem = ctx.prec, Problem(equations)
     try:
         found = _in_root(problem, start, lambda point: sum((v * v for v in point[: problem.size]), arb(0)).mid(), root)
     except ZeroDivisionError:
@@ -76,7 +83,7 @@ def at_sum_of_squares(
     return None if found is None else tuple(_scalar(entry) for entry in found)
 
 
-class _Problem:
+class Problem:
     """The equations in floating point and, converted to the precision in use, in balls."""
 
     def __init__(self, equations: Sequence[Quadratic]) -> None:
@@ -90,54 +97,101 @@ class _Problem:
         self.near_constants = [float(q.constant.fraction()) for q in equations]
 
     def started(self) -> list[float] | None:
-        """Return x and the multipliers nearly: the greatest value of the dual function, by Newton's method.
+        """Return x and the multipliers nearly: where the dual function is greatest, by Newton's method.
 
-        None where it is not taken at multipliers for which the Lagrangian is strictly convex.
+        A part of log det H, which becomes smaller and smaller, keeps the steps where H is definite.  None where the
+        greatest value is not taken there.
         """
-        multipliers = [0.0] * self.count
-        state = self._dual(multipliers)
+        within = self.within()
+        multipliers = None if within is None else self._topped(within, 0.0)
+        state = None if multipliers is None else self._dual(multipliers, 0.0)
+        return None if state is None or multipliers is None else [*state[0], *multipliers]
+
+    def within(self) -> list[float] | None:
+        """Return multipliers near those where the dual function is greatest, at which H is definite."""
+        multipliers: list[float] | None = [0.0] * self.count
+        for weight in _BARRIERS:
+            multipliers = self._topped(multipliers, weight) if multipliers is not None else None
+        return multipliers
+
+    def edge(self, multipliers: Sequence[float]) -> tuple[list[float], list[float]] | None:
+        """Return x for multipliers where H is nearly singular, and a vector that H nearly sends to 0."""
+        size = range(self.size)
+        H = [
+            [(i == j) + sum(m * form[i][j] for m, form in zip(multipliers, self.near, strict=True)) for j in size]
+            for i in size
+        ]
+        state, way = self._dual(multipliers, 0.0), [[1.0 + 0.1 * i] for i in size]
+        for _ in range(3):
+            found = _solved(H, way)
+            if found is None:
+                return None
+            length = sum(row[0] ** 2 for row in found[0]) ** 0.5
+            way = [[row[0] / length] for row in found[0]]
+        return None if state is None else (state[0], [row[0] for row in way])
+
+    def _topped(self, multipliers: list[float], weight: float) -> list[float] | None:
+        """Return the multipliers where the dual function and its barrier are greatest."""
+        state = self._dual(multipliers, weight)
         for _ in range(_STEPS):
-            assert state is not None  # noqa: S101 - an invariant of the loop
-            x, values, height, bend = state
-            scale = 1e-12 * (sum(bend[k][k] for k in range(self.count)) + 1e-9)
-            eased = [[bend[i][j] + (scale if i == j else 0.0) for j in range(self.count)] for i in range(self.count)]
-            step = _solved(eased, [[value] for value in values])
-            if step is None:
+            if state is None:
                 return None
-            gain = sum(value * way[0] for value, way in zip(values, step, strict=True))
-            if gain < _STILL * (1 + abs(height)):
-                return [*x, *multipliers]
-            length = 1.0
-            for _ in range(_HALVINGS):
-                moved = [old + length * way[0] for old, way in zip(multipliers, step, strict=True)]
-                state = self._dual(moved)
-                if state is not None and state[2] >= height + 0.1 * length * gain - 1e-15 * abs(height):
-                    break
-                length /= 2
-            else:
-                return None
-            multipliers = moved
+            _, values, height, bend = state
+            step = self._way(bend, values, _EASED[0])
+            if step is not None and _product(values, step) < max(_STILL, weight * 1e-3) * (1 + abs(height)):
+                return multipliers
+            tried = (self._climbed(multipliers, state, eased, weight) for eased in _EASED)
+            found = next((moved for moved in tried if moved is not None), None)
+            if found is None:
+                return multipliers if weight else None
+            multipliers, state = found, self._dual(found, weight)
+        return multipliers if weight else None
+
+    def _way(self, bend: Floats, values: Sequence[float], eased: float) -> list[float] | None:
+        """Return Newton's step, the bend made definite by a part of itself."""
+        more = eased * (sum(bend[k][k] for k in range(self.count)) + 1e-9)
+        table = [[entry + (more if i == j else 0.0) for j, entry in enumerate(row)] for i, row in enumerate(bend)]
+        found = _solved(table, [[value] for value in values])
+        return None if found is None else [row[0] for row in found[0]]
+
+    def _climbed(self, multipliers: Sequence[float], state: Dual, eased: float, weight: float) -> list[float] | None:
+        """Return multipliers where the dual function is higher by as much as its slope lets expect."""
+        _, values, height, bend = state
+        step = self._way(bend, values, eased)
+        if step is None:
+            return None
+        length, slope = 1.0, _product(values, step)
+        for _ in range(_HALVINGS):
+            moved = [old + length * way for old, way in zip(multipliers, step, strict=True)]
+            reached = self._dual(moved, weight)
+            if reached is not None and reached[2] >= height + 0.1 * length * slope - 1e-15 * abs(height):
+                return moved
+            length /= 2
         return None
 
-    def _dual(self, multipliers: Sequence[float]) -> tuple[list[float], list[float], float, Floats] | None:
-        """Return x, the values of the equations there, the dual function and how it bends."""
+    def _dual(self, multipliers: Sequence[float], weight: float) -> Dual | None:
+        """Return x, the slope of the dual function, its value and how it bends; with the weighted log det H in all."""
         size, count = range(self.size), range(self.count)
         H = [[(i == j) + sum(multipliers[k] * self.near[k][i][j] for k in count) for j in size] for i in size]
-        right = [[-sum(multipliers[k] * self.near_slopes[k][i] for k in count) / 2] for i in size]
-        solved = _solved(H, right)
+        right = [-sum(multipliers[k] * self.near_slopes[k][i] for k in count) / 2 for i in size]
+        solved = _solved(H, [[right[i], *(float(i == j) for j in size)] for i in size])
         if solved is None:
             return None
-        x = [row[0] for row in solved]
-        images = [[sum(self.near[k][i][j] * x[j] for j in size) for i in size] for k in count]
-        slopes = [[images[k][i] + self.near_slopes[k][i] / 2 for k in count] for i in size]
+        rows, volume = solved
+        x, inverse = [row[0] for row in rows], [row[1:] for row in rows]
+        images = [[_product(self.near[k][i], x) for i in size] for k in count]
+        sides = [[images[k][i] + self.near_slopes[k][i] / 2 for i in size] for k in count]
         values = [
-            sum(x[i] * (images[k][i] + self.near_slopes[k][i]) for i in size) + self.near_constants[k] for k in count
+            _product(x, [a + b for a, b in zip(images[k], self.near_slopes[k], strict=True)]) + self.near_constants[k]
+            for k in count
         ]
-        moved = _solved(H, slopes)
-        assert moved is not None  # noqa: S101 - the same matrix as before
-        bend = [[2 * sum(slopes[i][a] * moved[i][b] for i in size) for b in count] for a in count]
-        height = sum(v * v for v in x) + sum(m * v for m, v in zip(multipliers, values, strict=True))
-        return x, values, height, bend
+        height = _product(x, x) + _product(multipliers, values) + weight * volume
+        moved = [[_product(inverse[i], sides[k]) for i in size] for k in count]
+        turned = [[[_product(inverse[i], self.near[k][j]) for j in size] for i in size] for k in count]
+        traces = [[sum(turned[a][i][j] * turned[b][j][i] for i in size for j in size) for b in count] for a in count]
+        bend = [[2 * _product(sides[a], moved[b]) + weight * traces[a][b] for b in count] for a in count]
+        slope = [values[k] + weight * sum(turned[k][i][i] for i in size) for k in count]
+        return x, slope, height, bend
 
     def refined(self, start: Sequence[float], bits: int) -> list[arb]:
         """Return x and the multipliers to this many bits, by Newton's method on the equations of Lagrange."""
@@ -152,6 +206,12 @@ class _Problem:
             precision = min(2 * precision, bits + _SPARE_BITS)
 
     def _stepped(self, point: Sequence[arb]) -> list[arb]:
+        table, off = self.linearised(point)
+        step = table.solve(off)
+        return [(value - step[i, 0]).mid() for i, value in enumerate(point)]
+
+    def linearised(self, point: Sequence[arb]) -> tuple[arb_mat, arb_mat]:
+        """Return the matrix of Newton's method, which is symmetric, and by how much the equations of Lagrange are missed."""
         size = self.size
         x, multipliers = arb_mat([[value] for value in point[:size]]), point[size:]
         forms = [arb_mat(form) for form in self.forms]
@@ -168,8 +228,7 @@ class _Problem:
         off = H * x + force
         rows = [[*(H[i, j] for j in range(size)), *(side[i, 0] for side in sides)] for i in range(size)]
         rows += [[*(side[i, 0] for i in range(size)), *([arb(0)] * self.count)] for side in sides]
-        step = arb_mat(rows).solve(arb_mat([*([off[i, 0]] for i in range(size)), *([value / 2] for value in values)]))
-        return [(value - step[i, 0]).mid() for i, value in enumerate(point)]
+        return arb_mat(rows), arb_mat([*([off[i, 0]] for i in range(size)), *([value / 2] for value in values)])
 
     def holds(self, entries: Sequence[fmpq_poly], modulus: fmpq_poly) -> bool:
         """Tell whether polynomials in a root solve the equations of Lagrange, exactly."""
@@ -193,7 +252,7 @@ class _Problem:
         return True
 
 
-def _recognised(problem: _Problem, start: Sequence[float]) -> tuple[RealNumber, tuple[Scalar, ...]] | None:
+def _recognised(problem: Problem, start: Sequence[float]) -> tuple[RealNumber, tuple[Scalar, ...]] | None:
     """Return the solution near `start` in one real root, tried with one multiplier, then one entry after the other."""
     before = ctx.prec
     try:
@@ -211,10 +270,10 @@ def _recognised(problem: _Problem, start: Sequence[float]) -> tuple[RealNumber, 
     return None
 
 
-def _minimal_polynomial(problem: _Problem, start: Sequence[float], place: int) -> RealNumber | None:
+def _minimal_polynomial(problem: Problem, start: Sequence[float], place: int) -> RealNumber | None:
     for degree, bits in _LADDER:
         value = problem.refined(start, bits)[place]
-        short = _short_relation(list(itertools.islice(_powers(value, bits), degree + 1)), bits)
+        short = short_relation(list(itertools.islice(powers_of(value, bits), degree + 1)), bits)
         if short is not None:
             roots = real_roots(fmpz_poly(short))
             return next((root for root in roots if abs(root.ball(bits // 2) - value) < arb(2) ** (-bits // 4)), None)
@@ -222,7 +281,7 @@ def _minimal_polynomial(problem: _Problem, start: Sequence[float], place: int) -
 
 
 def _in_root(
-    problem: _Problem, start: Sequence[float], value_of: Callable[[list[arb]], arb], root: RealNumber
+    problem: Problem, start: Sequence[float], value_of: Callable[[list[arb]], arb], root: RealNumber
 ) -> list[fmpq_poly] | None:
     """Return the solution as polynomials in the root, each recognised as one over the derivative of its polynomial."""
     modulus = fmpq_poly(root.polynomial)
@@ -233,9 +292,9 @@ def _in_root(
         bits = (root.degree + 2) * (factor * height + 2 * _SPARE_BITS)
         solution = problem.refined(start, bits)
         theta = value_of(solution)
-        powers = list(itertools.islice(_powers(theta, bits), root.degree))
+        powers = list(itertools.islice(powers_of(theta, bits), root.degree))
         scale = sum((int(c) * theta**k for k, c in enumerate(slope.coeffs())), arb(0))
-        relations = [_short_relation([*powers, value * scale], bits) for value in solution]
+        relations = [short_relation([*powers, value * scale], bits) for value in solution]
         if all(relations) and all(relation[-1] for relation in relations if relation):
             found = [fmpq_poly(r[:-1], -r[-1]) * inverse % modulus for r in relations if r]
             if problem.holds(found, modulus):
@@ -243,7 +302,8 @@ def _in_root(
     return None
 
 
-def _powers(value: arb, bits: int) -> Iterator[arb]:
+def powers_of(value: arb, bits: int) -> Iterator[arb]:
+    """Yield 1, v, v², … of a number, precise enough for a lattice of this many bits."""
     ctx.prec = bits + 2 * _SPARE_BITS
     power = arb(1)
     while True:
@@ -251,7 +311,7 @@ def _powers(value: arb, bits: int) -> Iterator[arb]:
         power = (power * value).mid()
 
 
-def _short_relation(values: Sequence[arb], bits: int) -> list[int] | None:
+def short_relation(values: Sequence[arb], bits: int) -> list[int] | None:
     """Return small integers whose combination of the values is nearly 0; None where they are no smaller than by chance."""
     count = len(values)
     rows = [[*(int(i == j) for j in range(count)), _whole(value, bits)] for i, value in enumerate(values)]
@@ -266,20 +326,25 @@ def _whole(value: arb, bits: int) -> int:
     return (int(exact.p) << bits) // int(exact.q)
 
 
-def _solved(matrix: Floats, right: Floats) -> Floats | None:
-    """Return the solution for a symmetric positive definite matrix, by Gauss's elimination; None for any other."""
-    size = len(matrix)
+def _solved(matrix: Floats, right: Floats) -> tuple[Floats, float] | None:
+    """Return the solution for a symmetric positive definite matrix, by Gauss's elimination, and log det; None for others."""
+    size, volume = len(matrix), 0.0
     work = [[*row, *side] for row, side in zip(matrix, right, strict=True)]
     for i in range(size):
         pivot = work[i][i]
         if not pivot > 1e-13 * max(1.0, abs(matrix[i][i])):
             return None
+        volume += log(pivot)
         work[i] = [entry / pivot for entry in work[i]]
         for k in range(size):
             if k != i and work[k][i]:
                 factor = work[k][i]
                 work[k] = [a - factor * b for a, b in zip(work[k], work[i], strict=True)]
-    return [row[size:] for row in work]
+    return [row[size:] for row in work], volume
+
+
+def _product(left: Sequence[float], right: Sequence[float]) -> float:
+    return sum(a * b for a, b in zip(left, right, strict=True))
 
 
 def _rational(matrix: Matrix) -> fmpq_mat:

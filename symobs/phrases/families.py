@@ -61,6 +61,7 @@ PHRASES: dict[str, str] = {
     "smallest_sum_of_gain": "No other gain is smaller, since the sum of the squares of the entries of this one is that least eigenvalue:",
     "smallest_root": "The solution is made of a root of a polynomial,",
     "smallest_long": "The entries of the gain are polynomials in this root, too long to be written out,",
+    "smallest_long_with_roots": "The entries of the gain are polynomials in this root and one square root, too long to be written out,",
     "smallest_multipliers": "The multipliers are",
     "smallest_deviation_observer": "No other gain is smaller. For any matrix $Delta_g$, $entries_D$ its entries, let $d_1$, $d_2$, … be what a change of the gain "
     "by it adds to the coefficients:",
