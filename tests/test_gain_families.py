@@ -324,7 +324,7 @@ def test_the_smallest_gain_is_smaller_than_others() -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [{"member": "smallest"}, {"member": "nearest"}, {"member": "decoupled", "zero": "(1, 1)"}],
+    [{"member": "nearest"}, {"member": "decoupled", "zero": "(1, 1)"}, {"member": "smallest", "zero": "(1, 1)"}],
 )
 def test_members_that_are_not_known_are_refused(arguments: dict[str, str]) -> None:
     with pytest.raises(InputError) as caught:

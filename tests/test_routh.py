@@ -21,7 +21,7 @@ from symobs.derivation.tables import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Relation, Sum
 from symobs.formula.plain import plain_relation
-from symobs.notation import THEOREMS
+from symobs.notation.theorems import THEOREMS
 from symobs.page import Page
 from symobs.phrases import PHRASES, RESTS_ON
 from symobs.region.root_count import imaginary_axis_roots, right_half_plane_roots

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
 from symobs.conditions import never_zero, sign_of
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Ideal, Matrix, Scalar
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
 if TYPE_CHECKING:
@@ -68,6 +68,15 @@ def is_criterion(
     return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
 
 
+def _has_no_negative_coefficient(value: Scalar, environment: Environment) -> bool:
+    """Tell whether a polynomial has only coefficients that are surely not negative, reduced by what is known to vanish."""
+    ideal = Ideal.of(environment.relations)
+    found = (ideal.simplified(c) for c in value.coefficients(environment.variable))
+    return value.is_polynomial_in(environment.variable) and all(
+        sign_of(c, environment.signs) in {"positive", "nonnegative", "zero"} for c in found
+    )
+
+
 #: What each property asks of a scalar, of the environment, and of discrete time.
 PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
@@ -88,5 +97,6 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete
     ),
+    "no_negative_coefficient": lambda value, environment, _: _has_no_negative_coefficient(value, environment),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

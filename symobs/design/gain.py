@@ -9,7 +9,7 @@ from dataclasses import field
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
-from symobs.certificate import Claim
+from symobs.certificate import Claim, Statement
 from symobs.design.family import Family
 from symobs.design.names import fresh_names
 from symobs.design.several import SeveralOutputs
@@ -18,7 +18,7 @@ from symobs.design.zero_claims import excluded_claims, in_root_claims, in_root_r
 from symobs.design.zeros import RootGain, contradict, equations_for, obstacles, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Field, Matrix, Root, Scalar, independent_rows, roots_of
-from symobs.exact.functions import all_roots, identities
+from symobs.exact.functions import identities
 from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
@@ -90,7 +90,7 @@ class GainDesign(Result):
         """Return the design that assigns φ, with zeros or the member of the family asked for, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
         found = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
-        found = member(pair, desired, wish) if wish else found
+        found = member(pair, desired, wish, plant.symbols.signs) if wish else found
         gain, in_root = (None, found) if isinstance(found, RootGain) else (found, None)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
         return cls(plant, method_name, answer, desired, pair, zero, wish, in_root)
@@ -142,7 +142,7 @@ class GainDesign(Result):
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
-    def claims(self) -> Iterator[Claim]:
+    def claims(self) -> Iterator[Claim | Statement]:
         """Yield det(sI − A + LC) = φ(s) for the gain and its family, or the proof that no gain exists."""
         gain, phi, own = self.answer[self.letter], self.answer["polynomial"], self.pair(self.plant)
         if (self._pair.A, self._pair.c) != (own.A, own.c):
@@ -160,8 +160,8 @@ class GainDesign(Result):
                 yield from excluded_claims(self)
             return
         yield self.assigned(gain)
-        if self.wish:
-            yield from member_claims(self._pair, self.oriented(gain), self.wish)
+        if self.wish and self.desired is not None:
+            yield from member_claims(self._pair, self.desired, self.oriented(gain), self.wish, self.plant.symbols.signs)
         if self.zero:
             e = Environment(variable=self.plant.variable)
             entries = Matrix.row([gain[i, j] for i, j in self.zero])
@@ -297,7 +297,7 @@ class GainDesign(Result):
     def chart(self) -> Family | None:
         """The family of gains for several outputs (inputs), the gain of the answer in it; None for one."""
         gain, pair = self.answer[self.letter], self._pair
-        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs) or all_roots(gain):
+        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs) or identities([gain])[1]:
             return None
         names = fresh_names("g", pair.freedom, self._taken)
         return Family.of(pair, self.desired, names, self.oriented(gain))

@@ -22,8 +22,9 @@ from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
+from symobs.design.smallest_page import write_smallest
 from symobs.design.zero_page import another_gain, write_no_gain
-from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, rank, root_of_pole, roots_of
 from symobs.exact.functions import all_roots
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
@@ -90,6 +91,8 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
             write_companion(page, side, desired)
         elif style == "row_reduced_echelon" and readable(design):
             write_row_reduction(page, design, side)
+        elif _has_multipliers(design):
+            write_smallest(page, design, side)
         elif all_roots(design.answer[side.gain]):
             page.with_roots(design.answer[side.gain])
             page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
@@ -98,10 +101,16 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         else:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
-    page.in_decimals(side.gain)
+    if not _has_multipliers(design):
+        page.in_decimals(side.gain)
     _verified(page, design, side)
     for case in design.case_tree:
         write_case(page, case, side)
+
+
+def _has_multipliers(design: GainDesign) -> bool:
+    """Whether the smallest gain is asked for, and multipliers prove it."""
+    return design.wish == "smallest" and rank(design._pair.c) > 1  # noqa: SLF001 - the witness
 
 
 def closed_loop_matrix(page: Page, side: Side) -> Term:
@@ -327,9 +336,12 @@ def _verified(page: Page, design: GainDesign, side: Side) -> None:
 
 
 def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
-    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves."""
+    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves.
+
+    A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
+    """
     pairs = any(factor.degree(desired.variable) == _PAIR for factor in desired.factors)
-    if not pairs or not desired.poles or not desired.is_numeric:
+    if not pairs or not desired.poles or not desired.is_numeric or members[0].value != members[1].value:
         page.verified("as_required", check=relation(*members))
         return
     roots = Roots(members[0].formula, tuple(root_of_pole(pole, desired.variable) for pole in desired.poles))

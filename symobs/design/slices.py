@@ -1,8 +1,8 @@
 """Members of the family with a property asked for: output errors decoupled, or the smallest norm.
 
 Decoupled: the orders of 𝒪(A − LC, cᵢ) add up to n, so each output error obeys an equation of its own.  Smallest: where
-the rows of C are multiples of one, C = v c, the product L v is unique and L = (L v) vᵀ/(vᵀv) is the smallest; for other
-C the smallest gain is a root of polynomials of high degree, and is not looked for.
+the rows of C are multiples of one, C = v c, the product L v is unique and L = (L v) vᵀ/(vᵀv) is the smallest; what is
+done for other C stands in `smallest`.
 """
 
 from __future__ import annotations
@@ -11,16 +11,19 @@ from itertools import permutations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank_result import power_rows
-from symobs.certificate import Claim
+from symobs.certificate import Claim, Statement
 from symobs.design.chains import Chains, cost, shares
+from symobs.design.smallest import NotFound, smallest, smallest_claims
+from symobs.design.stationary import LeastStationary, stationary_claims
 from symobs.errors import InputError
 from symobs.exact import Matrix, kernel, rank
+from symobs.exact.functions import NotWritten
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term
 from symobs.page import relation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.design.assignment import Pair
     from symobs.specification import DesiredPolynomial
@@ -28,7 +31,11 @@ if TYPE_CHECKING:
 MEMBERS = ("simple", "decoupled", "smallest")
 
 
-def member(pair: Pair, desired: DesiredPolynomial, wish: str) -> Matrix:
+class NoMember(InputError, NotWritten):
+    """A member of a family that is not found, or not known exactly; a case of a result is undecided there."""
+
+
+def member(pair: Pair, desired: DesiredPolynomial, wish: str, signs: Mapping[str, str]) -> Matrix:
     """Return the gain asked for; raises `InputError` where it is not found, or not known exactly."""
     if wish not in MEMBERS:
         message = f"{wish[:40]!r} is no member of the family that has a name"
@@ -36,21 +43,14 @@ def member(pair: Pair, desired: DesiredPolynomial, wish: str) -> Matrix:
     if not pair.is_observable:
         message = f"a {wish} gain is looked for where no mode is fixed"
         raise InputError(message, where="specification.member", repair="leave member out, or give zero")
-    found = _decoupled(pair, desired) if wish == "decoupled" else _smallest(pair, desired)
-    if found is not None:
+    found = _decoupled(pair, desired) if wish == "decoupled" else _smallest(pair, desired, signs)
+    if isinstance(found, Matrix):
         return found
-    reason = (
-        "no chains of the plant decouple the outputs with these poles"
-        if wish == "decoupled"
-        else "the smallest gain is known exactly only where the rows of C (columns of B) are multiples of one"
-    )
-    raise InputError(
-        reason, where="specification.member", repair="leave member out, or say with zero what is to vanish"
-    )
+    raise NoMember(found, where="specification.member", repair="leave member out, or say with zero what is to vanish")
 
 
-def _decoupled(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
-    """Return the simplest gain that gives each chain factors of φ of its own and decouples the outputs."""
+def _decoupled(pair: Pair, desired: DesiredPolynomial) -> Matrix | str:
+    """Return the simplest gain that gives each chain factors of φ of its own and decouples the outputs, or why not."""
     found = []
     for order in permutations(range(pair.c.shape[0])):
         chains = Chains.of(pair.A, pair.c, order)
@@ -58,7 +58,7 @@ def _decoupled(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
             gain = chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
             if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]:
                 found.append(gain)
-    return min(found, key=cost, default=None)
+    return min(found, key=cost, default="no chains of the plant decouple the outputs with these poles")
 
 
 def _own_rows(pair: Pair, gain: Matrix) -> Iterator[Matrix]:
@@ -68,10 +68,13 @@ def _own_rows(pair: Pair, gain: Matrix) -> Iterator[Matrix]:
         yield power_rows(closed, pair.c.select([i], range(pair.A.shape[0])))
 
 
-def _smallest(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
-    """Return (L v) vᵀ/(vᵀv) where C = v c."""
-    if rank(pair.c) != 1:
-        return None
+def _smallest(pair: Pair, desired: DesiredPolynomial, signs: Mapping[str, str]) -> Matrix | str:
+    """Return (L v) vᵀ/(vᵀv) where C = v c, otherwise what multipliers prove, or why there is nothing."""
+    if rank(pair.c) > 1:
+        try:
+            return smallest(pair, desired, signs).gain
+        except NotFound as reason:
+            return f"of these gains the smallest is not known exactly: {reason}"
     some = pair.gain(desired)
     assert some is not None  # noqa: S101 - the pair is observable
     row = next(i for i, line in enumerate(pair.c.rows) if any(line))
@@ -81,7 +84,9 @@ def _smallest(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
     return (some @ v @ v.T * (1 / size)).normal()
 
 
-def member_claims(pair: Pair, gain: Matrix, wish: str) -> Iterator[Claim]:
+def member_claims(
+    pair: Pair, desired: DesiredPolynomial, gain: Matrix, wish: str, signs: Mapping[str, str]
+) -> Iterator[Claim | Statement]:
     """Yield what makes the gain the one asked for."""
     e = Environment(variable=pair.variable)
     if wish == "decoupled":
@@ -89,7 +94,13 @@ def member_claims(pair: Pair, gain: Matrix, wish: str) -> Iterator[Claim]:
         yield Claim(
             relation(sum(others, start=first), pair.A.shape[0]), e, "the orders of the output errors add up to n"
         )
-    if wish == "smallest":
+    elif rank(pair.c) > 1:
+        found = smallest(pair, desired, signs)
+        if isinstance(found, LeastStationary):
+            yield from stationary_claims(pair, desired, gain, found)
+        else:
+            yield from smallest_claims(pair, desired, gain, found.multipliers, signs)
+    else:
         W = kernel(pair.c.T)
         yield Claim(relation(Term(Literal(pair.c), e).apply("rank"), 1), e, "rank C = 1, so that L*C is unique")
         yield Claim(relation(gain @ W, Matrix.zeros(gain.shape[0], W.shape[1])), e, "L*W = 0 wherever W.T*C = 0")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symobs.exact.enclosure import near, sign_of_number
+from symobs.exact.functions import known
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
@@ -38,8 +40,11 @@ def written(value: Scalar) -> str:
 def is_rounding(exact: Scalar, shown: Scalar) -> bool:
     """Tell whether a decimal is off by at most half a unit of its last place; without a point it must be exact."""
     count = places(shown)
-    if count is None or not exact.is_constant:
+    if count is None:
         return False
+    if not exact.is_constant:
+        half = Scalar.of(Fraction(1, 2 * 10**count))
+        return count > 0 and all(sign_of_number(half + off) == "positive" for off in (exact - shown, shown - exact))
     off = abs(exact.fraction() - shown.fraction())
     return off == 0 if count == 0 else off * 2 * 10**count <= 1
 
@@ -51,9 +56,9 @@ def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
     whole number, which reads as if it were exact.
     """
     entries = value.entries if isinstance(value, Matrix) else (value,)
-    if not entries or not all(entry.is_constant for entry in entries):
+    numbers = [number for entry in entries if (number := _number(entry)) is not None]
+    if not entries or len(numbers) < len(entries):
         return None
-    numbers = [entry.fraction() for entry in entries]
     if all(number.denominator < _HARD_TO_READ for number in numbers):
         return None
     found = _rounded(numbers)
@@ -64,6 +69,14 @@ def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
         return shown[0]
     width = value.shape[1]
     return Matrix.of([shown[start : start + width] for start in range(0, len(shown), width)])
+
+
+def _number(value: Scalar) -> Fraction | None:
+    """Return a rational number, or one that a real root without a closed form is nearly."""
+    if value.is_constant:
+        return value.fraction()
+    counted = any(f.kind == "CRootOf" for name in value.names if (f := known(name)) is not None)
+    return near(value) if counted else None
 
 
 def _rounded(numbers: Iterable[Fraction]) -> list[Fraction]:

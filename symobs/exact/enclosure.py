@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from flint import arb, ctx
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.exact.scalar import Scalar
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
-_BITS = (64, 256, 1024)
+_BITS = (64, 256, 1024, 4096)
 
 
 def is_number(value: Scalar) -> bool:
@@ -38,6 +39,18 @@ def sign_of_number(value: Scalar) -> str:
 def decimal(value: Scalar) -> float:
     """Return a number near an exact one, for a choice that is proved afterwards or a warning."""
     return float(_enclosed(value, _BITS[0]).mid())
+
+
+def near(value: Scalar, bits: int = 40) -> Fraction | None:
+    """Return a rational number closer to a number than 2^-bits, None where no enclosure is as narrow."""
+    if not is_number(value):
+        return None
+    for precision in _BITS:
+        found = _enclosed(value, precision)
+        if found.rad() < arb(2) ** -bits:
+            middle = found.mid().fmpq()
+            return Fraction(int(middle.p), int(middle.q))
+    return None
 
 
 def _enclosed(value: Scalar, bits: int) -> arb:

@@ -324,7 +324,8 @@ def identities(
     Base exponentials rise with their monomial, or with `falling` fall with it.
 
     exp is a product of powers of base exponentials, cosh and sinh are sums of two of them, cos and sin of a multiple or
-    a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1 and root² − radicand.
+    a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1, root² − radicand, and the
+    minimal polynomial of a real root.
     """
     values = tuple(values)
     found = _functions_in(values)
@@ -340,6 +341,8 @@ def identities(
     if falling:
         steps = {key: step if key[0] else -step for key, step in steps.items()}
     relations = [Scalar.symbol(root.name) ** 2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
+    counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
+    relations += [f.argument.substitute(dict.fromkeys(f.argument.names, Scalar.symbol(f.name))) for f in counted]
     for (turns, monomial), step in steps.items():
         if turns:
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)

@@ -92,6 +92,21 @@ class RealNumber:
             return self.fraction, self.fraction
         return ends_of(self.ball(bits), bits)
 
+    def between(self) -> tuple[Fraction, Fraction]:
+        """Return short decimals on either side between which the minimal polynomial has no other root."""
+        others, digits = [root for root in real_roots(self.polynomial) if root != self], 2
+        while True:
+            unit, (low, high) = 10**digits, self.interval()
+            ends = Fraction(floor(low * unit), unit), Fraction(ceil(high * unit), unit)
+            if ends[0] < low and high < ends[1] and not any(self._within(root, ends) for root in others):
+                return ends
+            digits += 1
+
+    @staticmethod
+    def _within(root: RealNumber, ends: tuple[Fraction, Fraction]) -> bool:
+        low, high = root.interval()
+        return ends[0] < high and low < ends[1]
+
     def sign_of(self, polynomial: fmpz_poly) -> int:
         """Return the sign of a polynomial with integer coefficients at this number."""
         if not polynomial or polynomial.gcd(self.polynomial).degree() == self.degree:
@@ -254,6 +269,14 @@ def count_roots(polynomial: fmpz_poly, low: Fraction | None, high: Fraction | No
     """Return how many distinct real roots lie in the open interval, by Sturm's theorem; the ends must be no roots."""
     chain = sturm_chain(polynomial)
     return _variations(chain, low, -1) - _variations(chain, high, 1)
+
+
+def roots_between(polynomial: Scalar, name: str, high: Fraction) -> int:
+    """Return how many distinct roots lie between 0 and a positive number, −1 where one of both is a root."""
+    whole = integer_factor(polynomial, name)
+    if whole[0] == 0 or whole(fmpq(high.numerator, high.denominator)) == 0:
+        return -1
+    return count_roots(whole, Fraction(0), high)
 
 
 def sturm_chain(polynomial: fmpz_poly) -> list[fmpz_poly]:

@@ -23,7 +23,7 @@ _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 def moves(name: str) -> bool:
     """Whether a generator is an exponential, a sine or a cosine."""
     found = known(name)
-    return found is not None and found.kind != "sqrt"
+    return found is not None and found.kind not in {"sqrt", "CRootOf"}
 
 
 def spelled_moving(value: Scalar) -> Formula:

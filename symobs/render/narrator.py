@@ -28,7 +28,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import Together
-from symobs.notation import THEOREMS
+from symobs.notation.theorems import THEOREMS
 from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
 from symobs.render.blocks import (
     Block,
