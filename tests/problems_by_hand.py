@@ -357,6 +357,7 @@ PROBLEMS = {
     "third_order_at_zeros": Hand(
         **third_order, observer=(s + 2) * (s + 3) * (s + omega_0), signs={"omega_0": "positive"}
     ),
+    "third_order_at_zeros_and_ten": Hand(**third_order, observer=(s + 2) * (s + 3) * (s + 10)),
     "third_order_pole_advice": Hand(
         **third_order, advice=Advice((s + 2) * (s + 3), s + omega_0), signs={"omega_0": "positive"}
     ),

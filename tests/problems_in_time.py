@@ -191,6 +191,10 @@ PROBLEMS_IN_TIME = {
     "third_order_gramian_period": InTime(
         Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
     ),
+    "double_integrator_error": InTime(Matrix([[-3, 1], [-2, 0]]), Matrix([[1, 0]])),
+    "third_order_plant_gramian": InTime(
+        Matrix([[-7, 1, 15], [-2, 0, 5], [-2, 0, 4]]), Matrix([[1, 0, -2]]), horizon=sympy.oo
+    ),
     "dual_gramian": InTime(Matrix([[0, 1], [0, 0]]), Matrix([[1, 0]]), signs=plain),
     "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
     "pendulum_gramian": InTime(

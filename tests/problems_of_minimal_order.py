@@ -45,10 +45,11 @@ def entries(stem: str, gain: Any) -> dict[str, Any]:
 class MinimalOrder(Hand):
     """An observer of order n − p in the coordinates T = [C; R], and with control poles the compensator with it.
 
-    `observer` has degree n − p.
+    `observer` has degree n − p.  With `is_open` the page makes the estimate of z and of open matrices F, G, H.
     """
 
     R: Any
+    is_open: bool = False
 
     @cached_property
     def T(self) -> Any:
@@ -176,7 +177,18 @@ class MinimalOrder(Hand):
         known |= {"B": B, "G_z": self.G, "x'": {"x": A, "u": B}, "P": self.plant_transfer}
         known["x_2_hat'"]["u"] = parts["B_2"]
         known["y"]["u"] = self.feedthrough
+        if self.is_open:
+            known |= self.letters_of_open_matrices()
         return known if self.control is None else known | self.letters_of_compensator()
+
+    def letters_of_open_matrices(self) -> dict[str, Any]:
+        """x̂₂ = z + L x₁ and ż = F z + G u + H y, the entries of F, G, H still letters; no feedthrough."""
+        L, C, (first, second) = self.observer_gain, self.C, (slice(None, self.C.rows), slice(self.C.rows, None))
+        one = sympy.eye(L.rows)
+        known: dict[str, Any] = {"x_2_hat": {"z_o": one, "x": L * C}, "e_2": {"x": self.R - L * C, "z_o": -one}}
+        known["z_o'"] = {"z_o": self.F, "u": self.G, "x": self.H * C}
+        known["x_hat"] = {"x": self.M[:, first] * C, "z_o": self.M[:, second]}
+        return known | entries("f", self.F) | entries("g", self.G) | entries("h", self.H)
 
     def letters_of_compensator(self) -> dict[str, Any]:
         K, (K_1, K_2), phi = self.feedback_gain, self.parts_of_gain, self.control
@@ -245,7 +257,7 @@ PROBLEMS_OF_MINIMAL_ORDER = {
         **hanging, R=Matrix([[1, 0]]), observer=s + p, signs=pendulum | {"p": "positive"}
     ),
     "scaled_output_minimal_observer": MinimalOrder(
-        A=servo["A"], B=servo["B"], C=Matrix([[2, 0]]), R=second_state, observer=s + 10
+        A=servo["A"], B=servo["B"], C=Matrix([[2, 0]]), R=second_state, observer=s + 10, is_open=True
     ),
     "cart_minimal_observer": MinimalOrder(
         **cart, C=Matrix([[1, 0, 0, 0]]), R=sympy.eye(4)[1:, :], observer=(s + 20) * ((s + 20) ** 2 + 400)

@@ -12,7 +12,7 @@ from typing import Any
 import sympy
 from sympy import Matrix, Rational
 
-from tests.problems_by_hand import cart, characteristic, omega, s, servo
+from tests.problems_by_hand import cart, characteristic, mass, omega, s, servo
 from tests.problems_of_minimal_order import MinimalOrder, second_state
 
 v = sympy.Symbol("v")
@@ -87,6 +87,15 @@ PROBLEMS_OF_TRACKING = {
         reference=Matrix([[0, 1], [-(omega**2), 0]]),
         signs={"omega": "positive"},
     ),
+    "double_integrator_tracking": Tracking(
+        **mass,
+        R=second_state,
+        control=(s + 2) ** 2,
+        observer=s + 10,
+        reference=Matrix([[0, 1], [-(omega**2), 0]]),
+        signs={"omega": "positive"},
+    ),
+    "cart_tracking_angle": Tracking(**wagon, reference=reference(0, Rational(49, 5))),
     "cart_tracking": Tracking(
         **wagon,
         reference=Matrix(4, 4, lambda i, j: int((i, j) == (0, 3))),

@@ -114,6 +114,11 @@ WRONG = {
     # keys and their values
     "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
     "key of the plant": (problem(E="1"), "plant.E", "unknown key … known keys are A, B, C, D"),
+    "key of the file in a table": (
+        problem(convention='"S1"'),
+        "plant.convention",
+        "unknown key … above the first table",
+    ),
     "key at the wrong place": (problem(top='task = "observer"\nA = "[1]"'), "A", "unknown key … belongs to [plant]"),
     "key of another task": (
         problem(f"{POLES}\ncontrol_polynomial = 's'"),

@@ -412,6 +412,8 @@ def test_verdicts_of_stability(name: str) -> None:
 
 
 def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
+    if relation == "False":
+        return False
     left, operator, right = relation.partition("<" if "<" in relation else ">")
     names = {str(parameter): value for parameter, value in point.items()}
     return compare(sympy_scalar(parse_scalar(left), names) - sympy_scalar(parse_scalar(right), names), operator)

@@ -188,6 +188,7 @@ def test_a_well_posed_compensator_cannot_be_called_ill_posed() -> None:
     ("keywords", "where", "words"),
     [
         ({"observer": "reduced", "observer_poles": [-1, -2]}, "specification.observer", '"full" or "minimal"'),
+        ({"observer": "minimum", "observer_poles": [-1]}, "specification.observer", '"full" or "minimal"'),
         ({"observer": "minimal", "method": "separation"}, "specification.method", "leave the method out"),
         ({"observer": "minimal", "observer_poles": [-1, -2]}, "specification.observer_poles", "1"),
     ],

@@ -210,3 +210,61 @@ def test_the_page_follows_the_book() -> None:
     order += ["derivative of the output", "ż = F z + G u + H y", "x̂ ="]
     places = [text.index(part) for part in order]
     assert places == sorted(places)
+
+
+SLIDES = StateSpace("[0 1; 0 -1]", "[0; 1]", "[2 0]")
+
+
+def test_open_matrices_are_found_from_the_error() -> None:
+    """S2: F, H and G are what is left when the coefficients of x₁, x₂ and u in the error are 0."""
+    found = symobs.reduced_order_observer(SLIDES, poles=[-10], method="undetermined")
+    assert [found.L[0], found.F[0], found.G[0], found.H[0]] == [Rational(9, 2), -10, 1, -45]
+    text = " ".join(found.to("text").split())
+    order = ["is of no use here", "Let the estimate be x̂₂ = z + L x₁", "ż = F z + G u + H y"]
+    order += ["(A₂₁ - L A₁₁ + F L - H)x₁ + (A₂₂ - L A₁₂ - F)x₂ + (B₂ - L B₁ - G)u", "leaves no choice but"]
+    order += [
+        "F = A₂₂ - L A₁₂, G = B₂ - L B₁, H = F L + A₂₁ - L A₁₁",
+        "there remains de₂/dt = F e₂",
+        "as required",
+        "-10z + u - 45y",
+    ]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+    assert "derivative of the output" not in text
+
+
+@pytest.mark.parametrize(
+    ("plant", "poles"),
+    [
+        (THIRD_ORDER, "-5, -6"),
+        (StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "[2]"), "-10"),
+        (StateSpace("[0 1; 0 -1]", None, "[1 0]"), "-10"),
+        (StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True), "0"),
+        (StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]", "[1 0 0; 0 0 1]"), "-2"),
+        (StateSpace("[0 1; 0 -b]", "[0; 1]", "[c 1]"), "-p"),
+    ],
+)
+def test_both_ways_lead_to_the_same_observer(plant: StateSpace, poles: str) -> None:
+    there, here = (symobs.reduced_order_observer(plant, poles=poles, method=m) for m in ("partition", "undetermined"))
+    assert dict(there.answer) == dict(here.answer)
+    assert "no choice but" in " ".join(here.to("text").split())
+    assert "no choice but" not in " ".join(there.to("text").split())
+
+
+def test_the_output_s_derivative_is_shown_before_it_goes() -> None:
+    """S0, Example 4.4: −(1 + L) x̂₂ + u + L ẋ₁; Example 4.3: (4.43), (4.44)."""
+    servo = " ".join(
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10]).to("text").split()
+    )
+    assert "dx̂₂/dt = (-l₁ - 1)x̂₂ + u + l₁ dx₁/dt" in servo
+    assert "= -10x̂₂ + u + 9 dx₁/dt The right-hand side" in servo
+
+
+def test_why_the_mere_copy_fails() -> None:
+    """S2: 0 and ±7√22/10 are the eigenvalues of A₂₂ of the pendulum on the cart, whose copy does not die out."""
+    plant, poles, _ = PRINTED["S2-EX-PEND"]
+    assert "the eigenvalues 0, ± (7/10)√22." in " ".join(
+        symobs.reduced_order_observer(plant, poles=poles).to("text").split()
+    )
+    with_b = StateSpace("[0 1; 0 b]", "[0; 1]", "[1 0]", symbols={"b": "positive"})
+    assert "since A₂₂ is not stable." in " ".join(symobs.reduced_order_observer(with_b, poles=[-3]).to("text").split())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -59,6 +60,12 @@ def test_every_line_on_the_left_has_its_dual_on_the_right() -> None:
     assert asked.endswith("= s**2 + s*mu1 + s*mu2 + mu1*mu2")
     assert gain.endswith("= [-mu1-mu2 -mu1*mu2]")
     assert right[-2][1].endswith("= [-mu1*mu2 -mu1-mu2]")
+
+
+def test_sources_are_numbered_as_they_are_read() -> None:
+    numbers = [int(number) for number in re.findall(r"\[(\d+)\]", str(render(document(), "text")).split("Sources.")[0])]
+    firsts = list(dict.fromkeys(numbers))
+    assert firsts == sorted(firsts)
 
 
 @pytest.mark.parametrize(

@@ -209,7 +209,7 @@ def observer_based(
         lambda: _require_kind(observer, plant, method_name),
         lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
         lambda: wanted("control", control, plant.order),
-        lambda: wanted("observer", estimate, estimated),
+        lambda: wanted("observer", estimate, estimated) if observer in _METHODS else None,
     )
     found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found

@@ -141,6 +141,20 @@ def _own_determinant(page: Page) -> Term:
     return (page.s @ page.identity(order) - page["A_c"]).apply("det")
 
 
+def _apart(page: Page, pencil: Term) -> list[Term]:
+    """K₂ · Z/Y + K_y and the direct term with what decays: for an observer of first order, nothing solved for."""
+    K_2, K_y, B_c = (page[name].value for name in ("K_2", "K_y", "B_c"))
+    if page.plant.matrices.has_feedthrough or K_2.shape != (1, 1) or page["F_z"].value.shape != (1, 1):
+        return []
+    state = B_c[0, 0] / pencil.value[0, 0]
+    rest = K_2[0, 0] * state
+    if rest.is_zero or K_y.is_zero:
+        return []
+    falls = rest.numerator.is_constant and rest.numerator.fraction() < 0
+    parts = page.value(K_y[0, 0]) - page.value(-rest) if falls else page.value(K_y[0, 0]) + page.value(rest)
+    return [page.value(K_2[0, 0]) * page.value(state) + page.value(K_y[0, 0]), parts]
+
+
 def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
     """F(s) = K₂ (sI − A_c)⁻¹ B_c + K_y, times W where the output contains the input."""
     K_y, K_2, B_c = (page[name] for name in ("K_y", "K_2", "B_c"))
@@ -168,7 +182,9 @@ def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bo
         whole = (above / below).denominator.degree(page.plant.variable) == below.degree(page.plant.variable)
         plain = above.denominator.is_one and below.denominator.is_one and whole
         result = page.term(Quotient(Literal(above), Literal(below))) if plain else page.value(design.answer["F"])
-        page.define("F", formula, numbers, result, say="minimal_transfer", answer=True, closing=False)
+        page.define(
+            "F", formula, numbers, *_apart(page, pencil), result, say="minimal_transfer", answer=True, closing=False
+        )
     remainder = predicate("strictly_proper", page["F"] - direct)
     say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.shown))
 

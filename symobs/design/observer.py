@@ -19,6 +19,7 @@ from symobs.design.responses import plot_error
 from symobs.design.row_reduction import reduced_gain
 from symobs.design.several import pair_of
 from symobs.design.sylvester import SYLVESTER
+from symobs.exact import Matrix
 from symobs.formula.term import Term, letter
 from symobs.method import Result, method, task
 from symobs.page import Page, relation
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
     from symobs.analysis.rank_result import RankResult
     from symobs.design.assignment import Pair
-    from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.specification import (
         DesiredPolynomial,
@@ -132,16 +132,28 @@ def write_observer(page: Page, *, drawn: bool = False) -> None:
         say="error_equation",
         error=relation(page["e"], page["x"] - page["x_hat"]),
     )
-    collected, driven = closed.shown @ page["x_hat"], None
+    _say_deadbeat(page, closed)
+    collected, numbers, driven = closed @ x_hat, closed.shown @ x_hat, None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected = collected + driven.shown @ page["u"]
+        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L.shown @ page["y"]),
+        relation(x_hat.derivative, collected + L @ y, numbers + L.shown @ y),
         say="observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected",
         answer=True,
     )
     write_components(page, driven)
+
+
+def _say_deadbeat(page: Page, closed: Term) -> None:
+    """In discrete time with all poles at 0: after how many steps the error is gone."""
+    if not page.plant.is_discrete:
+        return
+    powers = (closed**steps for steps in range(1, page.plant.order + 1))
+    gone = next((power for power in powers if power.value.normal().is_zero), None)
+    if gone is not None:
+        zero = Matrix.zeros(*gone.value.shape)
+        page.conclude("deadbeat_error", gone=relation(gone, zero))
 
 
 @method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 def write_ansatz(page: Page, gain: Matrix) -> None:
     """The error of the ansatz, and the choice of F and G that frees it of x and u."""
     m = page.plant.matrices
-    _undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
-    _undetermined(page, "H_x", "h_", gain)
+    undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
+    undetermined(page, "H_x", "h_", gain)
     if m.has_input:
-        _undetermined(page, "G_x", "g_", (m.B - gain @ m.D).normal() if m.has_feedthrough else m.B)
+        undetermined(page, "G_x", "g_", (m.B - gain @ m.D).normal() if m.has_feedthrough else m.B)
     A, C, F, H = (page[name] for name in ("A", "C", "F_x", "H_x"))
     model = F @ page["x_hat"]
     if m.has_input:
@@ -45,16 +45,18 @@ def write_found(page: Page) -> None:
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]
-    collected = closed.shown @ page["x_hat"]
+    collected, numbers = closed @ page["x_hat"], closed.shown @ page["x_hat"]
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected = collected + driven.shown @ page["u"]
+        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L.shown @ page["y"]), say="existence_observer", answer=True
+        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.shown @ page["y"]),
+        say="existence_observer",
+        answer=True,
     )
 
 
-def _undetermined(page: Page, name: str, stem: str, value: Matrix) -> None:
+def undetermined(page: Page, name: str, stem: str, value: Matrix) -> None:
     """Establish a matrix of letters, which stand for what will be chosen."""
     names = iter(fresh_names(stem, len(value.entries), taken_names(page)))
     page.set(name, Matrix.of([[page.name_coefficient(next(names), entry) for entry in row] for row in value.rows]))

@@ -184,8 +184,11 @@ class ReducedOrderObserver(Result):
 
     @property
     def free_signals(self) -> Mapping[str, int]:
-        """The estimate of x₂."""
-        return {"x_2_hat": self.plant.order - self.plant.outputs}
+        """The estimate of x₂; the observer's state where the estimate is made of it."""
+        names = ["x_2_hat"]
+        if self.page_method == "undetermined":
+            names.append("w_o" if self.plant.is_discrete else "z_o")
+        return dict.fromkeys(names, self.plant.order - self.plant.outputs)
 
     @property
     def verdict(self) -> str:
@@ -263,6 +266,12 @@ def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
 def by_partition(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
     """L places the poles of A₂₂ − L A₁₂ in coordinates where the outputs are the first states."""
     return ReducedOrderObserver.of(plant, desired, T, "partition")
+
+
+@method("reduced_order_observer/undetermined", source="S2, conditions on F, G and H")
+def undetermined(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
+    """x̂₂ = z + L x₁, ż = F z + G u + H y: the error is free of x and u for one choice of F, G, H, whatever L is."""
+    return ReducedOrderObserver.of(plant, desired, T, "undetermined")
 
 
 @task

@@ -14,6 +14,7 @@ from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
 from symobs.design.reduced_order_observer import Partition, partition
 from symobs.design.responses import plot_error
+from symobs.design.undetermined_page import write_undetermined
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import Term, block
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 
 #: Plants of a larger order have their blocks listed one by one.
 _LISTED_FROM = 2
+#: The observer with the derivative of the output is written out where its matrices have no more terms than this.
+_WRITTEN_OUT = 80
+#: With no more unknown entries the observer is also shown before its gain is found.
+_FEW_UNKNOWNS = 2
 
 
 def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
@@ -51,9 +56,15 @@ def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:
             _impossible(page, design)
             return
         _parts(page, design)
-        _observer(page, design)
-        _gain(page, design)
-        _without_derivative(page, design)
+        if design.page_method == "undetermined":
+            write_undetermined(page, design)
+            write_inner_gain(page, design)
+            _assembled(page, design, ("undetermined_matrices", "rest_set_out"))
+        else:
+            _observer(page, design)
+            write_inner_gain(page, design)
+            _without_derivative(page)
+            _assembled(page, design, ("reduced_matrices", "rest_estimated"))
 
 
 def _coordinates(page: Page, parts: Partition) -> None:
@@ -140,6 +151,10 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
     if page.plant.matrices.has_input:
         copy, innovation = copy + page["B_2"] @ u, innovation - page["B_1"] @ u
     page.dynamics("x_2_hat", copy + L @ (innovation - page["A_12"] @ x_2_hat), say="reduced_observer")
+    if page.plant.outputs == 1 and len(gain.entries) <= _FEW_UNKNOWNS:
+        pairs = _collected(page)
+        if sum(matrix.value.size for matrix, _ in pairs) <= _WRITTEN_OUT:
+            page.equal(relation(x_2_hat.derivative, combination(page, pairs)), say="with_gain_unknown")
     page.signal("e_2", page["x_2"] - page["x_2_hat"], silent=True)
     page.equal(
         relation(page["e_2"].derivative, _error_matrix(page) @ page["e_2"]),
@@ -158,7 +173,11 @@ def _mere_copy(page: Page) -> None:
     own = (page.s @ page.identity(page["A_22"].value.shape[0]) - page["A_22"]).apply("det")
     plant = page.plant
     if stability(own.scalar, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "no":
-        page.remark("mere_copy_fails", predicate("unstable", own))
+        unstable = predicate("unstable", own)
+        if own.scalar.names - {plant.variable}:
+            page.remark("mere_copy_fails", unstable)
+        else:
+            page.remark("mere_copy_grows", unstable, roots=Roots(own.formula, roots_of(own.scalar, plant.variable)))
 
 
 def _error_matrix(page: Page) -> Term:
@@ -170,7 +189,7 @@ def _determinant(page: Page) -> Term:
     return (page.s @ page.identity(order) - page["A_22"] + page["L"] @ page["A_12"]).apply("det")
 
 
-def _gain(page: Page, design: ReducedOrderObserver) -> None:
+def write_inner_gain(page: Page, design: ReducedOrderObserver) -> None:
     """Compare the coefficients of det(sI − A₂₂ + L A₁₂), linear in L for one output, with those of φ."""
     desired, variable = design.desired, page.plant.variable
     unknown, several = page["L"].value, page.plant.outputs > 1
@@ -204,22 +223,38 @@ def observer_state(page: Page) -> str:
     return "w_o" if page.plant.is_discrete else "z_o"
 
 
-def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
-    """(4.39)-(4.41): z = x̂₂ − L x₁, and the estimate put together again."""
-    m, L, u, x_1 = page.plant.matrices, page["L"], page["u"], page["x_1"]
+def _collected(page: Page) -> list[tuple[Term, Term]]:
+    """(4.39): the signals of the right-hand side with their matrices, the derivative of x₁ among them."""
+    L, x_1 = page["L"], page["x_1"]
+    pairs = [(_error_matrix(page), page["x_2_hat"]), (page["A_21"] - L @ page["A_11"], x_1)]
+    if page.plant.matrices.has_input:
+        pairs.append((page["B_2"] - L @ page["B_1"], page["u"]))
+    return [*pairs, (L, x_1.derivative)]
+
+
+def _without_derivative(page: Page) -> None:
+    """(4.39) and (4.40): z = x̂₂ − L x₁ in place of x̂₂."""
+    m, L, u, x_1, x_2_hat = page.plant.matrices, page["L"], page["u"], page["x_1"], page["x_2_hat"]
     name = observer_state(page)
-    page.signal(name, page["x_2_hat"] - L @ x_1, silent=True)
-    z = page[name]
-    closed = _error_matrix(page)
+    page.signal(name, x_2_hat - L @ x_1, silent=True)
+    z, closed = page[name], _error_matrix(page)
     rate, fed = closed @ z, closed @ L + page["A_21"] - L @ page["A_11"]
     if m.has_input:
         rate = rate + (page["B_2"] - L @ page["B_1"]) @ u
+    pairs = _collected(page)
+    if sum(matrix.value.size for matrix, _ in pairs) <= _WRITTEN_OUT:
+        page.equal(relation(x_2_hat.derivative, summed(pairs), combination(page, pairs)), say="right_side_collected")
     page.equal(
         relation(z.derivative, rate + fed @ x_1),
         say="next_output" if page.plant.is_discrete else "derivative_of_output",
         state=relation(z, page["x_2_hat"] - L @ x_1),
     )
-    _matrices(page, design)
+
+
+def _assembled(page: Page, design: ReducedOrderObserver, say: tuple[str, str]) -> None:
+    """F, G, H and the observer, and (4.41): the estimate put together again."""
+    m, L, u, x_1, z = page.plant.matrices, page["L"], page["u"], page["x_1"], page[observer_state(page)]
+    _matrices(page, design, say[0])
     pairs = [(page["F_z"], z)]
     if design.answer["G"] is not None:
         pairs.append((page["G_z"], u))
@@ -235,7 +270,7 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     estimate = block([[x_1], [page["x_2_hat"]]])
     single = order == outputs == 1 and not m.has_feedthrough
     numbers = [combination(page, [(page.value(Matrix.identity(1)), z), (L, page["y"])])] if single else []
-    page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say="rest_estimated")
+    page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say=say[1])
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
         relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
@@ -246,10 +281,10 @@ def _without_derivative(page: Page, design: ReducedOrderObserver) -> None:
     page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
 
 
-def _matrices(page: Page, design: ReducedOrderObserver) -> None:
+def _matrices(page: Page, design: ReducedOrderObserver, say: str) -> None:
     """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
     L, m = page["L"], page.plant.matrices
-    page.define("F_z", _error_matrix(page), say="reduced_matrices")
+    page.define("F_z", _error_matrix(page), say=say)
     if m.has_input and not m.has_feedthrough:
         page.define("G_z", page["B_2"] - L @ page["B_1"])
     page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"])

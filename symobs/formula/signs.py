@@ -94,7 +94,14 @@ class Turned:
                 shown = [sign for sign, (_, part) in zip(signs, parts, strict=True) if not _is_zero(part)]
                 if all(shown) and shown:
                     return True, inner
-        return False, with_children(formula, tuple(_with_sign(*part) for part in parts))
+        return False, with_children(formula, tuple(self._term(*part) for part in parts))
+
+    def _term(self, negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `signed` returns them
+        """Return one of several terms: + N x again for − (−N) x, where N is the value that a letter had."""
+        match formula:
+            case Product((Literal(Matrix() as table), *rest)) if negative and -table in self.values:
+                return Product((Literal(-table), *rest))
+        return _with_sign(negative, formula)
 
     def _absorbed(self, formula: Formula) -> Formula:
         """Return −N x as (−N) x where N is what a letter was: the letter is −N now, and the book writes what it is."""

@@ -46,6 +46,7 @@ THEOREMS: dict[str, Theorem] = {
     "reduced_order": Theorem("reduced-order observer", "S0, (4.37)-(4.41)"),
     "reduced_pair": Theorem("observability of the unmeasured part", "S0, Lemma 4.1"),
     "first_attempt": Theorem("the reduced observer that no gain corrects", "S2"),
+    "undetermined": Theorem("conditions on the observer matrices", "S2"),
     "similarity": Theorem("from estimate to error", "S1, slide at 28:08"),
     "existence": Theorem("existence of an asymptotic observer", "S4"),
     "tracking": Theorem("tracking of a reference", "S2"),

@@ -11,6 +11,7 @@ PHRASES: dict[str, str] = {
     "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
     "error_equation": "Whatever the input, the error {error} then obeys",
     "feedthrough_cancels": "The output error does not contain the input, since the feedthrough cancels in it:",
+    "deadbeat_error": "All poles lie at the origin, so the error is gone after finitely many steps, whatever it was: {gone}.",
     "observer_collected": "Collected, the observer reads",
     "observer_collected_with_feedthrough": "Collected, with $B - L D$ in place of $B$ so that the feedthrough does cancel, the observer reads",
     "in_components": "Component by component these are the equations",

@@ -17,7 +17,17 @@ PHRASES: dict[str, str] = {
     "mere_copy": "A copy of the plant, corrected by its output error, is of no use here§: it takes $x_1$ from the measurement, so its output "
     "error is zero whatever the gain is, and the rest of the copy goes wrong by {left}.",
     "mere_copy_fails": "That does not even die out, since $A_22$ is not stable.",
+    "mere_copy_grows": "That does not even die out, since $A_22$ has the eigenvalues {roots}.",
+    "undetermined_ansatz": "Let the estimate be {estimate}, with a state of its own, driven by what is known, whose matrices are still to be "
+    "determined§:",
+    "undetermined_error": "Then {error} obeys",
+    "undetermined_choice": "It is to die out whatever state and input are. So both must go, which leaves no choice but",
+    "undetermined_left": "and of the error there remains",
+    "undetermined_matrices": "With this gain the matrices are",
+    "rest_set_out": "What is not measured is estimated, as it was set out, by",
+    "right_side_collected": "With this gain, and collected by its signals, the observer reads",
     "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
+    "with_gain_unknown": "Its gain still unknown, this is",
     "reduced_error": "Whatever the input, the error {error} then obeys",
     "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",
     "wanted_polynomial": "and is to become",
@@ -43,15 +53,23 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "reduced_not_unique": ("polynomial",),
 }
 
-OPENS = ("reduced_observer", "derivative_of_output", "next_output", "parts", "parts_with_feedthrough")
+OPENS = (
+    "reduced_observer",
+    "undetermined_ansatz",
+    "derivative_of_output",
+    "next_output",
+    "parts",
+    "parts_with_feedthrough",
+)
 
 RESTS_ON: dict[str, str] = {
     "mere_copy": "first_attempt",
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",
+    "undetermined_ansatz": "undetermined",
 }
 
-EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails")
+EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails", "mere_copy_grows")
 
 SPELLS_OUT = (
     "coordinates",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import SIGNS
 from symobs.convention import conventions
 from symobs.method import tasks
 from symobs.specification import KINDS
 from symobs.viewed import names_in
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -42,6 +45,21 @@ PRINTED: dict[str, dict[str, Any]] = {
     "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
 }
 PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
+
+
+def repair_of(key: str, known: Collection[str], where: str) -> str:
+    """Return what to do about a key that is not known where it stands: most are, elsewhere."""
+    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+    near = get_close_matches(key[:64], known, 1)
+    of = [task.name for task in tasks().values() if key in task.keywords]
+    if key in PLANT:
+        return "it belongs to [plant]"
+    if of:
+        return f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
+    if key in TOP and where in {"plant", "specification"}:
+        return "it belongs to the top of the file, above the first table"
+    return f"did you mean {near[0]}?" if near else f"known keys are {', '.join(known)}"
 
 
 def schema() -> dict[str, Any]:

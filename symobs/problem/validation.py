@@ -16,7 +16,7 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, PRINTED, TOP
+from symobs.problem.keys import PLANT, PRINTED, TOP, repair_of
 from symobs.problem.tables import Decimal
 from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
@@ -148,21 +148,9 @@ def _came(value: object) -> str:
 
 def _report_unknown(table: Mapping[str, Any], known: Collection[str], where: str, errors: _Errors) -> None:
     """Note every key that is not known, with the key or the place that was meant."""
-    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
-
     unknown = [key for key in table if key not in known]
     for key in unknown[:_MAX_UNKNOWN]:
-        near = get_close_matches(key[:64], known, 1)
-        of = [task.name for task in tasks().values() if key in task.keywords]
-        if key in PLANT:
-            repair = "it belongs to [plant]"
-        elif of:
-            repair = f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
-        elif near:
-            repair = f"did you mean {near[0]}?"
-        else:
-            repair = f"known keys are {', '.join(known)}"
-        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair)
+        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair_of(key, known, where))
     if len(unknown) > _MAX_UNKNOWN:
         errors.note(f"{len(unknown) - _MAX_UNKNOWN} more unknown keys", where or "the file", "leave them out")
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from itertools import zip_longest
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
-from symobs.phrases import PHRASES
+from symobs.derivation import Section
+from symobs.phrases import BESIDE, PHRASES
 from symobs.render.text_printer import text_width
 
 if TYPE_CHECKING:
@@ -29,6 +30,18 @@ def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]
                 rows[-1:] = [(*(rows[-1] if rows else ()), step)]
         cut.append(rows)
     return list(zip_longest(*cut, fillvalue=()))
+
+
+def is_beside(step: Step) -> TypeGuard[Section]:
+    """Whether a step is a section whose sections stand side by side."""
+    return isinstance(step, Section) and step.title.key in BESIDE
+
+
+def row_by_row(section: Section) -> list[Step]:
+    """Return the steps of such a section as they are read: row by row, and then what stands below the columns."""
+    columns = [step for step in section.steps if isinstance(step, Section)]
+    cells = [step for row in in_rows([column.steps for column in columns]) for cell in row for step in cell]
+    return [*cells, *(step for step in section.steps if step not in columns)]
 
 
 def _begins(step: Step) -> bool:

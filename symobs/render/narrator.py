@@ -46,7 +46,7 @@ from symobs.render.blocks import (
     Title,
     Verified,
 )
-from symobs.render.columns import in_rows
+from symobs.render.columns import in_rows, is_beside, row_by_row
 from symobs.render.conventions import letters_used, stated_conventions
 from symobs.render.detail import at_detail
 from symobs.render.prose import filled, joined, with_reference
@@ -153,7 +153,7 @@ def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
         if found is not None:
             yield found
         yield from getattr(step, "findings", ())
-        yield from _sentences(getattr(step, "steps", ()))
+        yield from _sentences(row_by_row(step) if is_beside(step) else getattr(step, "steps", ()))
 
 
 def printer_for(document: Document, kind: type[P]) -> P:

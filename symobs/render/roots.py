@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import isqrt
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Scalar
@@ -28,6 +29,7 @@ class RootGlyphs:
     minus: str = "-"
     plus: str = "+"
     imaginary: str = "i"
+    fraction: Callable[[str], str] = str
     written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
 
 
@@ -36,6 +38,7 @@ TEXT = RootGlyphs(
     lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
     " ± ",
     lambda s, equation: f"{{{s}: {equation}}}",
+    fraction="({})".format,
 )
 
 
@@ -79,7 +82,12 @@ def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
     """√radicand, its square factors before the root, i behind it."""
     if not root.radicand.is_constant:
-        return glyphs.square_root(glyphs.written(printer, Literal(root.radicand)))
+        whole, below = root.radicand, root.radicand.denominator
+        half = isqrt(below.fraction().numerator) if below.is_constant else 0
+        if half > 1 and half**2 == below.fraction():
+            front = glyphs.fraction(glyphs.written(printer, Literal(Scalar.of(1) / half)))
+            return front + glyphs.square_root(glyphs.written(printer, Literal(whole * below)))
+        return glyphs.square_root(glyphs.written(printer, Literal(whole)))
     outside, inside, imaginary = root.surd()
     under = "" if inside == 1 else glyphs.square_root(glyphs.number(int(inside)))
     unit = under + glyphs.imaginary * imaginary
@@ -87,4 +95,4 @@ def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
         return glyphs.number(outside.numerator) * (outside != 1 or not unit) + unit
     above = Scalar.of(outside.numerator)
     front = glyphs.written(printer, Literal(above / outside.denominator))
-    return front + unit
+    return glyphs.fraction(front) + unit
