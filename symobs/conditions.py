@@ -32,6 +32,8 @@ _OPPOSITE = {
     "nonnegative": "nonpositive",
     "nonpositive": "nonnegative",
 }
+#: The signs that say something; of a number of any other sign nothing is known.
+_KNOWN = frozenset(SIGNS) - {"real"}
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class Condition:
 def _product_sign(left: str, right: str) -> str:
     if "zero" in (left, right):
         return "zero"
-    if "real" in (left, right):
+    if not _KNOWN.issuperset((left, right)):
         return "real"
     if "nonzero" in (left, right):
         weak = {"nonnegative", "nonpositive"} & {left, right}

@@ -144,6 +144,13 @@ class TestValues:
         assert sign_of(value, signs) == expected
         assert never_zero(value, signs) == (expected in {"positive", "negative", "nonzero"})
 
+    @pytest.mark.parametrize("word", ["positiv", "complex"])
+    def test_a_word_that_is_no_sign_says_nothing(self, word: str) -> None:
+        signs = {"a": word, "b": "positive"}
+        assert {sign_of(value, signs) for value in (a, a * b, -a, a + b, 1 / a, a**3)} == {"real"}
+        assert not never_zero(a, signs)
+        assert vanishing_factors([a * b], signs) == (a,)
+
     def test_vanishing_factors_leave_out_what_the_signs_exclude(self) -> None:
         value = a**2 * (a - b) ** 3 * (b**2 + 1) / (c + 1)
         assert set(vanishing_factors([value], {})) == {a, a - b}

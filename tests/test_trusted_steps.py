@@ -484,6 +484,16 @@ def test_a_case_may_say_which_of_two_is_larger() -> None:
         refused(case(said(c, "!=", 1), equal(said(c, operator, 1))), start=ON)
 
 
+def test_where_the_data_mean_something_is_the_same_on_a_stratum() -> None:
+    given = Given((said(F, 1 / (b + c)),))
+    checked(given, equal(said(b + c, "!=", 0)), start=ON)
+    checked(given, case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
+    for other in (b, b + 2):
+        refused(given, case(said(c, 1), equal(said(other, "!=", 0)), c=1), start=ON)
+    refused(case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
+    checked(given, case(said(b + c, 0), equal(said(b, b)), c=-b), start=ON)  # no plant is there
+
+
 def test_equations_of_cases_within_cases_hold_together() -> None:
     within = case(said(b, 2), equal(said(c, 1), said(b, 2), said(b * c, 2)))
     checked(case(said(c, 1), within), start=ON)

@@ -51,8 +51,7 @@ def on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envir
     above = tuple(value.substitute(substitution) for value in environment.above)
     moved = (value.substitute(substitution).numerator for value in environment.relations)
     relations = tuple(value for value in moved if value)
-    there = (value.substitute(substitution) for value in environment.domain)
-    domain = vanishing_factors([value for value in there if value], environment.signs)
+    domain = vanishing_factors((value.substitute(substitution) for value in environment.domain), environment.signs)
     inside = replace(
         environment,
         values=replaced,
