@@ -52,7 +52,9 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
     whole = _decide([*coefficients[:discrete], *lienard_chipart(coefficients)], signs)
     if whole.verdict == "conditional" and polynomial.size <= FACTORED_UP_TO:
         parts = [factor for factor, _ in polynomial.numerator.factors()[1] if factor.degree(variable)]
-        if len(parts) > 1 and any(stability(part, variable, signs, discrete=discrete).verdict == "no" for part in parts):
+        if len(parts) > 1 and any(
+            stability(part, variable, signs, discrete=discrete).verdict == "no" for part in parts
+        ):
             return Stability("no")
     return whole
 
