@@ -68,6 +68,10 @@ _OTHER_WORDS = [
     ("box_bounded", "box_unbounded"),
     ("full_rank_observability", "no_observability"),
     ("full_rank_controllability", "no_controllability"),
+    ("yes_detectability", "no_detectability"),
+    ("yes_stabilizability", "no_stabilizability"),
+    ("pbh_yes_observability", "pbh_no_observability"),
+    ("pbh_yes_controllability", "pbh_no_controllability"),
     ("stack_yes", "stack_no"),
     ("case_stack", "case_stack_yes"),
 ]

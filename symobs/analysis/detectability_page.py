@@ -68,7 +68,7 @@ def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
     rank = stack_of(page, result.kind).apply("rank")
     if result.test.answer["rank"] == plant.order:
         page.conclude(f"no_fixed_modes_{result.kind}", relation(rank, plant.order))
-        page.conclude(f"yes_{result.task}")
+        page.conclude(f"yes_{result.task}", relation(rank, plant.order))
         return
     fixed_modes(page, result)
     _hidden_modes(page, result, result.test.answer["kernel"].shape[1])
@@ -90,17 +90,19 @@ def _judge(page: Page, result: HiddenStability, about: Term) -> None:
     )
     if result.meaning == "lyapunov":
         page.remark("means_lyapunov")
+    fact = predicate("stable" if found.verdict == "yes" else "unstable", about)
     if found.verdict == "yes":
-        page.conclude(f"stable_{time}", predicate("stable", about))
+        page.conclude(f"stable_{time}", fact)
     elif result.meaning == "lyapunov" and found.verdict == "no":
         _beyond_or_marginal(page, result, about)
+        fact = predicate("marginal", page["mu"]) if result.hidden.verdict == "yes" else fact
     elif found.verdict == "conditional":
         _where(page, result, about)
         return
     else:
-        page.conclude(f"unstable_{time}", predicate("unstable", about))
+        page.conclude(f"unstable_{time}", fact)
     if result.hidden.verdict == "yes" or (result.hidden.verdict == "no" and not result.grows_where):
-        page.conclude(f"{result.hidden.verdict}_{result.task}")
+        page.conclude(f"{result.hidden.verdict}_{result.task}", fact)
     elif result.grows_where:
         page.conclude(f"grows_{result.task}")
 

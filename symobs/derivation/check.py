@@ -33,7 +33,7 @@ from symobs.derivation.steps import (
     Where,
 )
 from symobs.derivation.strata import on_stratum
-from symobs.derivation.words import fits
+from symobs.derivation.words import fits, rests
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of, roots_are
 from symobs.formula import (
@@ -132,7 +132,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Conclude(facts=facts) | Note(facts=facts):
             for fact in facts:
                 _fact(fact, environment, discrete)
-            _asserted(step.sentence, facts)
+            _asserted(step.sentence, facts, environment)
             environment = _sought(step.sentence, environment)
         case Diagram(name, labels):
             from symobs.derivation.flows import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
@@ -241,11 +241,13 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
                 reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")
 
 
-def _asserted(sentence: Sentence | None, facts: tuple[Fact, ...]) -> None:
+def _asserted(sentence: Sentence | None, facts: tuple[Fact, ...], environment: Environment) -> None:
     """Reject a sentence that asserts a property which is not among the facts of its step."""
     checked = {fact.name for fact in facts if isinstance(fact, Predicate)}
     if sentence is not None and not checked.issuperset(ASSERTS.get(sentence.key, ())):
         reject(f"{sentence.key}, which rests on {', '.join(ASSERTS[sentence.key])},")
+    if sentence is not None and not rests(sentence.key, facts, environment):
+        reject(f"{sentence.key}, which rests on another fact,")
 
 
 def _has_values(formula: Formula) -> bool:

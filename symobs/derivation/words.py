@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from symobs.certificate import as_scalar
 from symobs.exact import Scalar
 from symobs.exact.functions import PI, function
-from symobs.formula import Apply, Exact, evaluate
+from symobs.formula import Apply, Exact, Predicate, Relation, evaluate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
-    from symobs.formula import Environment, Relation
+    from symobs.formula import Environment, Fact
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -41,9 +41,30 @@ EXPONENTS: dict[str, Callable[[Mapping[str, Scalar]], Scalar]] = {
 
 
 #: Sentences that say of a rank that it is full, and those that say that it is not.
-_OF_FULL_RANK = {f"{key}_{of}" for key in ("full_rank", "generic_rank") for of in ("observability", "controllability")}
-FULL_RANK = _OF_FULL_RANK | {"stack_yes", "case_stack_yes"}
+_RANKS_OF = {f"{key}_{of}" for key in ("full_rank", "generic_rank") for of in ("observability", "controllability")}
+FULL_RANK = _RANKS_OF | {"stack_yes", "case_stack_yes"}
 LOW_RANK = {"no_observability", "no_controllability", "stack_no", "case_stack"}
+
+
+_KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
+#: Sentences that a fact of their step holds up: a full rank, a lower one, hidden modes that are stable or are not.
+OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS}
+OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
+OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
+
+
+def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
+    """Tell whether the facts of a step, which are true, are such as its sentence rests on."""
+
+    def is_rank(*, is_full: bool) -> bool:
+        return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
+
+    properties = {fact.name for fact in facts if isinstance(fact, Predicate)}
+    if key in OF_FULL_RANK | OF_LOW_RANK:
+        return is_rank(is_full=key in OF_FULL_RANK)
+    if key in OF_STABLE_MODES:
+        return bool(properties & {"stable", "marginal"}) or is_rank(is_full=True)
+    return key not in OF_UNSTABLE_MODES or "unstable" in properties
 
 
 def fits(key: str, relation: Relation, environment: Environment) -> bool:
@@ -63,4 +84,6 @@ def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) 
     ranks = [as_scalar(evaluate(member, environment, Exact(environment))).fraction() for member in others]
     if is_full:
         return relation.operators == ("=",) and ranks == [full]
+    if relation.operators == ("<",):
+        return ranks == [full]
     return ranks[0] < full and (relation.operators, ranks[1:]) in [(("=",), []), (("=", "<"), [full])]
