@@ -65,7 +65,7 @@ FILES_OF_PACKAGES = {"importlib.metadata", "importlib.resources"}
 
 ONLY_IN_EXACT = {"flint", "sympy.polys"}  # in annotations too: the kernel's types never leak
 LATE = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
-SYMPY_BORDER = ("symobs.exact.sympy_border", "sympy")  # imported only where SymPy objects come or go
+SYMPY_BORDER = ("symobs.exact.whole_sympy", "sympy")  # imported only where SymPy objects come or go
 NEVER_NAMED = {"lambdify", "literal_eval", "parse_expr", "sympify"}
 NEVER_CALLED = {"S", "__import__", "compile", "eval", "exec"}  # S: sympy.S("…") executes its text
 METHODS_SO_CALLED = {"compile"}  # re.compile is harmless

@@ -5,8 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import sympy  # noqa: TID253 - this module is imported only where SymPy objects come or go
-
 from symobs.errors import InexactInput, InputError
 from symobs.exact import functions
 from symobs.exact.complex import Complex
@@ -15,6 +13,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.real import RealRoot
 from symobs.exact.root_sum import RootSum
 from symobs.exact.scalar import Scalar
+from symobs.exact.whole_sympy import sympy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -116,11 +116,11 @@ def _summary(function: Callable[..., Any]) -> str:
 
 
 def _discover(package: str) -> None:
-    """Import every module of a package, once."""
+    """Import every module of a package, once: of what was interrupted the rest follows the next time."""
     if package not in _DISCOVERED:
-        _DISCOVERED.add(package)
         for found in _modules(package):
             importlib.import_module(f"{package}.{found.name}")
+        _DISCOVERED.add(package)
 
 
 def _modules(package: str) -> Iterator[pkgutil.ModuleInfo]:
