@@ -125,10 +125,12 @@ def _smallest(
             return edge
         least = least_stationary(pair, desired, forms)
         if least is None:
-            message = (
-                "with no multipliers is the Lagrangian convex, or its entries are roots of polynomials of degree above 24, "
-                f"and its stationary points are {'too many' if bezout(desired) else 'not all, since a pole is asked for twice'}"
+            others = (
+                "its stationary points are too many to be compared"
+                if bezout(desired)
+                else "where a pole is asked for twice the smallest gain need not be one of its stationary points"
             )
+            message = f"no multipliers make the Lagrangian convex, or their degrees are above 24, and {others}"
             raise NotFound(message)
         return least
     root, values = found
