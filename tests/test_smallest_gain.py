@@ -298,6 +298,8 @@ def test_multipliers_whose_matrix_has_a_negative_eigenvalue_are_rejected(monkeyp
         ("[0 1 0; 0 0 1; 1 2 3]", "[1 0 0; 0 1 0; 0 0 1]", ["-1", "-1", "-2"], "at most 2"),
         ("[0 1 0; 0 0 1; 1 2 a]", "[1 0 0; 0 1 0]", ["-1", "-1", "-2"], "second order"),
         ("[0 a; -a 0]", "[1 0; 0 1]", ["-p", "-q"], "for all of them"),
+        ("[1e200 1; 0 1]", "[1 0; 0 1]", ["-1", "-2"], "too many digits"),
+        ("[1e200 1 0; 0 1 0; 0 1 0]", "[1 0 0; 0 0 1]", ["-1", "-2", "-3"], "not known exactly"),
     ],
 )
 def test_what_is_refused_says_why(A: str, C: str, poles: list[str], reason: str) -> None:

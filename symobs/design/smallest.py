@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 #: The multiplier in which the others are written while it is looked for; no parameter's name begins so.
 _MU = "_mu"
+#: The bits of a polynomial whose roots are looked for: isolating them cannot be interrupted.
+_LONGEST = 800
 #: What is certain of a number that is not negative.
 NOT_NEGATIVE = frozenset(("positive", "nonnegative", "zero"))
 
@@ -271,6 +273,9 @@ def _roots(factors: Sequence[Scalar]) -> Iterator[tuple[Scalar, Scalar]]:
     from symobs.exact.real import roots_of_scalar  # noqa: PLC0415 - only this member of a family pays for it
 
     for factor in sorted(factors, key=lambda f: (f.degree(_MU), f.size)):
+        if factor.lengths()[0] > _LONGEST:
+            message = "its entries are roots of polynomials with too many digits"
+            raise NotFound(message)
         if factor.degree(_MU) == 1:
             lead, constant = factor.coefficients(_MU)
             yield factor, -constant / lead

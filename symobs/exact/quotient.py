@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 #: The most common zeros, counted with multiplicity, of equations that are looked at.
 MOST = 60
 _BITS = 512
+#: The most bits of an equation: the basis of longer ones grows beyond what can be waited for.
+_LONGEST = 48
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,9 @@ class Quotient:
 
 def quotient(equations: Sequence[Scalar], value: Scalar, names: Sequence[str]) -> Quotient:
     """Return the monomials and the matrix of a value; raises `TooLarge` where the common zeros are too many."""
+    if max(equation.lengths()[0] for equation in equations) > _LONGEST:
+        message = "the equations have too many digits"
+        raise TooLarge(message)
     ideal = Ideal.of(equations)
     exponents = _standard([next(iter(p.terms()))[0] for p in ideal.basis], len(ideal.field.names))
     monomials = [prod(map(_power, ideal.field.names, powers), start=Scalar.of(1)) for powers in exponents]
