@@ -320,7 +320,7 @@ WITNESSES = {
     "Ctr_dual",
 }
 WITNESSES |= {"Psi", "f_psi", *(f"xi_{k}{i}" for k in range(1, 5) for i in ("", *range(1, 9)))}
-VERDICTS = {"stable", "stable_if", "F_stable"}
+VERDICTS = {"stable", "stable_if", "F_stable", "compensator_stable"}
 #: What was asked for, the basis of a decomposition and what it makes of the plant: `test_modes` holds these to identities.
 #: Warnings are texts, which `test_pole_advice` holds to plants that call for them.
 FREE = {
@@ -392,15 +392,15 @@ def test_attributes_are_never_of_the_kernel() -> None:
 @pytest.mark.parametrize("name", BY_HAND)
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
-    for result in results(name):
-        verdict = next((n for n in ("stable", "F_stable") if n in result.fields), None)
-        if verdict is None:
-            continue
+    asked = ("stable", "F_stable", "compensator_stable")
+    for result, verdict in ((result, name) for result in results(name) for name in asked if name in result.fields):
         seen = set()
         for point in points(name, 10 if BY_HAND[name].large else 60):
             hand = BY_HAND[name].at(point)
             if verdict == "F_stable":
                 polynomial = common_denominator(hand.compensator)
+            elif verdict == "compensator_stable":
+                polynomial = characteristic(hand.compensator_matrix, hand.variable)
             else:
                 polynomial = answers(hand, result.task)["polynomial"]
             stable = is_stable(polynomial, hand.variable, discrete=hand.discrete)

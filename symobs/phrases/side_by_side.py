@@ -10,8 +10,8 @@ PHRASES: dict[str, str] = {
     "test_state_feedback": "The pair ($A$, $B$) has the controllability matrix",
     "any_observer": "So the eigenvalues of $Aᵀ - Cᵀ Lᵀ$ can be placed at will§.",
     "any_state_feedback": "So the eigenvalues of $A - B K$ can be placed at will§.",
-    "gain_observer": "and Ackermann's formula§ for the dual pair gives",
-    "gain_state_feedback": "and Ackermann's formula§ gives",
+    "gain_observer": "Ackermann's formula§ for the dual pair gives",
+    "gain_state_feedback": "Ackermann's formula§ gives",
     "transposed_back": "Transposition changes no determinant, so what holds on the left for $Aᵀ - Cᵀ Lᵀ$ holds for $A - L C$,",
     "gain_transposed": "and the observer gain is",
 }
