@@ -342,6 +342,13 @@ def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
     assert verify(both, Environment(assumed=(root + b,))) == FALSE
 
 
+def test_what_is_too_long_is_not_factored(monkeypatch: pytest.MonkeyPatch) -> None:
+    value = Scalar.symbol(EIGENVALUE) + b  # two terms
+    for most, found in ((2, EXACTLY), (1, FALSE)):
+        monkeypatch.setattr(certificate, "FACTORED_UP_TO", most)
+        assert verify(said(value, "!=", 0), Environment(assumed=(value,))) == found
+
+
 def test_a_scalar_is_one_number() -> None:
     assert as_scalar(a) == a
     assert as_scalar(Matrix.of([[a]])) == a
