@@ -494,6 +494,16 @@ def test_where_the_data_mean_something_is_the_same_on_a_stratum() -> None:
     checked(given, case(said(b + c, 0), equal(said(b, b)), c=-b), start=ON)  # no plant is there
 
 
+def test_a_stratum_has_a_point() -> None:
+    """Where nothing is everything is true."""
+    nowhere = Together((said(c, 1), said(c, 2)))
+    for steps in ((), (equal(said(1, 2)),)):
+        refused(case(nowhere, *steps), start=ON, match="can be")
+        refused(case(nowhere, *steps, c=1), start=ON, match="can be")
+    refused(case(Together((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
+    checked(case(Together((said(c, 1), said(b, "!=", 1)))), start=ON)
+
+
 def test_equations_of_cases_within_cases_hold_together() -> None:
     within = case(said(b, 2), equal(said(c, 1), said(b, 2), said(b * c, 2)))
     checked(case(said(c, 1), within), start=ON)

@@ -29,7 +29,8 @@ LOWER = (rank(LOW, "<", 2), rank(LOW, 1), rank(LOW, 1, 2, "=", "<"))
 BESIDE = (
     said(1, 1),
     said(1, "<", 2),
-    said(Apply("det", Literal(Matrix.of([[2]]))), 2),
+    said(Apply("det", Literal(Matrix.of([[1]]))), 1),
+    said(Apply("det", Literal(Matrix.of([[0]]))), "<", 1),
     rank(HIGH, "<", 3),
     rank(LOW, "<", 3),
     rank(HIGH, 2, 2),
@@ -55,6 +56,7 @@ SAID_OF_LOWER = ["no_observability", "no_controllability", "stack_no", "case_sta
 @pytest.mark.parametrize("key", SAID_OF_FULL)
 def test_a_full_rank_is_said_to_be_full(key: str) -> None:
     assert fits(key, FULL, HERE) is True
+    assert fits(key, rank(HIGH, Matrix.of([[2]])), HERE) is True
     for other in (*LOWER, *BESIDE):
         assert fits(key, other, HERE) is False
 
