@@ -113,6 +113,12 @@ def test_the_third_digit_is_one_higher() -> None:
             _one_higher(Fraction(value))
 
 
+@pytest.mark.parametrize("key", [*SAID_OF_FULL, *SAID_OF_LOWER, *EXPONENTS])
+def test_a_relation_is_said_and_no_letter(key: str) -> None:
+    for other in (Letter("omega_d"), "words", Literal(Scalar.of(2))):
+        assert fits(key, other, POLES) is False
+
+
 # -- facts ------------------------------------------------------------------------------------------------------------------
 
 
