@@ -15,7 +15,7 @@ import random
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import FACTORED_UP_TO, never_zero, sign_where
+from symobs.conditions import sign_where, vanishing_factors
 from symobs.error_bounds import Bound, Bounds
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, is_rounding
@@ -208,15 +208,8 @@ def as_scalar(value: Any) -> Scalar:
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
     """Tell whether signs and stated conditions keep a value from 0, factor by factor."""
-    if value.is_zero:
-        return False
-    if never_zero(value, environment.signs):
-        return True
-    if value.size > FACTORED_UP_TO:
-        return False
-    factors = (factor for factor, _ in value.numerator.factors()[1])
     known = {*environment.assumed, *environment.domain}
-    return all(factor in known or never_zero(factor, environment.signs) for factor in factors)
+    return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))
 
 
 def _holds_at_points(

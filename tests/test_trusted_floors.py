@@ -330,7 +330,7 @@ def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
     """With an eigenvalue in it, which may be complex, and with several entries of which one does not vanish."""
     root = Scalar.symbol(EIGENVALUE)
     single, several = said(root + b, "!=", 0), said(Matrix.column([b * c, c * (b - 1)]), "!=", Matrix.zeros(2, 1))
-    for relation, known, relations in ((single, root + b, (root**2 + 1,)), (several, c, (a * a - 2,))):
+    for relation, known, relations in ((single, root + b, (root**2 - 2,)), (several, c, (a * a - 2,))):
         for where in ("assumed", "domain"):
             conditions: dict[str, Any] = {where: (known,)}
             assert verify(relation, Environment(relations=relations, **conditions)) == EXACTLY
@@ -340,6 +340,19 @@ def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
     both = said((root + b) * (root + c), "!=", 0)
     assert verify(both, Environment(assumed=(root + b,), domain=(root + c,))) == EXACTLY
     assert verify(both, Environment(assumed=(root + b,))) == FALSE
+
+
+def test_what_keeps_a_single_value_from_zero() -> None:
+    def is_kept(value: Scalar, **known: Any) -> bool:
+        return certificate._excluded_from_zero(value, Environment(signs={"a": "positive"}, **known))
+
+    value = a * (b - 1) ** 2 * c
+    assert is_kept(value, assumed=(b - 1,), domain=(c,))
+    assert not is_kept(value, assumed=(b - 1,))
+    assert not is_kept(value, domain=(c,))
+    assert is_kept(a + 1)
+    assert not is_kept(b)
+    assert not is_kept(Scalar.of(0))
 
 
 def test_a_scalar_is_one_number() -> None:

@@ -494,6 +494,33 @@ def test_where_the_data_mean_something_is_the_same_on_a_stratum() -> None:
     checked(given, case(said(b + c, 0), equal(said(b, b)), c=-b), start=ON)  # no plant is there
 
 
+def test_a_sentence_speaks_of_its_own_relation() -> None:
+    low, high = literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), literal(Matrix.of([[1, 0], [0, 1]]))
+    full, lower = said(Apply("rank", high), 2), said(Apply("rank", low), "<", 2)
+    for key, right, wrong in (("stack_yes", full, lower), ("stack_no", lower, full)):
+        checked(Conclude(Sentence(key, (("rank", right),))))
+        for other in (wrong, said(1, 1), literal(2)):
+            refused(Conclude(Sentence(key, (("rank", other),))), match=f"which is not what {key} speaks of")
+
+
+def test_a_verdict_rests_on_a_fact_of_its_step() -> None:
+    verdict, stable = Sentence("yes_detectability"), Predicate("stable", chi)
+    checked(A_IS, CHI, Conclude(verdict, (stable,)))
+    checked(A_IS, CHI, Conclude(None, (stable,)))
+    for facts in ((), (said(1, 1),)):
+        refused(Conclude(verdict, facts), match="yes_detectability, which rests on")
+
+
+def test_a_stratum_has_a_point() -> None:
+    """Where nothing is everything is true."""
+    nowhere = Together((said(c, 1), said(c, 2)))
+    for steps in ((), (equal(said(1, 2)),)):
+        refused(case(nowhere, *steps), start=ON, match="can be")
+        refused(case(nowhere, *steps, c=1), start=ON, match="can be")
+    refused(case(Together((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
+    checked(case(Together((said(c, 1), said(b, "!=", 1)))), start=ON)
+
+
 def test_equations_of_cases_within_cases_hold_together() -> None:
     within = case(said(b, 2), equal(said(c, 1), said(b, 2), said(b * c, 2)))
     checked(case(said(c, 1), within), start=ON)

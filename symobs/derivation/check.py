@@ -231,8 +231,8 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     if sentence is None:
         return
     for _, slot in sentence.slots:
-        if isinstance(slot, Relation) and not fits(sentence.key, slot, environment):
-            reject(f"{plain_relation(slot, environment.variable)}, which is not what {sentence.key} speaks of,")
+        if not fits(sentence.key, slot, environment):
+            reject(f"{slot}, which is not what {sentence.key} speaks of,")
         if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):

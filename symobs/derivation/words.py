@@ -17,7 +17,7 @@ from symobs.formula import Apply, Exact, Predicate, Relation, evaluate
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symobs.formula import Environment, Fact
+    from symobs.formula import Environment, Fact, Formula
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -67,12 +67,16 @@ def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
     return key not in OF_UNSTABLE_MODES or "unstable" in properties
 
 
-def fits(key: str, relation: Relation, environment: Environment) -> bool:
+def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> bool:
     """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
+    if key not in EXPONENTS.keys() | FULL_RANK | LOW_RANK:
+        return True
+    if not isinstance(relation, Relation):
+        return False
     if key in EXPONENTS:
         told = evaluate(relation.members[0], environment, Exact(environment))
         return bool(told == function("exp", EXPONENTS[key](environment.values)))  # type: ignore[arg-type]
-    return key not in FULL_RANK | LOW_RANK or _is_of_rank(relation, environment, is_full=key in FULL_RANK)
+    return _is_of_rank(relation, environment, is_full=key in FULL_RANK)
 
 
 def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:

@@ -51,6 +51,7 @@ TESTS = {
     "tables.py": "routh",
     "translation.py": "trusted_translation",
     "rejection.py": "derivation trusted_steps",
+    "words.py": "trusted_words",
     "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
 }

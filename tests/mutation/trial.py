@@ -221,7 +221,7 @@ def _assignment(mutant: Mutant) -> ast.Assign | ast.AnnAssign | None:
     """Return the mutated statement where it gives a name at the top of a module its value."""
     for statement in mutant.tree.body:
         if statement.lineno <= mutant.line <= (statement.end_lineno or 0):
-            if _is_a_default(statement, mutant.tree):
+            if _is_a_default(statement, mutant.tree) or _is_read_on_import(statement, mutant.tree):
                 return None
             is_named = isinstance(statement, ast.Assign) and isinstance(statement.targets[0], (ast.Name, ast.Tuple))
             if is_named or isinstance(statement, ast.AnnAssign):
@@ -231,10 +231,21 @@ def _assignment(mutant: Mutant) -> ast.Assign | ast.AnnAssign | None:
 
 def _is_a_default(statement: ast.stmt, tree: ast.Module) -> bool:
     """Tell whether a name that a statement defines is the default of an argument, which the function keeps."""
-    names = {node.id for node in ast.walk(statement) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    names = _defined(statement)
     functions = [node.args for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
     defaults = [default for head in functions for default in (*head.defaults, *head.kw_defaults) if default]
     return any(isinstance(node, ast.Name) and node.id in names for default in defaults for node in ast.walk(default))
+
+
+def _is_read_on_import(statement: ast.stmt, tree: ast.Module) -> bool:
+    """Tell whether another name at the top of the module, or a class, gets its value from one that a statement defines."""
+    names = _defined(statement)
+    others = [node for node in tree.body if node is not statement and not isinstance(node, ast.FunctionDef)]
+    return any(isinstance(node, ast.Name) and node.id in names for other in others for node in ast.walk(other))
+
+
+def _defined(statement: ast.stmt) -> set[str]:
+    return {node.id for node in ast.walk(statement) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
 
 
 def _assign(statement: ast.Assign | ast.AnnAssign, path: Path) -> None:
