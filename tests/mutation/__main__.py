@@ -50,6 +50,7 @@ TESTS = {
     "responses.py": "trusted_pictures",
     "tables.py": "routh",
     "translation.py": "trusted_translation",
+    "words.py": "trusted_words",
     "rejection.py": "derivation trusted_steps",
     "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
