@@ -46,7 +46,15 @@ def test_a_pair_overshoots_by_its_own_ratio() -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "higher"),
-    [("26/25", "21/20"), ("1", "101/100"), ("10", "101/10"), ("999/1000", "1"), ("12345", "12445"), ("100", "101")],
+    [
+        ("26/25", "21/20"),
+        ("1", "101/100"),
+        ("10", "101/10"),
+        ("999/1000", "1"),
+        ("12345", "12445"),
+        ("100", "101"),
+        ("1000", "1010"),
+    ],
 )
 def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
     """One unit in the third digit of 1.04 is 0.01, of 10 it is 0.1, of 0.999 it is 0.001 and of 12345 it is 100."""
