@@ -24,7 +24,7 @@ from symobs.region.proof import Combined, Opposite
 from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
 from tests.mutations import Change, Line, answer_changes, changes, lines_of
-from tests.plain import multiply, observability_rows, rank_of, transposed, value_at
+from tests.plain import divides, hidden, multiply, observability_rows, rank_of, transposed, value_at
 from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
 from tests.truth import still_true
@@ -128,7 +128,20 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         return _is_followed(part, answer, A, B, world)
     if part.task == "reduced_order_observer" and answer["L"] is not None:
         return _is_reduced_order(replace(part, answer=answer), (A, B, C, D), s, world)
+    if part.task == "reduced_order_observer" and part.plant.equations:
+        return _is_no_reduced_order(part, answer, A, C, world)
     return part.task in HOLDS and _holds_by_definition(part, answer, world)
+
+
+def _is_no_reduced_order(part: Any, answer: Mapping[str, Any], A: Rows, C: Rows, world: World) -> bool:
+    """Tell whether T completes C, as any complement does, and modes that are not seen are not among the poles."""
+    T, phi = world.value(answer["T"]), world.coefficients(part.desired.polynomial)[::-1]
+    return (
+        T[: len(C)] == C
+        and determinant(T) != 0
+        and not any(answer[name] is not None for name in "LFGHM")
+        and not divides(hidden(A, C), phi)
+    )
 
 
 def _is_reduced_order(told: Any, plant: tuple[Rows, Rows, Rows, Rows], s: Fraction, world: World) -> bool:

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs import StateSpace, compensator, observability, observer
+from symobs import StateSpace, compensator, observability, observer, state_feedback
 from symobs.design.gain import GainDesign
 from symobs.design.output_feedback import OutputFeedback
 from symobs.errors import CertificateRejected, DerivationRejected
-from symobs.exact import Matrix
+from symobs.exact import Matrix, Scalar
 from symobs.page import Page
 from symobs.problem import read
 from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
@@ -171,6 +171,26 @@ def test_a_compensator_cannot_be_made_of_gains_for_another_plant(observer: str, 
         gain = {part.letter: part.answer[part.letter]}
         with pytest.raises(CertificateRejected, match="another plant"):
             replace(asked, answer={**asked.answer, **gain}, **{name: part})
+
+
+def test_a_kernel_is_no_basis_when_a_column_is_zero() -> None:
+    """Over Q(k, m) the determinant of a single row was taken for that of a minor."""
+    plant = StateSpace("[1 k/m; 0 0]", "[k/m; 0]", "[0 1]")
+    (case,) = (case for case in state_feedback(plant, poles=["-1+2i", "-1-2i"]).case_tree if case.result is not None)
+    impossible = case.result
+    assert isinstance(impossible, GainDesign)
+    assert impossible.answer["K"] is None
+    for column in range(2):
+        kernel = Matrix.of([[Scalar.of(int(i == j != column)) for j in range(2)] for i in range(2)])
+        pair = tampered(impossible._pair, "kernel", kernel * (Scalar.symbol("k") / Scalar.symbol("k")))
+        with pytest.raises(CertificateRejected):
+            tampered(impossible, "_pair", pair).__post_init__()
+
+
+def test_a_determinant_is_that_of_a_square() -> None:
+    for entry in (Scalar.of(1), Scalar.symbol("k")):
+        with pytest.raises(ValueError):  # noqa: PT011 - FLINT's own message where there is no parameter
+            Matrix.of([[entry, Scalar.of(0)]]).determinant()
 
 
 def test_impossibility_needs_a_subspace_of_the_plant_itself() -> None:

@@ -327,7 +327,7 @@ def test_relations_may_keep_values_from_zero() -> None:
 
 
 def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
-    """With an eigenvalue in it, which may be complex, and with several entries of which one does not vanish."""
+    """With an eigenvalue in it, which b may meet, and with several entries of which one does not vanish."""
     root = Scalar.symbol(EIGENVALUE)
     single, several = said(root + b, "!=", 0), said(Matrix.column([b * c, c * (b - 1)]), "!=", Matrix.zeros(2, 1))
     for relation, known, relations in ((single, root + b, (root**2 - 2,)), (several, c, (a * a - 2,))):

@@ -25,10 +25,10 @@ def _one_higher(value: Fraction) -> Fraction:
     if value <= 0:
         raise ValueError(value)
     unit = Fraction(1)
-    while value < 100 * unit:
-        unit /= 10
     while value >= 1000 * unit:
         unit *= 10
+    while value < 100 * unit:
+        unit /= 10
     return value + unit
 
 

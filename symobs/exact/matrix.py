@@ -305,8 +305,10 @@ class Matrix:
     # -- determinants and what follows from them ------------------------------------------------------------------
 
     def determinant(self) -> Scalar:
-        """Return the determinant of a square matrix."""
-        order = self.shape[0]
+        """Return the determinant of a square matrix.  Raises ValueError for another one."""
+        order, width = self.shape
+        if order != width:
+            raise ValueError(self.shape)
         if isinstance(self.table, fmpz_mat):
             top = self.field.context.constant(self.table.det())
         else:

@@ -50,8 +50,9 @@ TESTS = {
     "responses.py": "trusted_pictures",
     "tables.py": "routh",
     "translation.py": "trusted_translation",
+    "words.py": "trusted_words trusted_sentences",
     "rejection.py": "derivation trusted_steps",
-    "words.py": "trusted_words",
+    "words.py": "trusted_words trusted_sentences",
     "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
 }
