@@ -81,7 +81,8 @@ class Pointwise(Restricted):
 
         Raises TypeError where that cannot be shown.
         """
-        if function != "rank" or all(relation.names == {EIGENVALUE} for relation in self.relations):
+        at_number = self.relations and all(relation.names == {EIGENVALUE} for relation in self.relations)
+        if function != "rank" or at_number:
             return super().apply(function, value)
         columns, vectors = echelon(value, self.ideal)
         kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))

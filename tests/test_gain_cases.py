@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -13,6 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
+from symobs.derivation import Conclude, Section
+from symobs.errors import DerivationRejected
 from tests.campaign.points import answer_at, value
 from tests.strategies import unimodular
 from tests.test_meetings import NAMES, at_point, hidden_map
@@ -120,3 +123,35 @@ def test_a_mode_that_the_input_does_not_move_may_grow() -> None:
     found = symobs.gramian(symobs.StateSpace("[1 0; 0 -2]", "[0; 1]"), horizon="inf", of="controllability")
     assert str(found.fields["matrix"]) == "[0 0; 0 1/4]"
     assert "since what the input moves decays" in " ".join(found.to("text").split())
+
+
+def test_a_rank_that_drops_somewhere_is_told_in_general() -> None:
+    plant = symobs.StateSpace("[-1 0; 0 -2]", None, "[a 0]")
+    found = symobs.observability(plant)
+    page = " ".join(found.to("text").split())
+    assert "In general rank 𝒪 = 1 < 2, and nowhere more" in page
+    assert "Case a ≠ 0. It becomes observable when state 2 is measured as well." in page
+    everywhere = symobs.observability(symobs.StateSpace("[-1 0; 0 -2]", None, "[a^2+1 0]"))
+    assert "Here rank 𝒪 = 1 < 2" in everywhere.to("text")
+
+
+def test_a_page_that_tells_the_rank_in_general_as_that_of_all_parameters_is_rejected() -> None:
+    written = symobs.observability(symobs.StateSpace("[-1 0; 0 -2]", None, "[a 0]")).derivation
+    said: list[str] = []
+
+    def silent(step: Any) -> Any:
+        if isinstance(step, Section):
+            return replace(step, steps=tuple(map(silent, step.steps)))
+        if (
+            isinstance(step, Conclude)
+            and step.sentence is not None
+            and step.sentence.key == "generic_low_observability"
+        ):
+            said.append(step.sentence.key)
+            return replace(step, sentence=replace(step.sentence, key="no_observability"))
+        return step
+
+    changed = replace(written, steps=tuple(map(silent, written.steps)))
+    assert said
+    with pytest.raises(DerivationRejected, match="no_observability"):
+        changed.check()

@@ -10,6 +10,7 @@ from symobs.certificate import verify
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
+from symobs.derivation.words import fits
 from symobs.exact import Factored, Matrix, Scalar, factored, places, root_of_pole, roots_of, unit_rows
 from symobs.formula import Decimals, Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
 from symobs.formula.term import block
@@ -272,12 +273,14 @@ def undecided(page: Page, case: Case) -> Step:
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
-    page.conclude(f"no_{kind}", rank=relation(page[letter].apply("rank"), rank, "<", page.plant.order))
+    told = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    key = "no" if not result.case_tree and fits(f"no_{kind}", told, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=told)
     matrix = page[letter] if kind == "observability" else page[letter].T
     for vector in result.kernel_vectors:
         zero = Matrix.zeros(matrix.value.shape[0], 1)
         page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
-    page.steps += repair(page, letter, result, kind)
+    page.steps += _outside_cases(result, repair(page, letter, result, kind))
     letters = HIDDEN[kind]
     page.set(letters[0], result.answer["kernel"])
     page.set(letters[1], result.answer["restricted"])
@@ -290,6 +293,17 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
             roots_of(polynomial, page.plant.variable),
         ),
     )
+
+
+def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds in general, where there are others; none where these are everywhere."""
+    from symobs.analysis.meetings import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
+
+    systems = systems_of(result.case_tree)
+    if not systems or not steps:
+        return steps if systems == () else []
+    apart = tuple(relation(distance, "!=", 0) for distance in distances(systems))
+    return [CaseStep(Together(apart), (), tuple(steps))]
 
 
 #: The letters of what is not seen, and of what is not moved: a page may speak of both.

@@ -13,6 +13,7 @@ from symobs.certificate import as_scalar
 from symobs.exact import Scalar
 from symobs.exact.functions import PI, function
 from symobs.formula import Apply, Exact, Predicate, Relation, evaluate
+from symobs.pointwise import Pointwise
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -43,7 +44,9 @@ EXPONENTS: dict[str, Callable[[Mapping[str, Scalar]], Scalar]] = {
 #: Sentences that say of a rank that it is full, and those that say that it is not.
 _RANKS_OF = {f"{key}_{of}" for key in ("full_rank", "generic_rank") for of in ("observability", "controllability")}
 FULL_RANK = _RANKS_OF | {"stack_yes", "case_stack_yes"}
-LOW_RANK = {"no_observability", "no_controllability", "stack_no", "case_stack"}
+_LOW_EVERYWHERE = {"no_observability", "no_controllability"}
+_LOW_IN_GENERAL = {"generic_low_observability", "generic_low_controllability"}
+LOW_RANK = _LOW_EVERYWHERE | _LOW_IN_GENERAL | {"stack_no", "case_stack"}
 
 
 _KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
@@ -76,7 +79,21 @@ def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> 
     if key in EXPONENTS:
         told = evaluate(relation.members[0], environment, Exact(environment))
         return bool(told == function("exp", EXPONENTS[key](environment.values)))  # type: ignore[arg-type]
+    if key in _LOW_EVERYWHERE and not _is_everywhere(relation, environment):
+        return False
     return _is_of_rank(relation, environment, is_full=key in FULL_RANK)
+
+
+def _is_everywhere(relation: Relation, environment: Environment) -> bool:
+    """Tell whether the rank that a relation begins with is seen to be the same for all parameters."""
+    first = relation.members[0]
+    if not isinstance(first, Apply) or not evaluate(first.argument, environment, Exact(environment)).names:
+        return True
+    try:
+        evaluate(first, environment, Pointwise(environment))
+    except (ArithmeticError, TypeError):
+        return False
+    return True
 
 
 def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:

@@ -30,6 +30,8 @@ PHRASES: dict[str, str] = {
     "provided_controllability": "The pair ($A$, $B$) is controllable exactly where this is not zero§. From here on we assume {condition}.",
     "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
     "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
+    "generic_low_observability": "In general {rank}, and nowhere more, so the pair ($C$, $A$) is not observable.",
+    "generic_low_controllability": "In general {rank}, and nowhere more, so the pair ($A$, $B$) is not controllable.",
     "kernel_observability": "A state in this direction is never seen at the output:",
     "kernel_controllability": "The input never moves the state along this direction:",
     "modes_observability": "The unobservable modes are {modes}.",
@@ -51,4 +53,6 @@ RESTS_ON: dict[str, str] = {
     "generic_rank_controllability": "controllability_rank",
     "provided_controllability": "controllability_rank",
     "no_controllability": "controllability_rank",
+    "generic_low_observability": "observability_rank",
+    "generic_low_controllability": "controllability_rank",
 }

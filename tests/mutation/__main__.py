@@ -52,7 +52,6 @@ TESTS = {
     "translation.py": "trusted_translation",
     "words.py": "trusted_words trusted_sentences",
     "rejection.py": "derivation trusted_steps",
-    "words.py": "trusted_words trusted_sentences",
     "registry.py": "trusted_registry trusted_results",
     "result.py": "derivation trusted_results",
 }
