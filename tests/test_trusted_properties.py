@@ -95,7 +95,7 @@ def test_no_compensator_is_judged_in_discrete_time() -> None:
 def test_the_properties_are_these() -> None:
     assert set(PREDICATES) == {
         *("stable", "unstable", "strictly_proper", "polynomial", "not_polynomial"),
-        *("no_stable_compensator", "marginal", "beyond", "never_zero"),
+        *("no_stable_compensator", "marginal", "beyond", "never_zero", "no_negative_coefficient"),
     }
 
 
