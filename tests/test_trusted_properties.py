@@ -283,7 +283,7 @@ def test_no_coefficient_is_negative() -> None:
         return PREDICATES["no_negative_coefficient"](value, known.under(relations), False)  # noqa: FBT003 - positional there
 
     assert has_none(a * s**3 + c * s + 2) is True
-    for value in (s**2 - s, -s, s + b, a * s - c, s - 1 + a, 1 / (s + 1)):
+    for value in (s**2 - s, -s, s + b, a * s - c, s - 1 + a, 1 / (s + 1), 1 / (s**2 + 1)):
         assert has_none(value) is False
     assert has_none(s + b**2 - 2 + a) is False
     assert has_none(s + b**2 - 2 + a, b**2 - 2) is True
