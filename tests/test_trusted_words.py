@@ -69,6 +69,19 @@ def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
         assert fits(key, other, HERE) is False
 
 
+@pytest.mark.parametrize("key", ["no_observability", "no_controllability"])
+def test_a_rank_that_is_told_for_all_parameters_drops_nowhere(key: str) -> None:
+    h = Scalar.symbol("h")
+    everywhere, drops = Literal(Matrix.of([[1, h], [2, 2 * h]])), Literal(Matrix.of([[h, 1], [h * h, h]]))
+    falls = Literal(Matrix.of([[h, 0], [0, 0]]))
+    assert fits(key, rank(LOW, "<", 2), HERE) is True
+    assert fits(key, rank(everywhere, "<", 2), HERE) is True
+    assert fits(key, rank(drops, "<", 2), HERE) is True
+    assert fits(key, rank(falls, "<", 2), HERE) is False
+    assert fits(f"generic_low_{key[3:]}", rank(falls, "<", 2), HERE) is True
+    assert fits(f"generic_low_{key[3:]}", FULL, HERE) is False
+
+
 def test_other_sentences_may_speak_of_any_relation() -> None:
     assert fits("routh_epsilon", said(1, 1), HERE) is True
     assert PHRASES.keys() >= {*SAID_OF_FULL, *SAID_OF_LOWER}
