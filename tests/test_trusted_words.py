@@ -12,6 +12,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
 from symobs.phrases import PHRASES
+from symobs.pointwise import Pointwise
 from tests.steps import said
 
 #: Two rows of rank 1, and three rows of rank 2.
@@ -163,3 +164,12 @@ def test_a_verdict_rests_on_a_fact_of_its_step(key: str, grounds: tuple[Any, ...
 def test_other_sentences_rest_on_anything() -> None:
     for facts in ((), NOTHING, (UNSTABLE,)):
         assert rests("routh_epsilon", facts, HERE) is True
+
+
+def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(*_: Any) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(Pointwise, "apply", too_large)
+    h = Scalar.symbol("h")
+    assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
