@@ -12,6 +12,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
 from symobs.phrases import PHRASES
+from symobs.pointwise import Pointwise
 from tests.steps import said
 
 #: Two rows of rank 1, and three rows of rank 2.
@@ -67,6 +68,19 @@ def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
         assert fits(key, lower, HERE) is True
     for other in (FULL, *BESIDE):
         assert fits(key, other, HERE) is False
+
+
+@pytest.mark.parametrize("key", ["no_observability", "no_controllability"])
+def test_a_rank_that_is_told_for_all_parameters_drops_nowhere(key: str) -> None:
+    h = Scalar.symbol("h")
+    everywhere, drops = Literal(Matrix.of([[1, h], [2, 2 * h]])), Literal(Matrix.of([[h, 1], [h * h, h]]))
+    falls = Literal(Matrix.of([[h, 0], [0, 0]]))
+    assert fits(key, rank(LOW, "<", 2), HERE) is True
+    assert fits(key, rank(everywhere, "<", 2), HERE) is True
+    assert fits(key, rank(drops, "<", 2), HERE) is True
+    assert fits(key, rank(falls, "<", 2), HERE) is False
+    assert fits(f"generic_low_{key[3:]}", rank(falls, "<", 2), HERE) is True
+    assert fits(f"generic_low_{key[3:]}", FULL, HERE) is False
 
 
 def test_other_sentences_may_speak_of_any_relation() -> None:
@@ -150,3 +164,12 @@ def test_a_verdict_rests_on_a_fact_of_its_step(key: str, grounds: tuple[Any, ...
 def test_other_sentences_rest_on_anything() -> None:
     for facts in ((), NOTHING, (UNSTABLE,)):
         assert rests("routh_epsilon", facts, HERE) is True
+
+
+def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(*_: Any) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(Pointwise, "apply", too_large)
+    h = Scalar.symbol("h")
+    assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
