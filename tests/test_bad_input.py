@@ -251,14 +251,18 @@ def test_mistakes_of_several_tasks_come_together(tmp_path: Path) -> None:
 
 
 def test_both_loops_of_a_compensator_are_checked(tmp_path: Path) -> None:
-    poles = 'control_poles = [-1]\nobserver_polynomial = "s^3"\nobserver = "none"\nmethod = "magic"'
+    poles = 'control_poles = [-1]\nobserver_polynomial = "s^3"\nobserver = "full"\nmethod = "magic"'
     assert_refused(
         solved(tmp_path, problem(poles, 'task = "compensator"')),
-        ("specification.observer", "'none'"),
         ("specification.method", "'magic'"),
         ("specification.control_poles", "1 pole given"),
         ("specification.observer_polynomial", "degree 3 given"),
     )
+
+
+def test_poles_of_an_unknown_kind_of_observer_are_not_counted(tmp_path: Path) -> None:
+    poles = 'control_poles = [-1, -2]\nobserver_polynomial = "s^3"\nobserver = "none"'
+    assert_refused(solved(tmp_path, problem(poles, 'task = "compensator"')), ("specification.observer", "'none'"))
 
 
 def test_shapes_are_checked_beside_a_matrix_that_cannot_be_read(tmp_path: Path) -> None:
