@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.exact.functions import all_roots
 from symobs.formula import Restricted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula import Environment
 
@@ -31,12 +32,23 @@ def never_together_zero(
     an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
     relations are reduced by what follows from the values alone, which keeps long ones short.
     """
-    values, relations = list(values), tuple(relations)
+    values = list(values)
+    relations = _without_other_roots(tuple(relations), values)
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     if known is None:
         return True
     together = [*(known.remainder(relation) for relation in relations), *known.generators]
     return _implied(together, signs, nonzero) is None
+
+
+def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """Leave out what is said of square roots that the values know nothing of.
+
+    Roots of q and of −q may stand on one page, each in a case of its own: taken as real together they leave no point, and
+    of no point everything is true.
+    """
+    others = {root.name for root in all_roots(*relations)} - {root.name for root in all_roots(*values)}
+    return tuple(relation for relation in relations if others.isdisjoint(relation.names))
 
 
 def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Ideal | None:

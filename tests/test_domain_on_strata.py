@@ -10,6 +10,7 @@ from symobs.derivation import Derivation
 from symobs.derivation.steps import Case, Conclude, Define, Given
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
+from symobs.exact.functions import square_root
 from symobs.formula import Apply, Environment, Letter, Literal, Relation
 from symobs.pointwise import never_together_zero
 
@@ -73,3 +74,14 @@ def test_the_page_of_a_long_stratum_holds() -> None:
     A = "[2, omega^2, 0; 0.1, a, omega^2; 1/2, 1/a, 1/2]"
     plant = StateSpace(A, "[1; -3; -3]", "[0.1, -1, 0]", symbols={"a": "positive", "omega": "real"})
     controllability(plant).derivation.check()
+
+
+def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
+    # sqrt(q) and sqrt(-q) both real leave no point, and every inequality was true: 1 != 1 among them.
+    q = k - m
+    relations = tuple(square_root(value) ** 2 - value for value in (q, -q))
+    roots = tuple(relation.numerator for relation in relations)
+    zero = k - k
+    assert not never_together_zero([zero], roots, {}, (q,))
+    assert not never_together_zero([k - 3], roots, {}, (q,))
+    assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, (q,)), "its own root is known"
