@@ -78,10 +78,9 @@ def test_the_page_of_a_long_stratum_holds() -> None:
 
 def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
     # sqrt(q) and sqrt(-q) both real leave no point, and every inequality was true: 1 != 1 among them.
-    q = k - m
-    relations = tuple(square_root(value) ** 2 - value for value in (q, -q))
-    roots = tuple(relation.numerator for relation in relations)
-    zero = k - k
-    assert not never_together_zero([zero], roots, {}, (q,))
-    assert not never_together_zero([k - 3], roots, {}, (q,))
-    assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, (q,)), "its own root is known"
+    q = m**2 - k**2 / 4
+    roots = tuple((square_root(value) ** 2 - value).numerator for value in (q, -q))
+    known = (square_root(q),)
+    assert not never_together_zero([Scalar.of(0)], roots, {}, known)
+    assert not never_together_zero([k - 3], roots, {}, known)
+    assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, known), "its own root is known"
