@@ -61,8 +61,12 @@ def from_json(text: str, parameters: Sequence[str]) -> Answer:
         result.get("empty"),
         result.get("bounded"),
         result.get("verdict", ""),
-        tuple(_point(sample) for sample in result.get("sample_points") or ()),
+        tuple(_point(sample) for sample in result.get("sample_points") or () if not _has_symbols(sample)),
     )
+
+
+def _has_symbols(sample: Mapping[str, Any]) -> bool:
+    return any(re.search("[A-Za-z]", str(value)) for value in sample.get("point", sample).values())
 
 
 def _point(sample: Mapping[str, Any]) -> dict[str, Fraction]:

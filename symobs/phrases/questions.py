@@ -136,6 +136,8 @@ PHRASES: dict[str, str] = {
     "also method=coefficient_matching": "Match the coefficients of the characteristic polynomial.",
     "also method=row_reduced_echelon": "Use row reduction, pole by pole.",
     "also method=companion_form": "Use the companion form.",
+    "also method=duality": "Set observer and state feedback side by side.",
+    "also method=undetermined": "Leave $F$, $G$ and $H$ open until the error asks for them.",
     "also method=butterworth": "Use a Butterworth configuration.",
     "also method=dominant_pair": "Use a dominant pair.",
 }
