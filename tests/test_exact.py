@@ -400,3 +400,18 @@ def test_long_polynomials_reach_sympy_term_by_term() -> None:
     own = [sympy.Symbol("a"), sympy.Symbol("b", positive=True), sympy.Symbol("c"), sympy.Symbol("pi_1")]
     expected = sympy.expand((own[0] * 2 - own[1] + own[2] / 3 + own[3] + 1) ** 5)
     assert sympy.expand(scalar_to_sympy(value, {"b": own[1]}) - expected) == 0
+
+
+@given(st.integers(0, 3), st.integers(0, 2))
+def test_a_long_numerator_is_reduced_by_what_it_shares(shared: int, own: int) -> None:
+    # The leading coefficient shares q with the denominator, the whole does not: held against FLINT's common divisor.
+    p, q, r = a + 2 * b * c + 3, a * b - c + 1, 2 * a - 5 * b
+    above = p**shared * (1 + a + b * s + q * s**2) ** 9 * (s + a) ** own
+    below = p ** (shared // 2) * q * r**own
+    assert len(above.numerator_part) > 150
+    field = above.field | below.field
+    numerator, denominator = (value.within(field).numerator_part for value in (above, below))
+    found, common = Scalar.reduced(field, numerator, denominator), numerator.gcd(denominator)
+    assert len(found.numerator_part) == len(numerator / common)
+    assert found.numerator_part * denominator == numerator * found.denominator_part
+    assert found.numerator_part.gcd(found.denominator_part).is_one()

@@ -16,7 +16,7 @@ import sympy
 from sympy import Matrix, Rational
 
 import symobs
-from symobs.design import slices, smallest
+from symobs.design import smallest
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact.enclosure import near
 
@@ -273,7 +273,7 @@ def test_other_multipliers_are_rejected(place: int, monkeypatch: pytest.MonkeyPa
         changed = [m + (1 if k == place else 0) for k, m in enumerate(found.multipliers)]
         return replace(found, multipliers=tuple(changed))
 
-    monkeypatch.setattr(slices, "smallest", lying)
+    monkeypatch.setattr("symobs.design.smallest.smallest", lying)
     with pytest.raises(CertificateRejected, match="every M"):
         symobs.observer(INTEGRATORS, poles=[-1, -2], member="smallest")
 
@@ -284,7 +284,7 @@ def test_multipliers_whose_matrix_has_a_negative_eigenvalue_are_rejected(monkeyp
     matrix = type(symobs.observer(plant, poles=[-1, -3], member="smallest").answer["L"])
     scalar = matrix.of([[Rational(1, 1).p]])[0, 0]
     far = smallest.Smallest(matrix.of([[2, 1], [1, 2]]), (scalar * 0, scalar * 4))
-    monkeypatch.setattr(slices, "smallest", lambda *_: far)
+    monkeypatch.setattr("symobs.design.smallest.smallest", lambda *_: far)
     with pytest.raises(CertificateRejected):
         symobs.observer(plant, poles=[-1, -3], member="smallest")
 

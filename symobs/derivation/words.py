@@ -7,7 +7,7 @@ that of a matrix of full rank, and not because of 1 = 1.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
 from symobs.exact import Scalar
@@ -34,7 +34,7 @@ def _one_higher(value: Fraction) -> Fraction:
 
 
 #: What e is raised to in the relations of sentences, from the values of the letters.
-EXPONENTS: dict[str, Callable[[Mapping[str, Scalar]], Scalar]] = {
+EXPONENTS: dict[str, Callable[[Mapping[str, Any]], Scalar]] = {
     "decayed": lambda of: -of["sigma_d"] * of["T_s"],
     "overshoot_held": lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"],
     "overshoot_close": lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction()),
@@ -78,7 +78,7 @@ def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> 
         return False
     if key in EXPONENTS:
         told = evaluate(relation.members[0], environment, Exact(environment))
-        return bool(told == function("exp", EXPONENTS[key](environment.values)))  # type: ignore[arg-type]
+        return bool(told == function("exp", EXPONENTS[key](environment.values)))
     if key in _LOW_EVERYWHERE and not _is_everywhere(relation, environment):
         return False
     return _is_of_rank(relation, environment, is_full=key in FULL_RANK)

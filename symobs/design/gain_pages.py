@@ -22,7 +22,6 @@ from symobs.design.gain_family_page import write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
-from symobs.design.smallest_page import write_smallest
 from symobs.design.zero_page import another_gain, write_no_gain
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, rank, root_of_pole, roots_of
 from symobs.exact.functions import all_roots
@@ -92,6 +91,8 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         elif style == "row_reduced_echelon" and readable(design):
             write_row_reduction(page, design, side)
         elif _has_multipliers(design):
+            from symobs.design.smallest_page import write_smallest  # noqa: PLC0415 - few gains are asked to be it
+
             write_smallest(page, design, side)
         elif all_roots(design.answer[side.gain]):
             page.with_roots(design.answer[side.gain])

@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING
 from symobs.analysis.rank_result import power_rows
 from symobs.certificate import Claim, Statement
 from symobs.design.chains import Chains, cost, shares
-from symobs.design.smallest import NotFound, smallest, smallest_claims
-from symobs.design.stationary import LeastStationary, stationary_claims
 from symobs.errors import InputError
 from symobs.exact import Matrix, kernel, rank
 from symobs.exact.functions import NotWritten
@@ -71,6 +69,8 @@ def _own_rows(pair: Pair, gain: Matrix) -> Iterator[Matrix]:
 def _smallest(pair: Pair, desired: DesiredPolynomial, signs: Mapping[str, str]) -> Matrix | str:
     """Return (L v) vᵀ/(vᵀv) where C = v c, otherwise what multipliers prove, or why there is nothing."""
     if rank(pair.c) > 1:
+        from symobs.design.smallest import NotFound, smallest  # noqa: PLC0415 - few gains are asked to be the smallest
+
         try:
             return smallest(pair, desired, signs).gain
         except NotFound as reason:
@@ -95,6 +95,9 @@ def member_claims(
             relation(sum(others, start=first), pair.A.shape[0]), e, "the orders of the output errors add up to n"
         )
     elif rank(pair.c) > 1:
+        from symobs.design.smallest import smallest, smallest_claims  # noqa: PLC0415 - few gains are asked to be it
+        from symobs.design.stationary import LeastStationary, stationary_claims  # noqa: PLC0415 - the same
+
         found = smallest(pair, desired, signs)
         if isinstance(found, LeastStationary):
             yield from stationary_claims(pair, desired, gain, found)

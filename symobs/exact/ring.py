@@ -76,7 +76,7 @@ def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
     """
     if denominator.is_one():
         return True
-    foreign = [index for index, degree in enumerate(denominator.degrees()) if degree <= 0]
+    foreign = _foreign(denominator)
     leading = sorted((leading_coefficient(entry, foreign) for entry in entries if entry), key=len)
     shared = None
     for polynomial in [*leading, denominator]:
@@ -87,10 +87,19 @@ def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
 
 
 def common_factor(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
-    """Return the greatest common divisor; where the numerator is long, whether it is 1 is mostly seen in a part of it."""
-    if len(numerator) > _LONG and coprime(denominator, [numerator]):
-        return numerator.context().constant(1)
+    """Return the greatest common divisor; of a long numerator its leading coefficient mostly leaves little to look for.
+
+    What divides both divides the coefficients of the numerator in the generators that the denominator lacks.
+    """
+    foreign = _foreign(denominator) if len(numerator) > _LONG else []
+    if foreign:
+        denominator = leading_coefficient(numerator, foreign).gcd(denominator)
     return numerator.gcd(denominator)
+
+
+def _foreign(polynomial: fmpz_mpoly) -> list[int]:
+    """Return the generators that a polynomial lacks."""
+    return [index for index, degree in enumerate(polynomial.degrees()) if degree <= 0]
 
 
 def determinant(rows: Rows, field: Field) -> fmpz_mpoly:

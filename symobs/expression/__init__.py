@@ -96,7 +96,8 @@ def parse_poles(
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
     scope = sharing(scope, listed, variable)
-    plain = plain_rows(",".join(listed), scope) if all(isinstance(pole, str) for pole in listed) else None  # type: ignore[arg-type]  # texts
+    texts = [pole for pole in listed if isinstance(pole, str)]
+    plain = plain_rows(",".join(texts), scope) if len(texts) == len(listed) else None
     if plain is not None and len(plain[0][0]) == len(listed):
         return tuple(map(Complex.of, plain[0][0]))
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))

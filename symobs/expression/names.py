@@ -26,13 +26,13 @@ RESERVED = ("I", "oo", "inf", "nan", "pi")
 IMAGINARY = ("i", "j", "I")
 LONGEST_NAME = 64
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _MOST_COMPARED = 1_000
 
 
 def declared_name(name: object, where: str = "") -> str:
     """Return `name` if a symbol may be called so; raises ExpressionError where it may not."""
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
+    if not isinstance(name, str) or not NAME.fullmatch(name):
         came = f'"{shown(name)}"' if isinstance(name, str) else f"a {type(name).__name__}"
         repair = "begin with a letter A-Z or a-z and go on with letters, digits and _"
         raise ExpressionError(f"{came} is not a name", where=where, repair=repair)

@@ -10,7 +10,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from symobs.exact import Field, Scalar
-from symobs.expression.names import FUNCTIONS, refusal
+from symobs.expression.names import FUNCTIONS, NAME, refusal
 
 if TYPE_CHECKING:
     from symobs.expression.names import Scope
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 _ATOM = r"(?:[A-Za-z][A-Za-z0-9_]*|[0-9]{1,18}(?:\.[0-9]{1,18})?)"
 _CELL = re.compile(rf"[+-]?{_ATOM}(?:[*/]{_ATOM}){{0,8}}")
 _ATOMS = re.compile(rf"([*/+-]?)({_ATOM})")
-_NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _MOST_NAMES = 100
 
 
@@ -34,7 +33,7 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
         return None
     if not all(map(_CELL.fullmatch, chain.from_iterable(lines))):
         return None
-    names = set(_NAMES.findall(inside))
+    names = set(NAME.findall(inside))
     if len(names) > _MOST_NAMES or not all(_is_symbol(name, scope) for name in names):
         return None
     field = Field.of(names) if scope.context is None else scope.context

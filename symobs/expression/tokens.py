@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Self
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.functions import PI
-from symobs.expression.names import FUNCTIONS, LONGEST_NAME, Scope, refusal
+from symobs.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
 from symobs.expression.source import Source, shown
 
 if TYPE_CHECKING:
@@ -34,7 +34,6 @@ _TOKEN = re.compile(
     r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
     r"|(?P<SPACE>[ \t\r\n]+)"
 )
-_NAMES = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
@@ -49,7 +48,7 @@ def sharing(scope: Scope, values: Iterable[object], variable: str | None = None)
 
 def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
     """Return one context for every name in the texts, so that their values need not be carried from one to another."""
-    names = {name for text in texts for name in _NAMES.findall(text)} - set(FUNCTIONS)
+    names = {name for text in texts for name in NAME.findall(text)} - set(FUNCTIONS)
     fit = {name for name in names if len(name) <= LONGEST_NAME}
     return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
 
