@@ -138,10 +138,10 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
     if environment.relations:
         return True
-    formulas = [*relation.members, *(formula for formula in environment.signals.values() if formula is not None)]
-    if any(contains(formula, (At, Integral)) for formula in formulas):
+    meanings = [formula for formula in environment.signals.values() if formula is not None]
+    if relation.is_of_instants or any(contains(formula, (At, Integral)) for formula in meanings):
         return True
-    by = {name for formula in formulas for name in derived_by(formula)}
+    by = relation.derived_by.union(*map(derived_by, meanings))
     if by - {TIME}:
         return True
     if not by:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from math import log2
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.modular import POINT_BITS
-from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.formula import Environment, Modular
 
 
-@dataclass(frozen=True)
-class Bound:
+class Bound(NamedTuple):
     """A rational function's size: degrees and base-2 logarithms of the lengths of its two parts; shape of a matrix."""
 
     above: float

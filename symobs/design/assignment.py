@@ -92,7 +92,8 @@ class Pair:
                 coefficients = desired.polynomial.coefficients(self.variable)
                 return self.krylov.placing([coefficient.fraction() for coefficient in coefficients])
             vector = self.krylov.solve_last()
-            return modulo(apply_polynomial(desired.factors, desired.variable, self.A, vector).normal(), self.ideal)
+            found = apply_polynomial(desired.factors, desired.variable, self.A, vector)
+            return modulo(Matrix.of(found.rows), self.ideal)
         quotient, rest = self.divided(desired.polynomial)
         return self._gain_of_observable_part(quotient) if rest.is_zero else None
 

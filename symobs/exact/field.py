@@ -64,26 +64,25 @@ class Field:
 
     def lift(self, polynomial: fmpz_mpoly, source: Field) -> fmpz_mpoly:
         """Carry a polynomial of `source` over; raises ValueError where it uses a generator that is missing here."""
-        if source is self:
-            return polynomial
-        if not polynomial:
-            return self.zero
-        if polynomial.is_constant():
-            return self.context.constant(polynomial.leading_coefficient())
+        return polynomial if source is self else self.route_from(source).carry(polynomial)
+
+    def route_from(self, source: Field) -> Route:
+        """Return the way of polynomials from `source` to here."""
         route = self.routes.get(source.names)
         if route is None:
             route = self.routes[source.names] = Route(self, source)
-        return route.carry(polynomial)
+        return route
 
 
 class Route:
     """The way of polynomials from one context into another."""
 
-    __slots__ = ("images", "mapping", "missing", "target")
+    __slots__ = ("generators", "images", "mapping", "missing", "target")
 
     def __init__(self, target: Field, source: Field) -> None:
         """Find where each generator goes."""
         self.target = target.context
+        self.generators = source.context.gens()
         found = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
         self.mapping = cast("dict[str | int, str | int]", found)  # the key type of the binding's signature
         self.missing = [i for i in range(len(source.names)) if i not in found]
@@ -92,6 +91,12 @@ class Route:
 
     def carry(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the polynomial in the target's context; composition is the faster way for short ones."""
+        if len(polynomial) <= 1:
+            place = self.generators.index(polynomial) if polynomial in self.generators else None
+            if place is not None and place not in self.missing:
+                return self.images[place]
+            if polynomial.is_constant():
+                return self.target.constant(polynomial.leading_coefficient() if polynomial else 0)
         if self.missing:
             degrees = polynomial.degrees()
             if any(degrees[i] > 0 for i in self.missing):

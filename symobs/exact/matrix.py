@@ -61,6 +61,7 @@ class Matrix:
         return Matrix.of([[int(i == j) for j in range(order)] for i in range(order)])
 
     @staticmethod
+    @lru_cache(maxsize=64)
     def zeros(rows: int, columns: int) -> Matrix:
         """Return the zero matrix."""
         return Matrix.of([[0] * columns for _ in range(rows)], columns)
@@ -97,6 +98,8 @@ class Matrix:
         if field is self.field:
             return self
         if field not in self._elsewhere:
+            if len(self._elsewhere) == 16:  # the identity meets every field there is
+                self._elsewhere.clear()
             self._elsewhere[field] = self._carried(field)
         return self._elsewhere[field]
 
@@ -106,7 +109,7 @@ class Matrix:
         elif not field.names:
             return Matrix.of([[Scalar.of(entry.fraction()) for entry in row] for row in self.rows], self.shape[1])
         else:
-            table = tuple(tuple(field.lift(entry, self.field) for entry in row) for row in self.table)
+            table = tuple(tuple(map(field.route_from(self.field).carry, row)) for row in self.table)
         return Matrix(field, table, field.lift(self.denominator, self.field), self.shape)
 
     @property
@@ -318,7 +321,8 @@ class Matrix:
     def adjugate(self) -> Matrix:
         """Return adj(M), with M adj(M) = det(M) I."""
         order = self.shape[0]
-        return _columns([self.adjugate_column(j) for j in range(order)], order)
+        columns = [self.adjugate_column(j).entries for j in range(order)]
+        return Matrix.of(list(zip(*columns, strict=True)), order)
 
     def adjugate_column(self, index: int) -> Matrix:
         """Return one column of adj(M): the cofactors of row `index`."""
@@ -393,7 +397,3 @@ def _lowest(matrix: Matrix) -> Matrix:
         return matrix
     table = fmpz_mat(*matrix.shape, [entry // shared for entry in matrix.table.entries()])
     return Matrix(matrix.field, table, matrix.field.context.constant(below // shared), matrix.shape)
-
-
-def _columns(columns: Sequence[Matrix], height: int) -> Matrix:
-    return Matrix.of([[column.rows[i][0] for column in columns] for i in range(height)], len(columns))

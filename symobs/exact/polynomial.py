@@ -23,8 +23,9 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
 
 def product_of(factors: Iterable[Scalar]) -> Scalar:
     """Return the product."""
-    value = Scalar.of(1)
-    for factor in factors:
+    several = tuple(factors)
+    value = several[0] if several else Scalar.of(1)
+    for factor in several[1:]:
         value = value * factor
     return value
 

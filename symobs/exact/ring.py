@@ -246,24 +246,6 @@ def align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, 
     return common, common / left, common / right
 
 
-def by_powers(
-    polynomial: fmpz_mpoly, index: int, places: Sequence[int], width: int
-) -> list[dict[tuple[int, ...], fmpz]]:
-    """Return the terms of the coefficients of each power of one generator, highest first.
-
-    Generator i stands at `places[i]` among the `width` ones of the context the coefficients are for.
-    """
-    degree = int(polynomial.degrees()[index])
-    collected: list[dict[tuple[int, ...], fmpz]] = [{} for _ in range(degree + 1)]
-    for powers, coefficient in polynomial.terms():
-        monomial = [0] * width
-        for i, power in enumerate(powers):
-            if power and i != index:
-                monomial[places[i]] = power
-        collected[degree - int(powers[index])][tuple(monomial)] = coefficient
-    return collected
-
-
 def number_of(constant: fmpz_mpoly) -> fmpz:
     """Return the integer that a constant polynomial is."""
     return constant.leading_coefficient() if constant else fmpz(0)

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.exact.field import RATIONALS, Field
-from symobs.exact.ring import by_powers, common_factor, degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.powers import by_powers
+from symobs.exact.ring import common_factor, degree_bound, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -87,7 +88,7 @@ class Scalar:
 
     def over(self, denominator: fmpz_mpoly) -> fmpz_mpoly:
         """Return the numerator over a multiple of the denominator."""
-        if denominator.is_one():
+        if denominator == self.denominator_part:
             return self.numerator_part
         return self.numerator_part * (denominator / self.denominator_part)
 
@@ -278,13 +279,11 @@ class Scalar:
         """
         target = self.field if field is None else field
         index = self.field.position.get(variable)
-        degree = self.degree(variable)
-        if index is None or degree <= 0:
+        if index is None or self.degree(variable) <= 0:
             return (self.within(target),)
-        places = [target.position.get(name, -1) for name in self.field.names]
-        collected = by_powers(self.numerator_part, index, places, len(target.names))
-        build, below = target.context.from_dict, target.lift(self.denominator_part, self.field)
-        return tuple(Scalar.reduced(target, build(terms), below) for terms in collected)
+        parts = by_powers(self.numerator_part, index, self.field, target)
+        below = target.lift(self.denominator_part, self.field)
+        return tuple(Scalar.reduced(target, part, below) for part in parts)
 
     # -- factors and substitution ---------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ environment (`evaluate`), and is printed only by a format.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact.functions import all_roots
@@ -162,6 +163,21 @@ class Relation:
 
     members: tuple[Formula, ...]
     operators: tuple[str, ...]
+
+    @cached_property
+    def texts(self) -> dict[str, str]:
+        """Its text by the variable it was written with: the claims of a type are one relation."""
+        return {}
+
+    @cached_property
+    def derived_by(self) -> frozenset[str]:
+        """The names by which it takes derivatives."""
+        return frozenset().union(*map(derived_by, self.members))
+
+    @cached_property
+    def is_of_instants(self) -> bool:
+        """Whether it speaks of a value at an instant, or of an integral."""
+        return any(contains(member, (At, Integral)) for member in self.members)
 
 
 @dataclass(frozen=True)

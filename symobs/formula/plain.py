@@ -33,10 +33,12 @@ _LONG = 400
 
 def plain_relation(relation: Relation, variable: str) -> str:
     """Return a relation as text."""
-    text = plain(relation.members[0], variable)
-    for operator, member in zip(relation.operators, relation.members[1:], strict=True):
-        text += f" {operator} {plain(member, variable)}"
-    return text
+    if variable not in relation.texts:
+        text = plain(relation.members[0], variable)
+        for operator, member in zip(relation.operators, relation.members[1:], strict=True):
+            text += f" {operator} {plain(member, variable)}"
+        relation.texts[variable] = text
+    return relation.texts[variable]
 
 
 def plain(formula: Formula, variable: str) -> str:

@@ -102,7 +102,7 @@ def beside_systems(
     work: str, stem: str, make: Callable[[], Model], asked: str, settings: Settings, textbook: str = "inverse"
 ) -> Iterator[Row]:
     """Yield symobs beside the formulations of giac and Maxima: as the textbook has it, the fastest one, the others."""
-    subjects: dict[str, Callable[[], float | None]] = {"symobs": several(5, ours(make))}
+    subjects: dict[str, Callable[[], float | None]] = {"symobs": several(25, ours(make))}
     for system, run in (("giac", other_systems.giac), ("maxima", other_systems.maxima)):
         if not other_systems.available(system):
             continue
