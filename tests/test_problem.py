@@ -175,7 +175,7 @@ def test_another_task_can_be_run_on_the_same_file() -> None:
     assert [result.task for result in found.solve()] == ["observability"]
     assert [task.name for task in validate({"plant": tables["plant"]}, "observability").tasks] == ["observability"]
     with pytest.raises(ProblemErrors, match="poles are missing"):
-        validate(tables, "observer").solve()
+        validate({"plant": tables["plant"]}, "observer").solve()
 
 
 def test_symbols_are_declared_with_sign_and_letter() -> None:

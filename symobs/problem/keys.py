@@ -11,7 +11,9 @@ from symobs.specification import KINDS
 from symobs.viewed import names_in
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
+
+    from symobs.method import Task
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -45,6 +47,24 @@ PRINTED: dict[str, dict[str, Any]] = {
     "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
 }
 PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
+#: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
+_HALVES = {"state_feedback": "control", "observer": "observer", "reduced_order_observer": "observer"}
+
+
+def kinds_of(task: Task) -> dict[str, str]:
+    """Return the kinds of the keys of a specification that a task reads."""
+    half = _HALVES.get(task.name)
+    shared = {f"{half}_{name}": task.keywords[name] for name in ("poles", "polynomial")} if half else {}
+    return {**task.keywords, **shared}
+
+
+def keys_of(task: Task, specification: Mapping[str, Any]) -> dict[str, str]:
+    """Return the keywords of a task that a specification gives, each with the key it stands under."""
+    found = {name: name for name in task.keywords if name in specification}
+    if not found.keys() & {"poles", "polynomial", "K", "L"} and (half := _HALVES.get(task.name)):
+        shared = {name: f"{half}_{name}" for name in ("poles", "polynomial")}
+        found |= {name: key for name, key in shared.items() if key in specification}
+    return found
 
 
 def repair_of(key: str, known: Collection[str], where: str) -> str:
@@ -76,7 +96,7 @@ def schema() -> dict[str, Any]:
     }
     keywords: dict[str, Any] = {}
     for name in known:
-        for keyword, kind in tasks()[name].keywords.items():
+        for keyword, kind in kinds_of(tasks()[name]).items():
             keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
     for convention in conventions().values():
         for own, (name, _) in names_in(convention).items():

@@ -19,6 +19,7 @@ from symobs.formula import Names, Roots
 from symobs.method import Document
 from symobs.page import Page, relation, sentence
 from symobs.phrases.questions import PHRASES, UNSAID
+from symobs.problem.keys import keys_of
 from symobs.record import dataclass
 from symobs.specification import (
     desired_polynomial,
@@ -177,9 +178,10 @@ def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
 
 def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     """Yield what the specification contains for a task, read."""
+    keys = keys_of(task, problem.specification)
     for name, kind in task.keywords.items():
-        if name in problem.specification:
-            yield name, _read(problem.specification[name], kind, name, problem.plant, task.name)
+        if name in keys:
+            yield name, _read(problem.specification[keys[name]], kind, name, problem.plant, task.name)
         elif kind == "Horizon":
             yield name, read_horizon(problem.plant, None)
     if task.name == "stability_region" and "parameters" not in problem.specification:

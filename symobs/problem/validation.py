@@ -16,7 +16,7 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, PRINTED, TOP, repair_of
+from symobs.problem.keys import PLANT, PRINTED, TOP, keys_of, kinds_of, repair_of
 from symobs.problem.tables import Decimal
 from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
@@ -59,9 +59,11 @@ class Problem:
         for task in self.tasks:
             if report is not None:
                 report(task.name)
-            keywords = {name: value for name, value in self.specification.items() if name in task.keywords}
-            with errors:
-                results.append(task.function(self.plant, **keywords))
+            own, keys = _Errors(), keys_of(task, self.specification)
+            with own:
+                results.append(task.function(self.plant, **{name: self.specification[keys[name]] for name in keys}))
+            own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
+            errors.found += own.found
         if errors.found:
             kinds = _kinds(self.tasks)
             _read_alone(self.specification, kinds, self.expect, self.plant.symbols, self.plant.variable, errors)
@@ -100,6 +102,12 @@ class _Errors:
         """Add those of the others that stand at a place nothing was said of yet."""
         taken = {error.where for error in self.found}
         self.found += [error for error in others.found if error.where not in taken]
+
+    def move(self, places: Mapping[str, str]) -> None:
+        """Say of every error where it stands in the file."""
+        for error in self.found:
+            whole, cell = re.fullmatch(r"([^\[]*)(.*)", error.where, re.DOTALL).groups()  # type: ignore[union-attr]
+            error.where = places.get(whole, whole) + cell
 
     def together(self, convention: Convention = STANDARD) -> ProblemErrors:
         """Return all of them, each once, at places named as the convention names them."""
@@ -353,7 +361,7 @@ def _read_cells(value: object, symbols: Symbols, where: str, errors: _Errors) ->
 
 def _kinds(wanted: Collection[Task]) -> dict[str, str]:
     """Return the kinds of the keywords of these tasks, or of all where none is named: the same word may mean two."""
-    return {name: kind for task in wanted or tasks().values() for name, kind in task.keywords.items()}
+    return {name: kind for task in wanted or tasks().values() for name, kind in kinds_of(task).items()}
 
 
 def _read_alone(
