@@ -286,7 +286,7 @@ def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.set(letters[1], result.answer["restricted"])
     polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
     page.conclude(
-        f"mode{'s' * (len(result.kernel_vectors) > 1)}_{kind}",
+        f"modes_{kind}",
         *hidden(page, kind == "observability", letters),
         modes=Roots(
             hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,

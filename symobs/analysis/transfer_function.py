@@ -175,11 +175,11 @@ class TransferFunction(Result):
     def _tell_roots(self, page: Page) -> None:
         """Say the poles and the zeros."""
         for part, key, of in zip(
-            self.polynomials, ("its_pole", "its_zero"), (page["P"], page["P"].inverse), strict=True
+            self.polynomials, ("its_poles", "its_zeros"), (page["P"], page["P"].inverse), strict=True
         ):
             roots = roots_of(part, self.plant.variable) if part else ()
             if roots and all(root.is_closed for root in roots):
-                page.conclude(key if len(roots) == 1 else f"{key}s", roots=Roots(of.formula, roots))
+                page.conclude(key, roots=Roots(of.formula, roots))
         if self.order and self.polynomials[1].degree(self.plant.variable) == 0:
             page.conclude("no_zero", predicate("polynomial", page["P"].inverse))
 

@@ -320,8 +320,14 @@ def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar
 def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
     """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
     unit, above = numerator.factors()
+    sign = _sign(own)
     below = tuple((factor, -power) for factor, power in polynomial.factors)
-    return Factored(unit, (*above, (own, 1), *below))
+    return Factored(unit * sign, (*above, (own * sign, 1), *below))
+
+
+def _sign(polynomial: Scalar) -> int:
+    """Return the sign that a polynomial is printed with, as a factor."""
+    return -1 if polynomial.factors()[0].fraction() < 0 else 1
 
 
 def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
@@ -333,5 +339,6 @@ def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: s
     whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
     number, below = whole.denominator.factors()
     rest = ((factor, power) for factor, power in above if variable in factor.names)
-    parts = (*rest, (whole.numerator, 1), *((factor, -power) for factor, power in below))
-    return Factored(unit / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))
+    sign = _sign(whole.numerator)
+    parts = (*rest, (whole.numerator * sign, 1), *((factor, -power) for factor, power in below))
+    return Factored(unit * sign / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))

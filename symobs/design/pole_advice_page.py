@@ -130,9 +130,7 @@ def _zeros(page: Page, advice: PoleAdvice) -> None:
     if not zeros and b:
         page.conclude("no_zeros", relation(page["b_P"], b))
     elif zeros and all(root.is_closed for root in zeros):
-        page.conclude(
-            "advice_zeros" if len(zeros) > 1 else "advice_zero", roots=Roots(page["b_P"].inverse.formula, zeros)
-        )
+        page.conclude("advice_zeros", roots=Roots(page["b_P"].inverse.formula, zeros))
     if advice.zeros.used:
         page.define("phi_z", _product(page, advice.zeros.used), say="zeros_taken", closing=False)
     else:

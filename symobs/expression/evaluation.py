@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import re
 from math import isqrt
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 MOST_CHARACTERS = 10_000
 _SMALLER = "write something smaller, with a symbol in place of what is large"
 EQUAL_ROWS = "give every row the same number of entries"
+#: Outside brackets `2 g` is a product, inside it is two entries.
+_SPACED_PRODUCT = re.compile(r"([0-9]) +([A-Za-z(])")
 
 
 def read(text: str, scope: Scope, where: str) -> list[Entry]:
@@ -108,7 +111,9 @@ class _Evaluator:
         rows = [[next(following) for _ in range(length)] for length in lengths]
         unequal = unequal_row(rows)
         if unequal:
-            raise self.source.error(unequal[0], left.start, EQUAL_ROWS, kind=ShapeMismatch, row=unequal[1])
+            spaced = _SPACED_PRODUCT.search(self.source.text)
+            meant = f"; a space sets entries apart, so write {spaced[1]}*{spaced[2]}… for a product" if spaced else ""
+            raise self.source.error(unequal[0], left.start, EQUAL_ROWS + meant, kind=ShapeMismatch, row=unequal[1])
         grid = Grid([[self._number(entry) for entry in row] for row in rows], left.start)
         return grid.rows[0][0] if grid.shape == (1, 1) else grid
 

@@ -25,8 +25,8 @@ PHRASES: dict[str, str] = {
     "companion_vector_state_feedback": "The last row of the inverse of the controllability matrix is",
     "companion_rows": "With its images as rows,",
     "companion_reached": "the pair is brought to companion form:",
-    "open_eigenvalues_observer": "Without the gain the error would have the eigenvalues {roots} of $A$.",
-    "open_eigenvalues_state_feedback": "Without the gain the plant has the eigenvalues {roots}.",
+    "open_eigenvalues_observer": "Without the gain the error would have the <eigenvalue|eigenvalues> {roots} of $A$.",
+    "open_eigenvalues_state_feedback": "Without the gain the plant has the <eigenvalue|eigenvalues> {roots}.",
     "null_vectors_observer": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of the transpose of $A - L C$ "
     "when the gain takes it to the lower part.",
     "null_vectors_state_feedback": "For each pole a null vector of a matrix is wanted§: its upper part becomes an eigenvector of $A - B K$ when the gain "
@@ -54,9 +54,9 @@ PHRASES: dict[str, str] = {
     "ackermann_observer": "and puts $A$ into the polynomial asked for:",
     "ackermann_state_feedback": "and puts $A$ into the polynomial asked for:",
     "as_required": "{check}, as required.",
-    "roots_as_required": "{check}, with the roots {roots}, as required.",
-    "fixed_but_wanted_observer": "No gain moves the unobservable modes {roots}, but they are among the poles asked for.",
-    "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable modes {roots}, but they are among the poles asked for.",
+    "roots_as_required": "{check}, with the <root|roots> {roots}, as required.",
+    "fixed_but_wanted_observer": "No gain moves the unobservable <mode|modes> {roots}, but <it is|they are> among the poles asked for.",
+    "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable <mode|modes> {roots}, but <it is|they are> among the poles asked for.",
     "one_gain_observer": "A gain that places the others is",
     "one_gain_state_feedback": "A gain that places the others is",
     "family_observer": "It is not the only one: all of them are {gain}.",
@@ -69,17 +69,17 @@ PHRASES: dict[str, str] = {
     "gain_given_state_feedback": "The feedback gain is given,",
     "closed_matrix": "which makes",
     "its_polynomial": "The characteristic polynomial is",
-    "case_survives_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for, so this $L$ "
+    "case_survives_observer": "There the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for, so this $L$ "
     "still works; it is no longer the only one.",
-    "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for, "
+    "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for, "
     "so this $K$ still works; it is no longer the only one.",
-    "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed mode {modes} is among the poles asked for. A gain that "
+    "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for. A gain that "
     "works there is",
-    "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed mode {modes} is among the poles asked for. "
+    "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for. "
     "A gain that works there is",
-    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed mode {modes} is not among the poles asked for: no gain "
+    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed <mode|modes> {modes} <is|are> not among the poles asked for: no gain "
     "places them.",
-    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed mode {modes} is not among the poles asked for: no "
+    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed <mode|modes> {modes} <is|are> not among the poles asked for: no "
     "gain places them.",
 }
 

@@ -7,7 +7,7 @@ PHRASES: dict[str, str] = {
     "detectability": "Detectability.",
     "stabilizability": "Stabilizability.",
     "eigenvalue_polynomial": "The eigenvalues of $A$ are the roots of its characteristic polynomial",
-    "eigenvalues": "They are {roots}.",
+    "eigenvalues": "<The only one is|They are> {roots}.",
     "eigenvalues_open": "Where a factor has no roots in closed form, λ stands for any of them.",
     "pbh_asks_observability": "The pair ($C$, $A$) is observable exactly if the matrix of $A - lambda I$ over $C$ has full rank at each of them.",
     "pbh_asks_controllability": "The pair ($A$, $B$) is controllable exactly if the matrix of $A - lambda I$ beside $B$ has full rank at each of them.",

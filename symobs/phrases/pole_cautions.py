@@ -17,9 +17,9 @@ PHRASES: dict[str, str] = {
     "stays_state_feedback_discrete": "A pole asked for lies on the unit circle: with this feedback the loop does not come to rest by itself.",
     "law_unstable_continuous": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie in the open left half plane.",
     "law_unstable_discrete": "Without the plant this law is unstable: not all eigenvalues of {matrix} lie inside the unit circle.",
-    "hides_continuous": "$F$ does not show the whole compensator: of the modes that cancel in it, {modes}, not all lie in the open left half plane, so without the plant the law is unstable.",
-    "hides_discrete": "$F$ does not show the whole compensator: of the modes that cancel in it, {modes}, not all lie inside the unit circle, so without the plant the law is unstable.",
-    "some_hidden": "$F$ does not show the whole compensator: the modes that cancel in it, {modes}, are stable exactly where {where}.",
+    "hides_continuous": "$F$ does not show the whole compensator: <the mode that cancels in it, |of the modes that cancel in it, >{modes}<, does not lie|, not all lie> in the open left half plane, so without the plant the law is unstable.",
+    "hides_discrete": "$F$ does not show the whole compensator: <the mode that cancels in it, |of the modes that cancel in it, >{modes}<, does not lie|, not all lie> inside the unit circle, so without the plant the law is unstable.",
+    "some_hidden": "$F$ does not show the whole compensator: the <mode that cancels|modes that cancel> in it, {modes}, <is|are> stable exactly where {where}.",
 }
 
 _TELL: dict[str, tuple[str, ...]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "its_characteristic_polynomial": "The characteristic polynomial is",
-    "its_roots": "Its roots are {roots}.",
+    "its_roots": "Its <only root is|roots are> {roots}.",
     "its_transfer_matrix": "The transfer function is a matrix,",
     "its_transfer_function": "Adjugate over determinant gives",
     "cancelled": "A common factor cancelled: a realisation of order {order} has the same transfer function.",
@@ -12,11 +12,9 @@ PHRASES: dict[str, str] = {
     "no_pole_lost": "No pole and no zero of it is lost provided that {condition}.",
     "lowest_there": "In lowest terms",
     "static_there": "There the states do not carry the input to the output:",
-    "its_pole": "The only pole is {roots}.",
-    "its_zero": "The only zero is {roots}.",
     "no_zero": "It has no zeros.",
-    "its_poles": "The poles are {roots}.",
-    "its_zeros": "The zeros are {roots}.",
+    "its_poles": "The <only pole is|poles are> {roots}.",
+    "its_zeros": "The <only zero is|zeros are> {roots}.",
     "stable_continuous": "All roots lie in the open left half plane: the polynomial is stable.",
     "stable_discrete": "All roots lie inside the unit circle: the polynomial is stable.",
     "unstable_continuous": "Not all roots lie in the open left half plane: the polynomial is not stable.",

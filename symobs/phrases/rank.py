@@ -34,10 +34,8 @@ PHRASES: dict[str, str] = {
     "generic_low_controllability": "In general {rank}, and nowhere more, so the pair ($A$, $B$) is not controllable.",
     "kernel_observability": "A state in this direction is never seen at the output:",
     "kernel_controllability": "The input never moves the state along this direction:",
-    "modes_observability": "The unobservable modes are {modes}.",
-    "modes_controllability": "The uncontrollable modes are {modes}.",
-    "mode_observability": "The unobservable mode is {modes}.",
-    "mode_controllability": "The uncontrollable mode is {modes}.",
+    "modes_observability": "The unobservable <mode is|modes are> {modes}.",
+    "modes_controllability": "The uncontrollable <mode is|modes are> {modes}.",
 }
 
 NAMING = ("undecided_case", "undecided_together", "undecided_many")

@@ -17,7 +17,7 @@ PHRASES: dict[str, str] = {
     "mere_copy": "A copy of the plant, corrected by its output error, is of no use here§: it takes $x_1$ from the measurement, so its output "
     "error is zero whatever the gain is, and the rest of the copy goes wrong by {left}.",
     "mere_copy_fails": "That does not even die out, since $A_22$ is not stable.",
-    "mere_copy_grows": "That does not even die out, since $A_22$ has the eigenvalues {roots}.",
+    "mere_copy_grows": "That does not even die out, since $A_22$ has the <eigenvalue|eigenvalues> {roots}.",
     "undetermined_ansatz": "Let the estimate be {estimate}, with a state of its own, driven by what is known, whose matrices are still to be "
     "determined§:",
     "undetermined_error": "Then {error} obeys",
@@ -43,9 +43,9 @@ PHRASES: dict[str, str] = {
     "reduced_final": "and the observer is",
     "rest_estimated": "The estimate is found again from the definition of its state,",
     "assembled": "and the whole state is estimated by",
-    "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the modes "
-    "{modes}, and they are not among the poles asked for: there is no such observer.",
-    "reduced_not_unique": "No $L$ moves the modes {modes}, but they are among the poles asked for. A gain that places the others is",
+    "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the <mode|modes> "
+    "{modes}, and <it is|they are> not among the poles asked for: there is no such observer.",
+    "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

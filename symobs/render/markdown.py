@@ -156,10 +156,12 @@ class MarkdownWriter:
             case TableBlock():
                 table, told = markdown_table(block, self.printer, self.sentence, self.mathematics)
                 return "\n\n".join([table, self.sentence(block.where), self.display(told)]) if told else table
-            case PictureBlock(picture, caption):
+            case PictureBlock(picture):
+                from symobs.render.plots_caption import caption  # noqa: PLC0415 - only pages with pictures
                 from symobs.render.plots_text import character_plot  # noqa: PLC0415 - only pages with pictures
 
-                return f"{fenced(character_plot(picture, self._text_printer(), _SKETCH))}\n\n{self.sentence(caption)}"
+                plot = character_plot(picture, self._text_printer(), _SKETCH)
+                return f"{fenced(plot)}\n\n{self.sentence(caption(picture, sketched=True))}"
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")

@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 #: With more equations than this, curves that are no boundary are left out.
 _MOST_DIVIDERS = 4
+_UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture_dashed"}
 
 
-def caption(picture: Picture) -> Inlines:
-    """Return the sentences below a picture."""
-    sentences = list(_sentences(picture))
+def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
+    """Return the sentences below a picture; one that is sketched in characters has neither samples nor dashes."""
+    sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if picture.drawn_for:
         values = tuple(_equation(name, value) for name, value in picture.drawn_for)
         sentences.append(_say("drawn_for", values=Together(values)))

@@ -21,6 +21,7 @@ from symobs.formula import (
     Predicate,
     Product,
     Relation,
+    Roots,
     Shown,
     Sum,
     Together,
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 #: Where in a phrase the number of what it rests on stands, if not at its end.
 MARK = "§"
 
+#: Words of a phrase for one root in its slot, and for several: `the <mode|modes> {roots}`.
+_COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
@@ -49,7 +52,8 @@ _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
     """Return the phrase of a sentence with its slots filled, in the letters and signs of a convention."""
     slots, turned = dict(sentence.slots), Turned(convention.turned)
-    phrase = PHRASES[sentence.key]
+    several = any(isinstance(slot, Roots) and len(slot.values) > 1 for slot in slots.values())
+    phrase = _COUNTED.sub(lambda words: words[2 if several else 1], PHRASES[sentence.key])
     if not convention.is_standard:
         phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
     inlines: list[Inline] = []

@@ -117,9 +117,11 @@ class TextWriter:
                 table, told = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
                 return f"{indented(table)}{below}"
-            case PictureBlock(picture, caption):
-                plot = character_plot(picture, self.printer, width - len(INDENT))
-                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(caption), width - len(INDENT)))}"
+            case PictureBlock(picture):
+                from symobs.render.plots_caption import caption  # noqa: PLC0415 - only pages with pictures
+
+                plot, told = character_plot(picture, self.printer, width - len(INDENT)), caption(picture, sketched=True)
+                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(told), width - len(INDENT)))}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"

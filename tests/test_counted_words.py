@@ -1,0 +1,60 @@
+"""Sentences about roots say mode or modes, is or are, as there are one or several; sketches are told as they are drawn."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import symobs
+from symobs.phrases import PHRASES
+from symobs.problem import read
+
+
+def text_of(result: object) -> str:
+    return " ".join(result.to("text").split())  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "poles", "sentence"),
+    [
+        ("[-1 0; 0 -2]", "[1 0]", [-2, -3], "No gain moves the unobservable mode -2, but it is among the poles"),
+        ("[-1 0 0; 0 -2 0; 0 0 -3]", "[1 0 0]", [-2, -3, -4], "the unobservable modes -2, -3, but they are among"),
+    ],
+)
+def test_hidden_modes_are_counted(A: str, C: str, poles: list[int], sentence: str) -> None:
+    assert sentence in text_of(symobs.observer(symobs.StateSpace(A, C=C), poles=poles))
+
+
+def test_the_fixed_modes_of_a_case_are_counted() -> None:
+    # c = 0 hides the states whose eigenvalues are -2, or -2 and -4.
+    one = symobs.observer(symobs.StateSpace("[-1 0; 0 -2]", C="[1 c]"), poles=[-2, -3])
+    assert "but its fixed mode -2 is among the poles" in text_of(one)
+    two = symobs.observer(symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -4]", C="[1 c c]"), poles=[-2, -3, -5])
+    assert "and its fixed modes -2, -4 are not among the poles" in text_of(two)
+
+
+def test_the_only_root_and_several_of_them() -> None:
+    assert "Its only root is -3." in text_of(symobs.characteristic_polynomial(symobs.StateSpace("[-3]")))
+    assert "Its roots are -3, -4." in text_of(symobs.characteristic_polynomial(symobs.StateSpace("[-3 0; 0 -4]")))
+    text = text_of(symobs.transfer_function(symobs.StateSpace.from_transfer_function("(s + 1)/((s + 2)(s + 3))")))
+    assert "The poles are -2, -3. The only zero is -1." in text
+
+
+def test_every_choice_of_words_is_one_between_two() -> None:
+    for phrase in PHRASES.values():
+        assert re.sub(r"<[^<|>]*\|[^<|>]*>", "", phrase).count("<") == 0
+
+
+def test_a_sketch_in_characters_speaks_of_no_dots_and_dashes() -> None:
+    problem = read(
+        'task = "stability_region"\n[plant]\nA = "[0 1; -2 -3]"\nC = "[1 0]"\n'
+        '[specification]\nL = "[h1; h2]"\nparameters = "h1, h2"\n'
+    )
+    (result,) = problem.solve()
+    text, page = result.to("text"), result.to("html")
+    assert isinstance(text, str)
+    assert isinstance(page, str)
+    assert "Stable for" in text
+    assert "Dots" not in text
+    assert "Dots" in page
