@@ -120,8 +120,9 @@ class TextWriter:
             case PictureBlock(picture):
                 from symobs.render.plots_caption import caption  # noqa: PLC0415 - only pages with pictures
 
-                plot, told = character_plot(picture, self.printer, width - len(INDENT)), caption(picture, sketched=True)
-                return f"{indented(plot)}\n\n{indented(wrapped(self.sentence(told), width - len(INDENT)))}"
+                plot = character_plot(picture, self.printer, width - len(INDENT))
+                words = wrapped(self.sentence(caption(picture, sketched=True)), width - len(INDENT))
+                return f"{indented(plot)}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
