@@ -7,9 +7,9 @@ from fractions import Fraction
 import pytest
 
 from symobs.derivation.words import OF_STABLE_MODES, OF_UNSTABLE_MODES, fits, rests
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, roots_of
 from symobs.exact.functions import PI, function
-from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
+from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation, Roots
 
 E = Environment(
     values={
@@ -123,3 +123,27 @@ def test_a_verdict_rests_on_the_hidden_modes() -> None:
     for key in OF_UNSTABLE_MODES:
         assert rests(key, (unstable,), E)
         assert not any(rests(key, facts, E) for facts in ((), (stable,), (marginal,), (LOW,), (FULL,)))
+
+
+def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> None:
+    s = Scalar.symbol("s")
+    chain = Matrix.of([[0, 1, 0], [0, 0, 0], [0, 0, -1]])  # -2, -2 in one chain and -3, each moved by 2
+    apart = Matrix.of([[0, 0, 0], [0, 0, 0], [0, 0, -1]])
+    values: dict[str, Scalar | Matrix] = {"phi_c": (s + 2) * (s + 2) * (s + 3), "M": chain, "N": apart, "O": chain * 2}
+    here = Environment(values=values)
+
+    def held(letter: str, pole: Scalar, *more: Relation) -> bool:
+        poles = Roots(Literal(pole), roots_of(pole, "s"))
+        return rests("defective", [compared(letter, "=", 2), *more, poles], here)
+
+    assert held("M", s + 2)
+    assert not held("N", s + 2)  # two eigenvectors
+    assert not held("O", s + 2)  # another matrix
+    assert not held("M", s + 3)  # another pole
+    assert not held("M", (s + 2) * (s + 3))  # which of them?
+    assert not held("M", s + 2, compared("N", "=", 1))  # rank of which?
+    assert not rests("defective", [Roots(Literal(s + 2), roots_of(s + 2, "s"))], here)
+    assert not rests("defective", [compared("M", "=", 2)], here)
+    poles = Roots(Literal(s + 2), roots_of(s + 2, "s"))
+    assert not rests("defective_instead", [compared("M", "=", 2), poles], Environment(values={"M": chain}))
+    assert not rests("defective", [compared(Scalar.of(1), "=", 1), poles], here)

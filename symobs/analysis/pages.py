@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 WRITTEN_UP_TO = 200
 #: More sets of states are not named in one sentence.
 NAMED_SETS = 6
+#: A row of a matrix that is longer than this, written in one line, does not fit beside others.
+_WIDEST = 80
 #: More decimals of the data are not told as fractions.
 _DECIMALS = 4
 
@@ -121,6 +123,11 @@ def state_signs(page: Page) -> None:
     declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
     if declared:
         page.conclude("declared", signs=Together(tuple(declared)))
+
+
+def is_narrow(*matrices: Matrix) -> bool:
+    """Whether matrices can be read on a page: the widest row, with its fractions in one line."""
+    return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
 
 
 def factored_form(page: Page, value: Scalar) -> Term:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.analysis.pages import factored_form, given
+from symobs.analysis.pages import factored_form, given, is_narrow
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.exact import Matrix, Scalar, independent_rows, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
@@ -150,7 +150,9 @@ class TransferFunction(Result):
             characteristic = m.A.characteristic_polynomial(variable)
             adjugate = page.value(pencil.value.adjugate())
             one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
-            stages = [C @ pencil.inverse @ B, one_over @ C.shown @ adjugate @ B.shown]
+            stages = [C @ pencil.inverse @ B]
+            if is_narrow(adjugate.value):
+                stages.append(one_over @ C.shown @ adjugate @ B.shown)
             if m.has_feedthrough:
                 stages = [stage + page["D"] for stage in stages]
             if isinstance(P, Matrix):

@@ -246,7 +246,8 @@ def _asserted(sentence: Sentence | None, facts: tuple[Fact, ...], environment: E
     checked = {fact.name for fact in facts if isinstance(fact, Predicate)}
     if sentence is not None and not checked.issuperset(ASSERTS.get(sentence.key, ())):
         reject(f"{sentence.key}, which rests on {', '.join(ASSERTS[sentence.key])},")
-    if sentence is not None and not rests(sentence.key, facts, environment):
+    roots = [slot for _, slot in sentence.slots if isinstance(slot, Roots)] if sentence is not None else ()
+    if sentence is not None and not rests(sentence.key, (*facts, *roots), environment):
         reject(f"{sentence.key}, which rests on another fact,")
 
 

@@ -7,12 +7,13 @@ that of a matrix of full rank, and not because of 1 = 1.
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
-from symobs.exact import Scalar
+from symobs.exact import Scalar, rank
 from symobs.exact.functions import PI, function
-from symobs.formula import Apply, Exact, Predicate, Relation, evaluate
+from symobs.formula import Apply, Exact, Predicate, Relation, Roots, evaluate
 from symobs.pointwise import Pointwise
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ _KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "sta
 OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS}
 OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
 OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
+OF_DEFECTIVE_POLE = {"defective", "defective_instead"}
 
 
 def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
@@ -65,6 +67,8 @@ def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
     properties = {fact.name for fact in facts if isinstance(fact, Predicate)}
     if key in OF_FULL_RANK | OF_LOW_RANK:
         return is_rank(is_full=key in OF_FULL_RANK)
+    if key in OF_DEFECTIVE_POLE:
+        return _is_defective(facts, environment)
     if key in OF_STABLE_MODES:
         return bool(properties & {"stable", "marginal"}) or is_rank(is_full=True)
     return key not in OF_UNSTABLE_MODES or "unstable" in properties
@@ -84,6 +88,23 @@ def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> 
     return _is_of_rank(relation, environment, is_full=key in FULL_RANK)
 
 
+def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:
+    """Tell whether a pole of φ_c is met more often than a matrix X lacks in rank, φ_c(s + pole) being det(sI − X)."""
+    matrices = [fact.members[0].argument for fact in facts if isinstance(fact, Relation) and _is_rank(fact)]  # type: ignore[union-attr]
+    poles = [root for fact in facts if isinstance(fact, Roots) for root in fact.values]
+    if len(matrices) != 1 or len(poles) != 1 or "phi_c" not in environment.values:
+        return False
+    X, variable = evaluate(matrices[0], environment, Exact(environment)), environment.variable
+    moved = Scalar.symbol(variable) + poles[0].centre
+    polynomial = as_scalar(environment.values["phi_c"]).substitute({variable: moved})
+    times = sum(1 for _ in takewhile(lambda c: c.is_zero, reversed(polynomial.coefficients(variable))))
+    return bool(X.characteristic_polynomial(variable) == polynomial and X.shape[0] - rank(X) < times)
+
+
+def _is_rank(relation: Relation) -> bool:
+    return isinstance(relation.members[0], Apply) and relation.members[0].function == "rank"
+
+
 def _is_everywhere(relation: Relation, environment: Environment) -> bool:
     """Tell whether the rank that a relation begins with is seen to be the same for all parameters."""
     first = relation.members[0]
@@ -99,7 +120,7 @@ def _is_everywhere(relation: Relation, environment: Environment) -> bool:
 def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:
     """Tell whether a relation is rank = r with the full r, or with a lower one, followed by nothing but the full one."""
     first, *others = relation.members
-    if not isinstance(first, Apply) or first.function != "rank":
+    if not isinstance(first, Apply) or not _is_rank(relation):
         return False
     full = min(evaluate(first.argument, environment, Exact(environment)).shape)
     ranks = [as_scalar(evaluate(member, environment, Exact(environment))).fraction() for member in others]

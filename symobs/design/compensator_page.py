@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import factored_form, formula_of_factored, given
+from symobs.analysis.pages import factored_form, formula_of_factored, given, is_narrow
 from symobs.design.drawings import draw_compensator, draw_loop, draw_unity_loop
 from symobs.design.gain_pages import (
     FEEDBACK,
@@ -20,7 +20,7 @@ from symobs.design.observer import page_style, write_observer
 from symobs.design.responses import plot_estimate
 from symobs.design.side_by_side_page import can_stand_side_by_side, write_side_by_side
 from symobs.design.state_feedback import StateFeedbackDesign
-from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
+from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, rank, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
@@ -46,6 +46,8 @@ _READABLE_TERMS = 40
 _SMALL_ORDER = 2
 #: Loops with more terms are not written out before they are simplified.
 _LOOP_TERMS = 16
+#: Up to this order of the plant the loop is written out before its factors.
+_UNFACTORED = 4
 
 
 def write_compensator(page: Page, design: CompensatorDesign) -> None:
@@ -111,22 +113,22 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
 
 
 def _transfer_function(page: Page, design: CompensatorDesign) -> None:
-    """(4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar."""
+    """(4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar; those that can be read."""
     K, L, F = page["K"], page["L"], design.answer["F"]
     order = design.plant.order
     pencil = (page.s @ page.identity(order) - page["A_c"]).value
     _, characteristic = design.own_transfer
     adjugate = pencil.adjugate()
+    driven = (adjugate @ L.value).normal()
     one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
-    resolvent = page.value(pencil)
     stages = [
-        K @ (page.s @ page.identity(order) - page["A_c"]).inverse @ L,
-        K.shown @ resolvent.inverse @ L.shown,
-        one_over @ K.shown @ page.value(adjugate) @ L.shown,
-        one_over @ K.shown @ page.value((adjugate @ L.value).normal()),
-        page.value(F),
+        (pencil, K.shown @ page.value(pencil).inverse @ L.shown),
+        (adjugate, one_over @ K.shown @ page.value(adjugate) @ L.shown),
+        (driven, one_over @ K.shown @ page.value(driven)),
     ]
-    page.define("F", *stages, say="transfer_function_of_compensator", answer=True)
+    written = [stage for matrix, stage in stages if is_narrow(matrix, K.value)]
+    whole = K @ (page.s @ page.identity(order) - page["A_c"]).inverse @ L
+    page.define("F", whole, *written, page.value(F), say="transfer_function_of_compensator", answer=True)
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
@@ -194,7 +196,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     zero = page.value(Matrix.zeros(order, order))
     state = block([[x], [e]])
     matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
-    page.define("A_cl", matrix, say="closed_loop_matrix", closing=not large)
+    page.define("A_cl", matrix, say="closed_loop_matrix", closing=not large and is_narrow(matrix.value))
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = error_determinant(page, FEEDBACK) @ error_determinant(page, OBSERVER)
@@ -203,7 +205,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
     states = block([[x], [page["x_hat"]]])
     members = [states.derivative, second @ states]
-    if not large:
+    if not large and is_narrow(second.value):
         members.append(second.shown @ states)
     page.equal(relation(*members), say="estimate_coordinates")
     one = page.identity(order)
@@ -227,9 +229,8 @@ def return_path(page: Page, design: OutputFeedback) -> None:
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
-    page.define(
-        "G_cl", definition, expanded, factors, say="loop_after" if few else "return_path", answer=True, closing=False
-    )
+    members = [definition, expanded, factors] if page.plant.order <= _UNFACTORED else [definition, factors]
+    page.define("G_cl", *members, say="loop_after" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     polynomial = design.loop_polynomial.value
     if all(_has_short_roots(factor, design.plant.variable) for factor, _ in design.loop_polynomial.factors):
@@ -344,31 +345,32 @@ def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
 
 
 def cautions(page: Page, design: OutputFeedback) -> None:
-    """Warn where an expert would: of modes that F does not show, and of a repeated control pole.
+    """Warn where an expert would: of modes that F does not show, and of a repeated control pole that is defective.
 
-    Such a pole is defective, so its exponential alone does not bound x.
+    The exponential of such a pole alone does not bound x.
     """
     caution_hidden(page, design)
     plant = design.plant
     desired = design.feedback.desired
     if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
-        return  # with several inputs a repeated pole need not be defective
+        return
     for factor, power in desired.grouped():
         if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
             pole = -factor.coefficients(plant.variable)[1]
             closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
-            is_negative = pole.fraction() < 0
-            offset = closed + page.value(-pole) @ size if is_negative else closed - page.value(pole) @ size
-            zero = Matrix.zeros(plant.order, plant.order)
-            rest = desired.polynomial / factor**2
-            single = page["phi_c"] / (page.value(factor) @ page.value(rest))
+            length = abs(pole.fraction())
+            shift = size if length == 1 else page.value(Scalar.of(length)) @ size
+            offset = closed + shift if pole.fraction() < 0 else closed - shift
+            held = relation(offset.apply("rank"), rank(offset.value))
+            if plant.order - rank(offset.value) >= power:
+                continue
+            single = page["phi_c"] / page.value(desired.polynomial / factor)
             instead = _with_distinct_poles(page, desired)
             page.caution(
                 "defective" if instead is None else "defective_instead",
-                relation(offset, "!==", zero),
-                relation(page["phi_c"], page.value(factor) ** 2 @ page.value(rest)),
+                held,
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
-                matrix=relation(offset, offset.shown),
+                matrix=relation(offset, offset.shown) if plant.order == _SMALL_ORDER else held,
                 **({} if instead is None else {"instead": instead}),
             )
             return
