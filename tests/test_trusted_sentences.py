@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import pytest
 
-from symobs.derivation.words import OF_STABLE_MODES, OF_UNSTABLE_MODES, fits, rests
+from symobs.derivation.words import OF_STABLE_LOOP, OF_STABLE_MODES, OF_UNSTABLE_MODES, fits, rests
 from symobs.exact import Matrix, Scalar, roots_of
 from symobs.exact.functions import PI, function
-from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation, Roots
+from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
 
 E = Environment(
     values={
@@ -147,3 +147,21 @@ def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> No
     poles = Roots(Literal(s + 2), roots_of(s + 2, "s"))
     assert not rests("defective_instead", [compared("M", "=", 2), poles], Environment(values={"M": chain}))
     assert not rests("defective", [compared(Scalar.of(1), "=", 1), poles], here)
+
+
+def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:
+    s = Scalar.symbol("s")
+    here = Environment(values={"phi_c": s + 2, "phi_o": s + 10})
+    whole = Product((Letter("phi_c"), Letter("phi_o")))
+    for key in OF_STABLE_LOOP:
+        assert rests(key, [Predicate("strictly_proper", Letter("F")), Predicate("stable", whole)], here)
+        for fact in (
+            Predicate("stable", Letter("phi_c")),
+            Predicate("stable", Letter("phi_o")),
+            Predicate("unstable", whole),
+            Predicate("stable", Product((Letter("phi_c"), Letter("phi_c")))),
+        ):
+            assert not rests(key, [fact], here)
+        assert not rests(key, [], here)
+        assert not rests(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
+        assert not rests(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))

@@ -55,6 +55,9 @@ _KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "sta
 OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS}
 OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
 OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
+OF_STABLE_LOOP = {
+    f"{key}_unstable{why}_alone" for key, why in (("compensator", ""), ("compensator", "_low"), ("minimal", ""))
+}
 OF_DEFECTIVE_POLE = {"defective", "defective_instead"}
 
 
@@ -67,6 +70,8 @@ def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
     properties = {fact.name for fact in facts if isinstance(fact, Predicate)}
     if key in OF_FULL_RANK | OF_LOW_RANK:
         return is_rank(is_full=key in OF_FULL_RANK)
+    if key in OF_STABLE_LOOP:
+        return any(_is_of_loop(fact, environment) for fact in facts if isinstance(fact, Predicate))
     if key in OF_DEFECTIVE_POLE:
         return _is_defective(facts, environment)
     if key in OF_STABLE_MODES:
@@ -86,6 +91,14 @@ def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> 
     if key in _LOW_EVERYWHERE and not _is_everywhere(relation, environment):
         return False
     return _is_of_rank(relation, environment, is_full=key in FULL_RANK)
+
+
+def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
+    """Tell whether a predicate says that the polynomial of the loop, φ_c φ_o, is stable."""
+    if fact.name != "stable" or not {"phi_c", "phi_o"} <= environment.values.keys():
+        return False
+    whole = as_scalar(environment.values["phi_c"]) * as_scalar(environment.values["phi_o"])
+    return bool(evaluate(fact.subject, environment, Exact(environment)) == whole)
 
 
 def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:

@@ -157,9 +157,14 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         return
     if found in {"yes", "no"}:
         word = "stable" if found == "yes" else "unstable"
-        facts, reason = (proper, predicate(word, page["F"])), _reason(page, design, word)
+        facts, reason = [proper, predicate(word, page["F"])], _reason(page, design, word)
         key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
-        page.conclude(key, *facts, **slots, **(reason if key.endswith("_low") else {}))
+        told = {**slots, **(reason if key.endswith("_low") else {})}
+        if found == "no" and page.knows("phi_c") and page.knows("phi_o"):
+            loop, signs = page["phi_c"] @ page["phi_o"], plant.symbols.signs
+            if stability(loop.scalar, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes":
+                key, facts = f"{key}_alone", [*facts, predicate("stable", loop)]
+        page.conclude(key, *facts, **told)
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive

@@ -28,9 +28,11 @@ PHRASES: dict[str, str] = {
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
     "compensator_stable_low": "It is strictly proper, and stable by itself because all coefficients of {polynomial} are positive§.",
-    "compensator_unstable": "It is strictly proper. By itself it is not stable, although the loop is.",
-    "compensator_unstable_low": "It is strictly proper. By itself it is not stable, since not all coefficients of {polynomial} are positive§, although "
-    "the loop is.",
+    "compensator_unstable": "It is strictly proper, but by itself it is not stable.",
+    "compensator_unstable_alone": "It is strictly proper. By itself it is not stable, although the loop is.",
+    "compensator_unstable_low": "It is strictly proper, but by itself not stable, since not all coefficients of {polynomial} are positive§.",
+    "compensator_unstable_low_alone": "It is strictly proper. By itself it is not stable, since not all coefficients of {polynomial} are positive§, "
+    "although the loop is.",
     "compensator_proper": "It is strictly proper.",
     "compensator_stable_if": "It is strictly proper, and by itself stable exactly where {where}.",
     "control_in_error": "In terms of the error,",
@@ -60,8 +62,10 @@ OPENS = ("observer_equation", "existence_observer")
 ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_stable": ("strictly_proper", "stable"),
     "compensator_unstable": ("strictly_proper", "unstable"),
+    "compensator_unstable_alone": ("strictly_proper", "unstable", "stable"),
     "compensator_stable_low": ("strictly_proper", "stable"),
     "compensator_unstable_low": ("strictly_proper", "unstable"),
+    "compensator_unstable_low_alone": ("strictly_proper", "unstable", "stable"),
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
     "no_stable_compensator": ("no_stable_compensator",),
@@ -77,6 +81,7 @@ RESTS_ON: dict[str, str] = {
     "similar_loops": "similarity",
     "compensator_stable_low": "hurwitz",
     "compensator_unstable_low": "hurwitz",
+    "compensator_unstable_low_alone": "hurwitz",
 }
 
 SPELLS_OUT = ("named_entries", "with_coefficients")

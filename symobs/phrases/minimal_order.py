@@ -20,7 +20,8 @@ PHRASES: dict[str, str] = {
     "minimal_closed": "Put into the observer, it leaves, with {state} and {input}, a system that is driven by $y$ alone:",
     "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
     "minimal_stable": _DIRECT + " By itself it is stable.",
-    "minimal_unstable": _DIRECT + " By itself it is not stable, although the loop is.",
+    "minimal_unstable": _DIRECT + " By itself it is not stable.",
+    "minimal_unstable_alone": _DIRECT + " By itself it is not stable, although the loop is.",
     "minimal_proper": _DIRECT,
     "minimal_stable_if": _DIRECT + " By itself it is stable exactly where {where}.",
     "reduced_coordinates": "In state and observer state the same loop reads",
@@ -32,6 +33,7 @@ OPENS = ("minimal_control", "partitioned_gain")
 ASSERTS: dict[str, tuple[str, ...]] = {
     "minimal_stable": ("strictly_proper", "stable"),
     "minimal_unstable": ("strictly_proper", "unstable"),
+    "minimal_unstable_alone": ("strictly_proper", "unstable", "stable"),
     "minimal_proper": ("strictly_proper",),
     "minimal_stable_if": ("strictly_proper",),
 }

@@ -1,4 +1,4 @@
-"""A repeated pole is called defective where it is, and only there."""
+"""Poles are called defective, and loops stable, where they are, and only there."""
 
 from __future__ import annotations
 
@@ -30,3 +30,25 @@ def test_a_mode_that_stays_may_have_an_eigenvector_of_its_own(
 ) -> None:
     # The input reaches one of two states with the eigenvalue -2; the other keeps its eigenvector.
     assert "defective" not in page(A, B, C, control, observer)
+
+
+@pytest.mark.parametrize(
+    ("control", "observer", "words"),
+    [
+        # For 1/s^2 the law has the polynomial s^2 + (k2 + l1) s + k1 + k2 l1 + l2 with k = (2, -3), l = (1, -12) and
+        # k = (1, 2), l = (-4, -5).
+        ("1, 2", "3, -4", "It is strictly proper, but by itself not stable, since"),
+        ("-1, -1", "-1, 5", "It is strictly proper, but by itself not stable, since"),
+    ],
+)
+def test_a_loop_that_was_asked_to_be_unstable_is_not_called_stable(control: str, observer: str, words: str) -> None:
+    text = page("[0 1; 0 0]", "[0; 1]", "[1 0]", control, observer)
+    assert words in text
+    assert "although the loop is" not in text
+
+
+def test_a_stable_loop_around_an_unstable_law_is_called_so() -> None:
+    # P = (s - 1)/(s (s - 2)): no stable law stabilises it, between the zeros 1 and infinity lies one pole.
+    text = page("[0 1; 0 2]", "[0; 1]", "[-1 1]", "-1, -2", "-3, -4")
+    assert "By itself it is not stable" in text
+    assert "although the loop is." in text
