@@ -52,3 +52,19 @@ def test_a_stable_loop_around_an_unstable_law_is_called_so() -> None:
     text = page("[0 1; 0 2]", "[0; 1]", "[-1 1]", "-1, -2", "-3, -4")
     assert "By itself it is not stable" in text
     assert "although the loop is." in text
+
+
+def test_poles_that_cancel_in_the_loop_are_told() -> None:
+    # The output does not see -2, so G_cl = (s^2 + 11 s + 12)/((s + 3)(s + 4)(s + 5)).
+    text = page("[-1 0; 0 -2]", "[1; 1]", "[1 0]", "-3, -4", "-2, -5")
+    assert "The poles -3, -4, -5 are among those of the state feedback and of the observer" in text
+    assert "what cancels is -2." in text
+
+
+def test_a_denominator_that_is_reduced_is_no_product() -> None:
+    # As above, with poles of the feedback that no sentence can tell: s^2 + p s + q.
+    plant = symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 0]")
+    design = symobs.compensator(plant, control_polynomial="s^2 + p*s + q", observer_poles=[-2, -5])
+    text = " ".join(str(design.to("text")).split())
+    assert "The denominator divides the product of the two polynomials" in text
+    assert "The denominator is the product" not in text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from symobs.analysis.pages import factored_form, formula_of_factored, given, is_narrow
@@ -9,7 +10,6 @@ from symobs.design.drawings import draw_compensator, draw_loop, draw_unity_loop
 from symobs.design.gain_pages import (
     FEEDBACK,
     OBSERVER,
-    closed_loop_matrix,
     error_determinant,
     name_entries,
     write_gain,
@@ -17,15 +17,14 @@ from symobs.design.gain_pages import (
 from symobs.design.hidden_law import caution_hidden
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.observer import page_style, write_observer
+from symobs.design.repeated_poles import caution_repeated
 from symobs.design.responses import plot_estimate
 from symobs.design.side_by_side_page import can_stand_side_by_side, write_side_by_side
-from symobs.design.state_feedback import StateFeedbackDesign
-from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, rank, root_of_pole, roots_of, transfer
+from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
 from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.page import Page, predicate, relation
 from symobs.phrases import PHRASES
-from symobs.specification import DesiredPolynomial
 from symobs.stability import as_inequality, monic, no_stable_compensator, stability
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
 
     from symobs.design.compensator import CompensatorDesign
     from symobs.design.output_feedback import OutputFeedback
-    from symobs.formula import Fact, Relation
+    from symobs.formula import Fact
     from symobs.page import Slot
 
 #: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
@@ -89,7 +88,8 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             named_return_path(page, design, own)
         else:
             return_path(page, design)
-    cautions(page, design)
+    caution_hidden(page, design)
+    caution_repeated(page, design)
 
 
 def _state_space(page: Page, design: CompensatorDesign) -> None:
@@ -237,15 +237,30 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     members = [definition, expanded, factors] if page.plant.order <= _UNFACTORED else [definition, factors]
     page.define("G_cl", *members, say="loop_after" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
-    polynomial = design.loop_polynomial.value
-    if all(_has_short_roots(factor, design.plant.variable) for factor, _ in design.loop_polynomial.factors):
-        page.conclude("loop_poles", poles=Roots((page["phi_c"] @ page["phi_o"]).formula, _poles(design, polynomial)))
-    else:
-        page.conclude("loop_polynomial")
+    _say_poles(page, design, form.value)
     unity = page.term(formula_of_factored(design.unity_loop))
     around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
     page.define("G_r", around, unity, say="unity_feedback", closing=False)
     draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
+
+
+def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
+    """Say whose poles those of G_cl are, and which of them cancel in it."""
+    variable, whole = design.plant.variable, design.loop_polynomial
+    poles, denominator = _poles(design, whole.value), monic(loop.denominator, variable)
+    lost, product = whole.value / denominator, page["phi_c"] @ page["phi_o"]
+    short = all(_has_short_roots(factor, variable) for factor, _ in whole.factors)
+    if lost.is_one and short:
+        page.conclude("loop_poles", Roots(product.formula, poles), poles=Roots(page["G_cl"].formula, poles))
+    elif lost.is_one:
+        page.conclude("loop_polynomial", relation(product / page.value(denominator), 1))
+    elif short:
+        cancelled = roots_of(lost, variable)
+        left = tuple((Counter(poles) - Counter(cancelled)).elements())
+        rest = Roots((product / page.value(denominator)).formula, cancelled)
+        page.conclude("loop_poles_left", poles=Roots(page["G_cl"].formula, left), lost=rest)
+    else:
+        page.conclude("loop_polynomial_divides", predicate("polynomial", product / page.value(denominator)))
 
 
 def _has_short_roots(factor: Scalar, variable: str) -> bool:
@@ -347,54 +362,3 @@ def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
             return roots_of(polynomial, design.plant.variable)
         poles += [root_of_pole(pole, design.plant.variable) for pole in desired.poles]
     return tuple(poles)
-
-
-def cautions(page: Page, design: OutputFeedback) -> None:
-    """Warn where an expert would: of modes that F does not show, and of a repeated control pole that is defective.
-
-    The exponential of such a pole alone does not bound x.
-    """
-    caution_hidden(page, design)
-    plant = design.plant
-    desired = design.feedback.desired
-    if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
-        return
-    for factor, power in desired.grouped():
-        if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
-            pole = -factor.coefficients(plant.variable)[1]
-            closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
-            length = abs(pole.fraction())
-            shift = size if length == 1 else page.value(Scalar.of(length)) @ size
-            offset = closed + shift if pole.fraction() < 0 else closed - shift
-            held = relation(offset.apply("rank"), rank(offset.value))
-            if plant.order - rank(offset.value) >= power:
-                continue
-            single = page["phi_c"] / page.value(desired.polynomial / factor)
-            instead = _with_distinct_poles(page, desired)
-            page.caution(
-                "defective" if instead is None else "defective_instead",
-                held,
-                pole=Roots(single.formula, roots_of(factor, plant.variable)),
-                matrix=relation(offset, offset.shown) if plant.order == _SMALL_ORDER else held,
-                **({} if instead is None else {"instead": instead}),
-            )
-            return
-
-
-def _with_distinct_poles(page: Page, desired: DesiredPolynomial) -> Relation | None:
-    """Return det(sI − A + BK) = φ for the poles asked for, repeated ones moved further in, where a gain places them."""
-    plant, variable = page.plant, page.plant.variable
-    further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
-    factors: dict[Scalar, None] = {}
-    for factor in desired.factors:
-        moved = factor
-        while moved in factors:
-            moved = monic(moved.substitute({variable: further_in}), variable)
-        factors[moved] = None
-    distinct = DesiredPolynomial(variable, tuple(factors))
-    gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
-    if gain is None:
-        return None
-    pencil = page.s @ page.identity(plant.order) - page["A"] + page["B"] @ page.value(gain)
-    product = Factored(Scalar.of(1), tuple((factor, 1) for factor in factors))
-    return relation(pencil.apply("det"), page.term(formula_of_factored(product)))

@@ -11,7 +11,6 @@ from symobs.derivation import Conclude
 from symobs.design.compensator_page import (
     LARGE,
     Namer,
-    cautions,
     define_or_hold,
     named_return_path,
     return_path,
@@ -20,8 +19,10 @@ from symobs.design.compensator_page import (
 )
 from symobs.design.components import combination
 from symobs.design.gain_pages import FEEDBACK, error_determinant, name_entries, write_gain
+from symobs.design.hidden_law import caution_hidden
 from symobs.design.observer import page_style
 from symobs.design.reduced_order_page import observer_state, write_observer_of_rest
+from symobs.design.repeated_poles import caution_repeated
 from symobs.design.responses import plot_estimate
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Literal, Quotient
@@ -57,7 +58,8 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
             named_return_path(page, design, _own_determinant(page))
         else:
             return_path(page, design)
-    cautions(page, design)
+    caution_hidden(page, design)
+    caution_repeated(page, design)
 
 
 def _one(page: Page) -> Term:

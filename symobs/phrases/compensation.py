@@ -51,6 +51,8 @@ PHRASES: dict[str, str] = {
     "named_entries": "From here on we write its entries as",
     "loop_poles": "The poles {poles} are those of the state feedback and those of the observer, as they must be.",
     "loop_matrix_poles": "The poles of its entries are among those of the state feedback and those of the observer.",
+    "loop_poles_left": "The poles {poles} are among those of the state feedback and of the observer, as they must be; what cancels is {lost}.",
+    "loop_polynomial_divides": "The denominator divides the product of the two polynomials asked for, as it must.",
     "loop_polynomial": "The denominator is the product of the two polynomials asked for, as it must be.",
     "defective": _DEFECTIVE,
     "defective_instead": _DEFECTIVE + " With distinct poles they are, for example with {instead}.",
