@@ -158,12 +158,12 @@ def test_the_sign_of_a_polynomial_at_a_place() -> None:
 
 def test_edges_that_slope_are_parts_of_curves() -> None:
     area = (at(0, 0), at(4, 0), at(4, 2), at(2, 3), at(0, 3))
-    assert list(region_pictures._sloping(area, at("0.1", "0.1"))) == [at(3, "5/2")]
-    assert list(region_pictures._sloping(area, at("1.99", "0.99"))) == [at(3, "5/2")]
-    assert (
-        list(region_pictures._sloping(area, at(2, "0.1"))) == list(region_pictures._sloping(area, at("0.1", 1))) == []
-    )
-    assert list(region_pictures._sloping((at(0, 0), at(1, 0), at(1, 1)), at("0.1", "0.1"))) == [at("1/2", "1/2")]
+    assert list(region_pictures._sloping(area, at("0.1", "0.1"))) == [(at(4, 2), at(2, 3))]
+    assert list(region_pictures._sloping(area, at("1.99", "0.99"))) == [(at(4, 2), at(2, 3))]
+    for near in (at(2, "0.1"), at("0.1", 1)):
+        assert list(region_pictures._sloping(area, near)) == []
+    triangle = (at(0, 0), at(1, 0), at(1, 1))
+    assert list(region_pictures._sloping(triangle, at("0.1", "0.1"))) == [(at(1, 1), at(0, 0))]
 
 
 def test_places_all_over_a_window() -> None:
@@ -384,15 +384,26 @@ def test_an_area_has_its_edges_on_curves_or_on_the_border() -> None:
     assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), marks=()), STABLE) == []
     sloping = (*RIGHT[:3], at(100, 1000))
     assert "an edge at (50, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
-    nearly = (*RIGHT[:3], at(40, 1000))
-    assert told(replace(HALF, areas=(nearly,), marks=()), STABLE) == []
+    for index, x, y in ((3, 3, 1000), (3, 40, 1000), (0, 3, -1000), (0, 40, -1000)):  # where a curve meets the border
+        moved = (*RIGHT[:index], at(x, y), *RIGHT[index + 1 :])
+        assert told(replace(HALF, areas=(moved,), marks=()), STABLE) == [f"an edge at ({x}, {y})"]
+
+
+def test_the_middle_of_an_edge_may_lie_farther_off() -> None:
+    """h1 = c (h2 / 1000)² from (0, 0) to (c, 1000): the middle of the edge lies c / 4 beside the curve."""
+    high = ((Fraction(-500), Fraction(500)), (Fraction(0), Fraction(1000)))
+    for c, expected in ((80, []), (81, ["an edge at (81/2, 500)"])):
+        bent = Curve((at(0, 0), at(Fraction(c, 9), "1000/3"), at(c, 1000)), said(h1 * 10**6, c * h2**2))
+        area = (at(0, 0), at(500, 0), at(500, 1000), at(c, 1000))
+        drawn = RegionPicture(AXES, high, (area,), (bent,))
+        assert told(drawn, s + h1 - h2**2 * Fraction(c, 10**6)) == expected
 
 
 def test_every_edge_of_every_area_is_on_some_curve() -> None:
     second = Curve((at(100, 500), at(400, 500)), said(h2, 500))
     assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), curves=(WALL, second)), STABLE) == []
-    assert told(replace(HALF, areas=((*RIGHT[:3], at(40, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
-    sloping = at(40, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
+    assert told(replace(HALF, areas=((*RIGHT[:3], at(2, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
+    sloping = at(2, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
     assert "an edge at (450, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
     below, above = (*RIGHT[:2], at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), *RIGHT[2:])
     for areas in ((below, (*above, at(3, 500))), ((*above, at(3, 500)), below)):

@@ -76,14 +76,16 @@ def faults_of_area(
 ) -> Iterator[str]:
     """Yield what is wrong with an area: its edges lie on what is drawn or on the border, and all inside is stable."""
     near, between = _part(window, _NEAR), _part(window, _BETWEEN)
+    curved = list(_sloping(area, near))
+    ends = {place for edge in curved for place in edge}
     for place in area:
         if not within(place, window, near):
             yield f"an edge at {written(place)}, outside of the window"
-        elif not _on_border(place, window, near) and not _is_drawn(drawn, test.axes, place, near):
+        elif (place in ends or not _on_border(place, window, near)) and not _is_drawn(drawn, test.axes, place, near):
             yield f"an edge at {written(place)}"
-    for place in _sloping(area, near):
-        if not _is_drawn(drawn, test.axes, place, between):
-            yield f"an edge at {written(place)}"
+    for middle in (_middle(*edge) for edge in curved):
+        if not _is_drawn(drawn, test.axes, middle, between):
+            yield f"an edge at {written(middle)}"
     samples = (place for place in _inside(area, near[0]) if place not in excluded)
     yield from (f"{written(place)} is stable" for place in samples if not test.is_stable(*place))
 
@@ -175,11 +177,11 @@ def _middle(a: Place, b: Place) -> Place:
     return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
 
 
-def _sloping(area: Sequence[Place], near: Place) -> Iterator[Place]:
-    """Yield the middles of edges that can be seen to be parallel to no axis: they are parts of curves."""
+def _sloping(area: Sequence[Place], near: Place) -> Iterator[tuple[Place, Place]]:
+    """Yield the edges that can be seen to be parallel to no axis: they are parts of curves, on the border too."""
     for a, b in zip(area, (*area[1:], area[0]), strict=True):
         if all(abs(p - q) > step for p, q, step in zip(a, b, near, strict=True)):
-            yield _middle(a, b)
+            yield a, b
 
 
 def _grid(window: tuple[Interval, Interval]) -> Iterator[Place]:
