@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if WHOLE else (12, 130)
+#: Of a picture at least so many: it has hundreds of places, and what is asked of the others is kept.
+OF_A_PICTURE = 60
 #: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
 LEAST = 110
 
@@ -334,8 +336,10 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
-        with remembered() if isinstance(line.step, Plot) else nullcontext():
-            _try_line(line, f"{result.task}, line {number}", sample(some, most), count)
+        is_drawn = isinstance(line.step, Plot)
+        with remembered() if is_drawn else nullcontext():
+            chosen = sample(some, max(most, OF_A_PICTURE) if is_drawn else most)
+            _try_line(line, f"{result.task}, line {number}", chosen, count)
 
 
 def _try_line(line: Line, where: str, some: Sequence[Change], count: Count) -> None:

@@ -270,9 +270,9 @@ def _of_marks(marks: Sequence[tuple[tuple[Fraction, ...], str]], seen: Seen, ste
     for place, kind in marks:
         stable = seen.stable(*place)
         if kind == "excluded":
-            small = [part / 10**4 for part in step]
-            coefficients = seen.coefficients(*place)
-            if stable and seen.around(small, *place) == {True} and not _nearly_unstable(coefficients, seen.discrete):
+            # No more can be seen than that a place which does not belong to the region lies within a 4000th of the window.
+            around = {verdict for by in (16, 10**4) for verdict in seen.around([part / by for part in step], *place)}
+            if stable and around == {True} and not _nearly_unstable(seen.coefficients(*place), seen.discrete):
                 yield f"{place} is excluded"
         elif (kind == "stable") != stable or kind not in {"stable", "unstable"}:
             yield f"{place} is {kind}"
