@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.picture import TimeResponse
+    from symobs.picture import Course, Interval, TimeResponse
 
 Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.
@@ -29,25 +28,29 @@ def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) 
 @lru_cache(maxsize=8)
 def _all_untrue(picture: TimeResponse, matrix: Rows) -> tuple[str, ...]:
     """Return them, the same at every random point."""
-    return tuple(_untrue(picture, matrix))
-
-
-def _untrue(picture: TimeResponse, matrix: Rows) -> Iterator[str]:
-    (_, end), (bottom, top) = picture.window
     if picture.discrete:
-        yield from _untrue_samples(picture, matrix)
-        return
+        return tuple(_untrue_samples(picture, matrix))
     start = tuple(part for start in picture.starts for part in start)
-    for course in picture.courses:
-        points = picture.points(course)
-        assert points[0][0] == 0
-        assert points[-1][0] == end
-        assert all(b[0] - a[0] <= end / 100 for a, b in pairwise(points))
-        states = _states(matrix, start, end / (len(points) - 1), len(points))
-        row, near = [float(part) for part in course.row], float(top - bottom) / 1000
-        for (instant, height), state in zip(points, states, strict=True):
-            if abs(sum(map(mul, row, state)) - float(height)) > near:
-                yield f"{course.signal} at {instant}"
+    found = (_untrue(course, picture.window, picture.parts, start, matrix) for course in picture.courses)
+    return tuple(text for texts in found for text in texts)
+
+
+@lru_cache(maxsize=64)
+def _untrue(
+    course: Course, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
+) -> tuple[str, ...]:
+    """Return the points of one course: pictures that differ in another course have the same."""
+    (begin, end), (bottom, top) = window
+    step = end / (len(course.heights) - 1)
+    assert begin == 0
+    assert step <= end / 100
+    row, near = [float(part) for part in course.row], float(top - bottom) / 1000
+    states = _states(matrix, start, step, len(course.heights))
+    return tuple(
+        f"{course.signal} at {k * step}"
+        for k, (height, state) in enumerate(zip(course.heights, states, strict=True))
+        if abs(sum(map(mul, row, state)) - height / parts) > near
+    )
 
 
 @lru_cache(maxsize=8)

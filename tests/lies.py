@@ -6,6 +6,7 @@ A change that makes another true statement is proved to be one in plain fraction
 from __future__ import annotations
 
 import os
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.observability import RankResult
 from symobs.analysis.stability_region import StabilityRegion
+from symobs.derivation import Plot
 from symobs.design.compensator import CompensatorDesign
 from symobs.design.gain import GainDesign
 from symobs.design.tracking import TrackingDesign
@@ -27,6 +29,7 @@ from tests.mutations import Change, Line, answer_changes, changes, lines_of
 from tests.plain import divides, hidden, multiply, observability_rows, rank_of, transposed, value_at
 from tests.plain_fractions import World, determinant, identity, inverse, plus, times
 from tests.regions_in_plain_fractions import is_stable, is_table, loop_polynomial, moved_at, points
+from tests.remembered import remembered
 from tests.truth import still_true
 
 if TYPE_CHECKING:
@@ -41,6 +44,8 @@ if TYPE_CHECKING:
 WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if WHOLE else (12, 130)
+#: Of a picture at least so many: it has hundreds of places, and what is asked of the others is kept.
+OF_A_PICTURE = 60
 #: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
 LEAST = 110
 
@@ -331,11 +336,18 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
-        meant = line.alone(line.step), line.told(line.step)
-        for change in sample(some, most):
-            alone = line.alone(change.value)
-            where = f"{result.task}, line {number}, {type(line.step).__name__}: {change.where}"
-            count.attempt(where, partial(_check, line, alone), partial(_is_true, line, alone, *meant))
+        is_drawn = isinstance(line.step, Plot)
+        with remembered() if is_drawn else nullcontext():
+            chosen = sample(some, max(most, OF_A_PICTURE) if is_drawn else most)
+            _try_line(line, f"{result.task}, line {number}", chosen, count)
+
+
+def _try_line(line: Line, where: str, some: Sequence[Change], count: Count) -> None:
+    meant, kind = (line.alone(line.step), line.told(line.step)), type(line.step).__name__
+    for change in some:
+        alone = line.alone(change.value)
+        make, is_so = partial(_check, line, alone), partial(_is_true, line, alone, *meant)
+        count.attempt(f"{where}, {kind}: {change.where}", make, is_so)
 
 
 def _check(line: Line, alone: Derivation) -> None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import (
@@ -32,6 +33,7 @@ from symobs.derivation import (
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.functions import PI, known, symbols_in
 from symobs.exact.root_sum import RootSum
+from symobs.flow import figure_of, is_box, is_integrator, key
 from symobs.formula import (
     Apply,
     At,
@@ -71,6 +73,7 @@ if TYPE_CHECKING:
     from tests.plain import Rows
 
 LARGEST = 2**30
+_ONE = Literal(Scalar.of(1))
 
 
 def identity(order: int) -> Rows:
@@ -395,10 +398,13 @@ class World:
                     yield from self.facts((equation,))
                 case Conclude(facts=facts) | Note(facts=facts):
                     yield from self.facts(facts)
-                case Diagram(_, labels):
+                case Diagram(figure, labels):
+                    signs = {wire.gain for wire in figure_of(figure).wires}
                     for name, label in labels:
                         if isinstance(label, Together):
                             yield from self.facts((label,))
+                        elif name in signs:  # whatever it is, where a gain behind it is 0
+                            yield f"label {name}", self.arriving(figure, dict(labels)) or self.value(label)
                         elif name[0].isupper():
                             yield f"label {name}", self.value(label)
                 case Tabulate():
@@ -430,6 +436,23 @@ class World:
                 yield "words", sentence.key
                 for _, slot in sentence.slots:
                     yield from self.facts((slot,))
+
+    def arriving(self, name: str, labels: Mapping[str, Any]) -> dict[str, Any]:
+        """Return by which matrices signals reach the integrators of a diagram; nothing where boxes are whole systems."""
+        figure = figure_of(name).without_missing(labels)
+        if figure.response or any(isinstance(label, Together) for label in labels.values()):
+            return {}
+
+        def leaving(node: str) -> Any:
+            if is_integrator(node) or not figure.into(node):
+                return self.value(labels[key(node)])
+            return times(self.value(labels[key(node)]), total(node)) if is_box(node) else total(node)
+
+        def total(node: str) -> Any:
+            wires = figure.into(node)
+            return reduce(plus, (times(self.value(labels.get(w.gain, _ONE)), leaving(w.begin)) for w in wires))
+
+        return {node: total(node) for node in figure.place if is_integrator(node)}
 
     def table(self, step: Tabulate) -> Iterator[tuple[str, Any]]:
         """Yield what a table says: the polynomial of its two upper rows, the rule of each row, its shape, its findings."""

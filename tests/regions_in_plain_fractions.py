@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from symobs.analysis.stability_region import StabilityRegion
     from symobs.derivation import Sentence
     from symobs.formula import Formula
-    from symobs.picture import Place
+    from symobs.picture import Curve, Place
     from symobs.region.routh import RouthTable
     from tests.plain_fractions import World
 
@@ -270,9 +270,9 @@ def _of_marks(marks: Sequence[tuple[tuple[Fraction, ...], str]], seen: Seen, ste
     for place, kind in marks:
         stable = seen.stable(*place)
         if kind == "excluded":
-            small = [part / 10**4 for part in step]
-            coefficients = seen.coefficients(*place)
-            if stable and seen.around(small, *place) == {True} and not _nearly_unstable(coefficients, seen.discrete):
+            # No more can be seen than that a place which does not belong to the region lies within a 4000th of the window.
+            around = {verdict for by in (16, 10**4) for verdict in seen.around([part / by for part in step], *place)}
+            if stable and around == {True} and not _nearly_unstable(seen.coefficients(*place), seen.discrete):
                 yield f"{place} is excluded"
         elif (kind == "stable") != stable or kind not in {"stable", "unstable"}:
             yield f"{place} is {kind}"
@@ -293,62 +293,81 @@ def _of_region(picture: RegionPicture, seen: Seen) -> Iterator[str]:
         return
     yield from _of_marks([(mark.place, mark.kind) for mark in picture.marks], seen, step)
     draw = random.Random(0)  # noqa: S311 - repeatable by design
-    for _ in range(IN_A_PICTURE):
-        place = tuple(low + (high - low) * Fraction(draw.randint(1, 996), 997) for low, high in picture.window)
+    drawn = [
+        tuple(low + (high - low) * Fraction(draw.randint(1, 996), 997) for low, high in picture.window)
+        for _ in range(IN_A_PICTURE)
+    ]
+    places = (*drawn, *(mark.place for mark in picture.marks))
+    filled = frozenset(place for area in picture.areas for place in _contained(area, places))
+    for place in drawn:
         around = seen.around(step, *place)
-        if len(around) == 1 and around != {is_filled(picture, place)}:
+        if len(around) == 1 and around != {place in filled}:
             yield f"at {place} the picture is filled, or is not"
     for mark in picture.marks:
-        if mark.kind != "excluded" and is_filled(picture, mark.place) != (mark.kind == "stable"):
+        if mark.kind != "excluded" and (mark.place in filled) != (mark.kind == "stable"):
             yield f"{mark.place} is filled, or is not"
-    outside = [place for area in picture.areas for place in area if not _within(place, picture, step)]
+    outside = [place for area in picture.areas for place in area if not _within(place, picture.window, step)]
     yield from (f"{place} lies outside" for place in outside)
-    told = [seen.signs_around(curve.equation) for curve in picture.curves]
-    for curve, signs_at in zip(picture.curves, told, strict=True):
-        for place in [*curve.points, *((_middle(a, b)) for a, b in pairwise(curve.points))]:
-            signs = signs_at(place, (step[0] * 5, step[1] * 5))
-            if signs <= {1} or signs <= {-1}:
-                yield f"{place} lies on {curve.equation}"
-    for area in picture.areas:
-        for place in area:
-            on_border = any(
-                min(abs(p - low), abs(p - high)) <= s
-                for p, (low, high), s in zip(place, picture.window, step, strict=True)
-            )
-            if (
-                not on_border
-                and not any(len(signs_at(place, step)) > 1 for signs_at in told)
-                and seen.around(step, *place) == {False}
-            ):
-                yield f"an edge at {place}"
-    yield from _of_boundaries(picture, seen, step)
-
-
-def _of_boundaries(picture: RegionPicture, seen: Seen, step: Sequence[Fraction]) -> Iterator[str]:
-    """Yield curves that are called boundaries where nothing is stable beside them, or not where something is."""
-    nothing = (Fraction(0), Fraction(0))
+    equations = tuple(curve.equation for curve in picture.curves)
     for curve in picture.curves:
-        places = curve.points if len(curve.points) > 2 else (curve.points[0], _middle(*curve.points), curve.points[-1])
-        votes = set()
-        for k in range(1, len(places) - 1, max(1, len(places) // 8)):
-            (x, y), before, after = places[k], places[k - 1], places[k + 1]
-            across = -(after[1] - before[1]) / step[1], (after[0] - before[0]) / step[0]
-            if not any(across):
-                continue
-            size = 40 * max(map(abs, across))
-            off = (across[0] / size * step[0], across[1] / size * step[1])
-            sides = [(x + off[0], y + off[1]), (x - off[0], y - off[1])]
-            votes |= {seen.stable(*place) for place in sides if _within(place, picture, nothing)}
-        if votes and curve.boundary != (True in votes):
-            yield f"{curve.equation} is a boundary, or is not"
+        yield from _of_curve(curve, seen, step)
+    for area in picture.areas:
+        yield from _of_edges(area, equations, picture.window, seen, step)
+    for curve in picture.curves:
+        yield from _of_boundary(curve, picture.window, seen, step)
+
+
+@lru_cache(maxsize=256)
+def _of_curve(curve: Curve, seen: Seen, step: Place) -> tuple[str, ...]:
+    """Return the places of a curve by which its equation does not pass."""
+    signs_at, far = seen.signs_around(curve.equation), (step[0] * 5, step[1] * 5)
+    places = [*curve.points, *((_middle(a, b)) for a, b in pairwise(curve.points))]
+    return tuple(f"{place} lies on {curve.equation}" for place in places if signs_at(place, far) in ({1}, {-1}))
+
+
+@lru_cache(maxsize=256)
+def _of_edges(
+    area: tuple[Place, ...], equations: tuple[Relation, ...], window: tuple[Place, Place], seen: Seen, step: Place
+) -> tuple[str, ...]:
+    """Return the corners of an area that lie on no curve and not on the border, and where nothing is stable."""
+    told = [seen.signs_around(equation) for equation in equations]
+
+    def is_on_border(place: Place) -> bool:
+        return any(min(abs(p - low), abs(p - high)) <= s for p, (low, high), s in zip(place, window, step, strict=True))
+
+    return tuple(
+        f"an edge at {place}"
+        for place in area
+        if not is_on_border(place)
+        and not any(len(signs_at(place, step)) > 1 for signs_at in told)
+        and seen.around(step, *place) == {False}
+    )
+
+
+@lru_cache(maxsize=256)
+def _of_boundary(curve: Curve, window: tuple[Place, Place], seen: Seen, step: Place) -> tuple[str, ...]:
+    """Tell of a curve that is called a boundary where nothing is stable beside it, or not where something is."""
+    nothing = (Fraction(0), Fraction(0))
+    places = curve.points if len(curve.points) > 2 else (curve.points[0], _middle(*curve.points), curve.points[-1])
+    votes = set()
+    for k in range(1, len(places) - 1, max(1, len(places) // 8)):
+        (x, y), before, after = places[k], places[k - 1], places[k + 1]
+        across = -(after[1] - before[1]) / step[1], (after[0] - before[0]) / step[0]
+        if not any(across):
+            continue
+        size = 40 * max(map(abs, across))
+        off = (across[0] / size * step[0], across[1] / size * step[1])
+        sides = [(x + off[0], y + off[1]), (x - off[0], y - off[1])]
+        votes |= {seen.stable(*place) for place in sides if _within(place, window, nothing)}
+    return (f"{curve.equation} is a boundary, or is not",) if votes and curve.boundary != (True in votes) else ()
 
 
 def _middle(a: Place, b: Place) -> Place:
     return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
 
 
-def _within(place: Place, picture: RegionPicture, step: Sequence[Fraction]) -> bool:
-    return all(low - s <= part <= high + s for part, (low, high), s in zip(place, picture.window, step, strict=True))
+def _within(place: Place, window: tuple[Place, Place], step: Sequence[Fraction]) -> bool:
+    return all(low - s <= part <= high + s for part, (low, high), s in zip(place, window, step, strict=True))
 
 
 def _cross(place: Place, step: Sequence[Fraction]) -> list[Place]:
@@ -366,8 +385,9 @@ def sign_at(equation: Relation, point: Mapping[str, Fraction]) -> int:
     return (total > 0) - (total < 0)
 
 
-def is_filled(picture: RegionPicture, place: Sequence[Fraction]) -> bool:
-    return any(_contains(area, place) for area in picture.areas)
+@lru_cache(maxsize=256)
+def _contained(area: tuple[Place, ...], places: tuple[tuple[Fraction, ...], ...]) -> frozenset[tuple[Fraction, ...]]:
+    return frozenset(place for place in places if _contains(area, place))
 
 
 def _contains(area: Sequence[Place], place: Sequence[Fraction]) -> bool:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs import StateSpace, compensator, observability, observer, state_feedback
+from symobs.derivation import Diagram
 from symobs.design.gain import GainDesign
 from symobs.design.output_feedback import OutputFeedback
 from symobs.errors import CertificateRejected, DerivationRejected
@@ -23,7 +24,7 @@ from symobs.problem import read
 from tests.lies import Count, tampered, try_answers, try_lines, try_witnesses
 from tests.mutation.claims import drawn
 from tests.mutations import changes, lines_of, parts_of
-from tests.truth import is_true
+from tests.truth import is_true, still_true
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,6 +109,19 @@ def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -
     for derivation in told:
         with pytest.raises(DerivationRejected):
             derivation.check()
+
+
+@pytest.mark.parametrize(("stem", "is_another"), [("fixed_modes_all_wanted", True), ("servo_observer", False)])
+def test_a_sign_before_a_gain_of_zero_may_be_any(stem: str, *, is_another: bool) -> None:
+    """With L = 0 nothing of y − C x̂ reaches the integrator, nor of y + C x̂."""
+    (path,) = (path for path in FILES if path.stem == stem)
+    lines = [line for result in results(path) for line in lines_of(result.derivation)]
+    drawn = [(line, line.step) for line in lines if isinstance(line.step, Diagram)]
+    ((line, place),) = ((line, list(dict(step.labels)).index("U")) for line, step in drawn if "U" in dict(step.labels))
+    signs = [change for change in changes(line.step) if change.where.startswith(f".labels[{place}]")]
+    assert len(signs) == 4
+    for change in signs:
+        assert still_true(line.alone(change.value), line.alone(line.step)) is is_another, change.where
 
 
 @pytest.mark.parametrize(

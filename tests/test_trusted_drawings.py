@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.derivation import pictures
-from symobs.derivation.pictures import _Test, faults, is_faithful, relations_of
+from symobs.derivation import pictures, region_pictures
+from symobs.derivation.pictures import faults, is_faithful, relations_of
+from symobs.derivation.places import Stability
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import square_root
 from symobs.formula import Environment, Letter
@@ -36,8 +37,9 @@ def told(picture: Picture, chi: Scalar, *, discrete: bool = False, **signs: str)
 # -- a polynomial at a place --------------------------------------------------------------------------------------------
 
 
-def asked(polynomial: Scalar, *axes: str, discrete: bool = False, **signs: str) -> _Test:
-    return _Test(polynomial, "z" if discrete else "s", axes, discrete, signs)
+def asked(polynomial: Scalar, *axes: str, discrete: bool = False, **signs: str) -> Stability:
+    declared = tuple(signs.get(name, "real") for name in axes)
+    return Stability(polynomial, "z" if discrete else "s", axes, declared, discrete)
 
 
 def test_a_place_is_stable_or_not() -> None:
@@ -132,15 +134,15 @@ SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
 )
 def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, Any], *, expected: bool) -> None:
     """Of a place, 0.1 to the sides and 0.2 up and down."""
-    assert pictures._passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
+    assert region_pictures.passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
 
 
 def test_an_arm_that_lies_in_a_curve_meets_it() -> None:
     for value, along, expected in ((h2 * (h2 - 3), 0, True), (h2 - 3, 0, False), (h1, 1, True), (h1 - 3, 1, False)):
-        assert pictures._has_root(value, AXES, at(0, 0), at(1, 1), along) is expected
+        assert region_pictures._has_root(value, AXES, at(0, 0), at(1, 1), along) is expected
     for root, along in ((h1 - 1, 0), (h1 + 1, 0), (h2 - 1, 1), (h2 + 1, 1)):
-        assert pictures._has_root(root, AXES, at(0, 0), at(1, 1), along)
-        assert not pictures._has_root(root, AXES, at(0, 0), at("0.99", "0.99"), along)
+        assert region_pictures._has_root(root, AXES, at(0, 0), at(1, 1), along)
+        assert not region_pictures._has_root(root, AXES, at(0, 0), at("0.99", "0.99"), along)
 
 
 def test_the_sign_of_a_polynomial_at_a_place() -> None:
@@ -148,27 +150,29 @@ def test_the_sign_of_a_polynomial_at_a_place() -> None:
     for place in (at("1/2", "2/3"), at(-3, "5/7"), at("-7/4", -2), at(0, 0)):
         x, y = place
         exact = 2 * x**2 * y - 3 * y**3 + x - 5
-        assert pictures._sign(value, AXES, place) == exact * x.denominator**2 * y.denominator**3
-        swapped = pictures._sign(value, ("h2", "h1"), (y, x))
-        assert swapped == pictures._sign(value, AXES, place)
-    assert pictures._sign(Scalar.of(4), AXES, at("1/2", "1/3")) == 4
+        assert region_pictures._sign(value, AXES, place) == exact * x.denominator**2 * y.denominator**3
+        swapped = region_pictures._sign(value, ("h2", "h1"), (y, x))
+        assert swapped == region_pictures._sign(value, AXES, place)
+    assert region_pictures._sign(Scalar.of(4), AXES, at("1/2", "1/3")) == 4
 
 
 def test_edges_that_slope_are_parts_of_curves() -> None:
     area = (at(0, 0), at(4, 0), at(4, 2), at(2, 3), at(0, 3))
-    assert list(pictures._sloping(area, at("0.1", "0.1"))) == [at(3, "5/2")]
-    assert list(pictures._sloping(area, at("1.99", "0.99"))) == [at(3, "5/2")]
-    assert list(pictures._sloping(area, at(2, "0.1"))) == list(pictures._sloping(area, at("0.1", 1))) == []
-    assert list(pictures._sloping((at(0, 0), at(1, 0), at(1, 1)), at("0.1", "0.1"))) == [at("1/2", "1/2")]
+    assert list(region_pictures._sloping(area, at("0.1", "0.1"))) == [(at(4, 2), at(2, 3))]
+    assert list(region_pictures._sloping(area, at("1.99", "0.99"))) == [(at(4, 2), at(2, 3))]
+    for near in (at(2, "0.1"), at("0.1", 1)):
+        assert list(region_pictures._sloping(area, near)) == []
+    triangle = (at(0, 0), at(1, 0), at(1, 1))
+    assert list(region_pictures._sloping(triangle, at("0.1", "0.1"))) == [(at(1, 1), at(0, 0))]
 
 
 def test_places_all_over_a_window() -> None:
-    places = list(pictures._grid(((Fraction(0), Fraction(679)), (Fraction(-679), Fraction(0)))))
+    places = list(region_pictures._grid(((Fraction(0), Fraction(679)), (Fraction(-679), Fraction(0)))))
     assert len(places) == 49
     assert places[:2] == [at(41, 43 - 679), at(41, 97 + 43 - 679)]
     assert places[7] == at(97 + 41, 43 - 679)
     assert places[-1] == at(6 * 97 + 41, 6 * 97 + 43 - 679)
-    shifted = list(pictures._grid(((Fraction(1), Fraction(680)), (Fraction(2), Fraction(681)))))
+    shifted = list(region_pictures._grid(((Fraction(1), Fraction(680)), (Fraction(2), Fraction(681)))))
     assert shifted[0] == at(42, 45)
 
 
@@ -177,7 +181,7 @@ def test_a_boundary_has_something_stable_beside_it() -> None:
     test = asked(s + h1 + 0 * h2, *AXES)
 
     def may_be(*points: Place) -> set[bool]:
-        return pictures._are_boundaries(Curve(points, said(h1, 0)), SQUARE, test)
+        return region_pictures._are_boundaries(Curve(points, said(h1, 0)), SQUARE, test)
 
     upright = tuple(at(0, Fraction(j, 10)) for j in range(-9, 10))
     assert may_be(*upright) == may_be(*upright[::-1]) == {True}
@@ -199,92 +203,92 @@ def test_a_boundary_is_asked_for_close_beside_it() -> None:
     points = tuple(at(100, j) for j in range(1, 40))
     for limit, expected in ((100, True), ("100.99", True), ("101.01", False)):
         test = asked(s + h1 - Scalar.of(Fraction(limit)), *AXES)
-        assert pictures._are_boundaries(Curve(points, said(h1, 0)), wide, test) == {expected}
+        assert region_pictures._are_boundaries(Curve(points, said(h1, 0)), wide, test) == {expected}
     level = tuple(at(j, 100) for j in range(1, 40))
     for limit, expected in ((100, True), ("101.99", True), ("102.01", False)):
         test = asked(s + h2 - Scalar.of(Fraction(limit)), *AXES)
-        assert pictures._are_boundaries(Curve(level, said(h2, 0)), wide, test) == {expected}
+        assert region_pictures._are_boundaries(Curve(level, said(h2, 0)), wide, test) == {expected}
 
 
 def test_some_points_of_a_curve_are_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
     places: list[Place] = []
-    monkeypatch.setattr(_Test, "is_stable", lambda _, *place: places.append(place))
+    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
     points = tuple(at(0, Fraction(j, 100)) for j in range(24))
-    assert pictures._are_boundaries(Curve(points, said(h1, 0)), SQUARE, asked(s, *AXES)) == {False}
+    assert region_pictures._are_boundaries(Curve(points, said(h1, 0)), SQUARE, asked(s, *AXES)) == {False}
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 23, 3)]
     assert {x for x, _ in places} == {Fraction(-2, 10**4), Fraction(2, 10**4)}
     places.clear()
-    pictures._are_boundaries(Curve(points[:21], said(h1, 0)), SQUARE, asked(s, *AXES))
+    region_pictures._are_boundaries(Curve(points[:21], said(h1, 0)), SQUARE, asked(s, *AXES))
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 20, 2)]
     places.clear()
-    pictures._are_boundaries(Curve(points[:5], said(h1, 0)), SQUARE, asked(s, *AXES))
+    region_pictures._are_boundaries(Curve(points[:5], said(h1, 0)), SQUARE, asked(s, *AXES))
     assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in (1, 2, 3)]
 
 
 def test_the_places_beside_a_curve_lie_across_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """As it is seen: the window is a square to the eye, however many units it has."""
     places: list[Place] = []
-    monkeypatch.setattr(_Test, "is_stable", lambda _, *place: places.append(place))
+    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
     wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
     slope = tuple(at(100 + j, 100 + j) for j in range(3))
-    pictures._are_boundaries(Curve(slope, said(h1, h2)), wide, asked(s, *AXES))
+    region_pictures._are_boundaries(Curve(slope, said(h1, h2)), wide, asked(s, *AXES))
     assert places == [at("100.5", 103), at("101.5", 99)]
     places.clear()
     bent = at(0, "-1/2"), at(0, 0), at(0, "1/2"), at("9/10", "9/10")
-    pictures._are_boundaries(Curve(bent, said(h1, 0)), SQUARE, asked(s, *AXES))
+    region_pictures._are_boundaries(Curve(bent, said(h1, 0)), SQUARE, asked(s, *AXES))
     assert places[:2] == [at("-1/5000", 0), at("1/5000", 0)]
 
 
 def test_places_on_a_segment() -> None:
-    assert pictures._along(at(0, 0), at(252, -504)) == (
+    assert region_pictures._along(at(0, 0), at(252, -504)) == (
         at(0, 0),
         at(72, -144),
         at(140, -280),
         at(189, -378),
         at(252, -504),
     )
-    assert pictures._along(at(1, 2), at(253, 2))[1] == at(73, 2)
+    assert region_pictures._along(at(1, 2), at(253, 2))[1] == at(73, 2)
 
 
 def test_the_border_of_a_window() -> None:
     near = at("0.1", "0.2")
     for place in (("-0.9", 0), ("0.9", 0), (0, "-0.8"), (0, "0.8"), (1, 1), (-2, 0)):
-        assert pictures._on_border(at(*place), SQUARE, near)
+        assert region_pictures._on_border(at(*place), SQUARE, near)
     for place in (("-0.89", 0), ("0.89", 0), (0, "-0.79"), (0, "0.79")):
-        assert not pictures._on_border(at(*place), SQUARE, near)
+        assert not region_pictures._on_border(at(*place), SQUARE, near)
 
 
 L_SHAPE = (at(0, 0), at(4, 0), at(4, 1), at(1, 1), at(1, 4), at(0, 4))
 
 
 def test_what_lies_inside_of_an_area() -> None:
-    assert sorted(pictures._crossings(L_SHAPE, Fraction(2))) == [0, 1]
-    assert sorted(pictures._crossings(L_SHAPE, Fraction(1, 2))) == [0, 4]
-    assert sorted(pictures._crossings((at(0, 0), at(3, 0), at(0, 6)), Fraction(2))) == [0, 2]
-    assert sorted(pictures._crossings(L_SHAPE, Fraction(1))) == [0, 1]  # its upper side is not of it
+    assert sorted(region_pictures._crossings(L_SHAPE, Fraction(2))) == [0, 1]
+    assert sorted(region_pictures._crossings(L_SHAPE, Fraction(1, 2))) == [0, 4]
+    assert sorted(region_pictures._crossings((at(0, 0), at(3, 0), at(0, 6)), Fraction(2))) == [0, 2]
+    assert sorted(region_pictures._crossings(L_SHAPE, Fraction(1))) == [0, 1]  # its upper side is not of it
     for inside in ((2, "1/2"), ("1/2", 3), ("1/2", "1/2")):
-        assert pictures._contains(L_SHAPE, at(*inside))
+        assert region_pictures._contains(L_SHAPE, at(*inside))
     for outside in ((2, 2), (5, "1/2"), (-1, "1/2"), ("1/2", 5), (2, -1)):
-        assert not pictures._contains(L_SHAPE, at(*outside))
+        assert not region_pictures._contains(L_SHAPE, at(*outside))
 
 
 def test_edges_to_the_left_are_counted() -> None:
     horseshoe = (at(0, 0), at(30, 0), at(30, 9), at(20, 9), at(20, 5), at(10, 5), at(10, 9), at(0, 9))
     for x, expected in ((-5, False), (5, True), (15, False), (25, True), (35, False)):
-        assert pictures._contains(horseshoe, at(x, 7)) is expected
+        assert region_pictures._contains(horseshoe, at(x, 7)) is expected
     for x, expected in ((0, False), (10, True), (20, False), (30, True)):  # an edge is of what lies to its left
-        assert pictures._contains(horseshoe, at(x, 7)) is expected
+        assert region_pictures._contains(horseshoe, at(x, 7)) is expected
 
 
 def test_places_inside_of_an_area() -> None:
-    places = list(pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(1)))
+    places = list(region_pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(1)))
     assert places == [at(x, y) for y in (101, 198, 295) for x in (1, 5, 9)]
-    moved = list(pictures._inside((at(5, 388), at(15, 388), at(15, 776), at(5, 776)), Fraction(1)))
+    moved = list(region_pictures._inside((at(5, 388), at(15, 388), at(15, 776), at(5, 776)), Fraction(1)))
     assert moved == [at(x + 5, y + 388) for x, y in places]
-    assert list(pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(5))) == []
-    assert len(list(pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction("4.99")))) == 9
+    assert list(region_pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(5))) == []
+    assert len(list(region_pictures._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction("4.99")))) == 9
     horseshoe = (at(0, 0), at(30, 0), at(30, 388), at(20, 388), at(20, 50), at(10, 50), at(10, 388), at(0, 388))
-    assert [x for x, _ in pictures._inside(horseshoe, Fraction(1))][:6] == [1, 5, 9, 21, 25, 29]
+    assert [x for x, _ in region_pictures._inside(horseshoe, Fraction(1))][:6] == [1, 5, 9, 21, 25, 29]
 
 
 # -- regions ----------------------------------------------------------------------------------------------------------------
@@ -380,15 +384,26 @@ def test_an_area_has_its_edges_on_curves_or_on_the_border() -> None:
     assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), marks=()), STABLE) == []
     sloping = (*RIGHT[:3], at(100, 1000))
     assert "an edge at (50, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
-    nearly = (*RIGHT[:3], at(40, 1000))
-    assert told(replace(HALF, areas=(nearly,), marks=()), STABLE) == []
+    for index, x, y in ((3, 3, 1000), (3, 40, 1000), (0, 3, -1000), (0, 40, -1000)):  # where a curve meets the border
+        moved = (*RIGHT[:index], at(x, y), *RIGHT[index + 1 :])
+        assert told(replace(HALF, areas=(moved,), marks=()), STABLE) == [f"an edge at ({x}, {y})"]
+
+
+def test_the_middle_of_an_edge_may_lie_farther_off() -> None:
+    """h1 = c (h2 / 1000)² from (0, 0) to (c, 1000): the middle of the edge lies c / 4 beside the curve."""
+    high = ((Fraction(-500), Fraction(500)), (Fraction(0), Fraction(1000)))
+    for c, expected in ((80, []), (81, ["an edge at (81/2, 500)"])):
+        bent = Curve((at(0, 0), at(Fraction(c, 9), "1000/3"), at(c, 1000)), said(h1 * 10**6, c * h2**2))
+        area = (at(0, 0), at(500, 0), at(500, 1000), at(c, 1000))
+        drawn = RegionPicture(AXES, high, (area,), (bent,))
+        assert told(drawn, s + h1 - h2**2 * Fraction(c, 10**6)) == expected
 
 
 def test_every_edge_of_every_area_is_on_some_curve() -> None:
     second = Curve((at(100, 500), at(400, 500)), said(h2, 500))
     assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), curves=(WALL, second)), STABLE) == []
-    assert told(replace(HALF, areas=((*RIGHT[:3], at(40, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
-    sloping = at(40, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
+    assert told(replace(HALF, areas=((*RIGHT[:3], at(2, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
+    sloping = at(2, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
     assert "an edge at (450, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
     below, above = (*RIGHT[:2], at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), *RIGHT[2:])
     for areas in ((below, (*above, at(3, 500))), ((*above, at(3, 500)), below)):

@@ -156,3 +156,14 @@ def test_what_is_no_solution_is_rejected() -> None:
             ]
             with pytest.raises(CertificateRejected):
                 found.with_answer("L", type(L).of(changed))
+
+
+def test_a_gain_that_is_found_cannot_be_denied() -> None:
+    """That none was found is an answer too, but only where none is."""
+    zero, poles = ASKED
+    square_roots = symobs.observer(symobs.StateSpace(ROOTS[0], None, ROOTS[1]), poles=poles, zero=asked(zero))
+    plant = symobs.StateSpace("[0 1; 2 3]", "[a 1; 0 1]")
+    rational = symobs.state_feedback(plant, poles=[-4, -1], zero="[* 0; * *]")
+    for found, letter in ((square_roots, "L"), (rational, "K")):
+        with pytest.raises(CertificateRejected, match=f"a gain {letter} with these zeros is found"):
+            found.with_answer(letter, None)

@@ -40,10 +40,15 @@ def faults_of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, disc
             yield f"{picture.moved} goes from {begin} to {end}"
             return
         for place, value in zip(path, along, strict=True):
-            if not _has_root_near(_shifted(polynomial, picture.moved, value, place, variable), near):
+            if not is_pole(polynomial, picture.moved, value, place, variable, near):
                 yield f"{written(place)} is a pole at {picture.moved} = {value}"
     if not any(_are_all(picture, polynomial, variable, at) for at in _common(picture)):
         yield "these are all poles"
+
+
+def is_pole(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str, near: Fraction) -> bool:
+    """Whether a root of a polynomial surely lies near a place where the parameter that is moved has this value."""
+    return _has_root_near(_shifted(polynomial, moved, value, place, variable), near)
 
 
 def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Complex]:

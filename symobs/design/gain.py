@@ -253,6 +253,12 @@ class GainDesign(Result):
         return (Scalar.of(1),) if contradict(self.equations) else obstacles(self.equations)
 
     @property
+    def can_be_found(self) -> bool:
+        """Whether a search for a gain with the zeros asked for ends with one."""
+        assert self.desired is not None  # noqa: S101 - zeros are asked for together with poles
+        return with_zeros(self._pair, self.desired, self.places(self.zero)) is not None
+
+    @property
     def existence(self) -> tuple[Scalar, ...]:
         """What decides where a gain exists: det 𝒪 (det 𝒞), or what the fixed modes leave of φ where that is 0."""
         if self.desired is None:

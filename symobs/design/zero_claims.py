@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import Claim
+from symobs.errors import CertificateRejected
 from symobs.exact import EIGENVALUE, Matrix, Scalar
 from symobs.formula import Environment
 from symobs.page import relation
@@ -17,7 +18,13 @@ if TYPE_CHECKING:
 
 
 def excluded_claims(design: GainDesign) -> Iterator[Claim]:
-    """Yield what vanishes wherever a gain has its zeros where they are asked for: 1, or polynomials in parameters."""
+    """Yield what vanishes wherever a gain has its zeros where they are asked for: 1, or polynomials in parameters.
+
+    Where there is nothing of that kind the answer says no more than that no gain was found, and none is.
+    """
+    if not design.needed and design.can_be_found:
+        message = f"a gain {design.letter} with these zeros is found"
+        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
     variable = design.plant.variable
     e = Environment(variable=variable, relations=design.equations)
     for value in design.needed:
