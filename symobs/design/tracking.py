@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.strata import carried, common_zeros
+from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
@@ -166,7 +166,9 @@ class TrackingDesign(Result):
 
         cases = carried(self.plant, self.loop.case_tree, on)
         if self.answer["w"] is None:
-            return cases
+            known = {condition.expression for condition in self.loop.holds_where}
+            own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
+            return tuple({case.when: case for case in (*cases, *strata(self.plant, own, on))}.values())
         left = (self.answer["w"] @ (self.plant.matrices.A - self.reference) @ self.passed).normal()
         obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
         if any(entry.is_constant for entry in obstacles):
