@@ -101,6 +101,21 @@ def test_the_feedforward_of_a_reference_says_where_its_denominator_vanishes() ->
     assert (there["verdict"], there["solvable"], there["K_d"]) == ("no", False, None)
 
 
+def test_a_law_that_cannot_be_solved_for_u_on_a_curve_is_no_compensator_there() -> None:
+    # On the curve the case said "where the equation of the curve does not hold".
+    found = answered(
+        {
+            "task": "compensator",
+            "symbols": {"a": "real", "b": "real"},
+            "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]", "D": "[(a^2+b^2)/38]"},
+            "specification": {"control_poles": "-2, -2", "observer_poles": "-3", "observer": "minimal"},
+        }
+    )
+    # K = [4 4], L = 3: u = -4 (y - D u) - 4 (z + 3 (y - D u)) has the factor 1 - 16 D before u
+    there = case(found, "8*a**2 + 8*b**2 - 19 == 0")
+    assert (there["verdict"], there["F"]) == ("no", None)
+
+
 # -- no traceback where a stratum is more than one curve or point --------------------------------------------------
 
 
