@@ -6,8 +6,10 @@ import json
 from fractions import Fraction
 from typing import Any
 
+import pytest
 import sympy
 
+from symobs.expect import mismatches
 from symobs.problem import read
 from symobs.render.json import result_object
 from tests.campaign.points import value
@@ -150,3 +152,125 @@ def test_a_stratum_whose_own_cases_cannot_be_claimed_is_undecided() -> None:
     assert found["verdict"] == "conditional"
     deeper = [inner for one in found["cases"] for inner in one.get("cases", [])]
     assert "undecided" in {one["verdict"] for one in deeper}
+
+
+# -- [expect]: every field of the table can be held against an answer ------------------------------------------------
+
+
+def unmet(text: str) -> list[str]:
+    problem = read(text)
+    return mismatches(problem.viewed(problem.solve()), problem.expect)
+
+
+OSCILLATOR = """
+    task = "pbh"
+    [plant]
+    A = "[0 1; -1 0]"
+    C = "[1 0]"
+"""
+FACTORS = """
+    task = "characteristic_polynomial"
+    [plant]
+    A = "[0 1 0; 0 0 1; -4 -8 -5]"
+"""
+TWO_OUTPUTS = """
+    task = "compensator"
+    [plant]
+    A = "[0]"
+    B = "[1]"
+    C = "[1; 1]"
+    [specification]
+    control_poles = "-1"
+    observer_poles = "-2"
+"""
+ROUTH = """
+    task = "stability_region"
+    [symbols]
+    h = "real"
+    [specification]
+    polynomial = "s^3 + s^2 + h s + 2"
+"""
+QUADRANT = """
+    task = "stability_region"
+    [symbols]
+    h1 = "real"
+    h2 = "real"
+    [specification]
+    polynomial = "s^2 + h1 s + h2"
+    parameters = "h1, h2"
+"""
+FAMILY = """
+    task = "observer"
+    [plant]
+    A = "[0 0; 0 0]"
+    C = "[1 0; 0 1]"
+    [specification]
+    poles = "-1, -2"
+"""
+PARTS = """
+    task = "decomposition"
+    [plant]
+    A = "[-1 0; 0 -2]"
+    B = "[1; 0]"
+    C = "[1 1]"
+"""
+
+
+@pytest.mark.parametrize(
+    ("problem", "right", "wrong"),
+    [
+        (FACTORS, 'factors = [["s + 2", 2], ["s + 1", 1]]', 'factors = [["s + 2", 1], ["s + 1", 2]]'),
+        (FACTORS, 'factors = [["s + 1", 1], ["2 + s", 2]]', 'factors = [["s + 1", 1]]'),
+        (
+            TWO_OUTPUTS,  # x' = -x + e + v, e' = -2 e + v
+            'closed_loop = [["(s + 3)/((s + 1)*(s + 2))"], ["(s + 3)/(s^2 + 3 s + 2)"]]',
+            'closed_loop = [["(s + 3)/((s + 1)*(s + 2))"], ["(s + 4)/((s + 1)*(s + 2))"]]',
+        ),
+        (ROUTH, 'routh_table = [[1, "h"], [1, 2], ["h - 2"], [2]]', 'routh_table = [[1, "h"], [1, 2], ["h + 2"], [2]]'),
+        (ROUTH, 'parameters = ["h"]', 'parameters = ["k"]'),
+        (QUADRANT, "components = [{ bounded = false }]", "components = [{ bounded = true }]"),
+        (
+            QUADRANT,
+            'components = [{ parts = [{ h1 = ["0", "oo"], h2 = ["0", "oo"] }] }]',
+            'components = [{ parts = [{ h1 = ["0", "oo"], h2 = ["0", "1"] }] }]',
+        ),
+        (FAMILY, "family = { dimension = 2 }", "family = { dimension = 3 }"),
+        (
+            FAMILY,
+            'family = { F = "[0 1; -2 -3]" }',
+            'family = { F = "[0 1; -2 -4]" }',
+        ),  # the companion of (s + 1)(s + 2)
+        (
+            PARTS,
+            "sizes = { co = 1, c_no = 0, nc_o = 1, nc_no = 0 }",
+            "sizes = { co = 2, c_no = 0, nc_o = 0, nc_no = 0 }",
+        ),
+        (
+            OSCILLATOR,
+            'modes = [{ eigenvalue = "i", conditions = [], matrix = [["-i", 1], [-1, "-i"], [1, 0]] }, { rank = 2 }]',
+            'modes = [{ eigenvalue = "i", conditions = [], matrix = [["i", 1], [-1, "-i"], [1, 0]] }, { rank = 2 }]',
+        ),
+    ],
+)
+def test_values_made_of_several_are_compared(problem: str, right: str, wrong: str) -> None:
+    # Right answers were refused as unreadable, or as others: they were compared with our own objects.
+    assert unmet(f"{problem}\n[expect]\n{right}") == []
+    (line,) = unmet(f"{problem}\n[expect]\n{wrong}")
+    assert line.startswith("expect.")
+    assert "Scalar(" not in line
+
+
+def test_a_sentence_is_compared_as_words() -> None:
+    text = """
+        task = "pole_advice"
+        [plant]
+        A = "[0 1; 0 -3]"
+        B = "[0; 1]"
+        C = "[-1 1]"
+        [specification]
+        radius = 2
+        [expect]
+        warnings = ["it rains"]
+    """
+    (line,) = unmet(text)
+    assert line.startswith("expect.warnings: expected [it rains], found [A zero lies in the right half-plane")
