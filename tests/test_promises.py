@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import sympy
 
+import symobs
 from symobs.expect import mismatches
 from symobs.problem import read
 from symobs.render.json import result_object
@@ -274,3 +275,24 @@ def test_a_sentence_is_compared_as_words() -> None:
     """
     (line,) = unmet(text)
     assert line.startswith("expect.warnings: expected [it rains], found [A zero lies in the right half-plane")
+
+
+# -- Python: one function a task, keywords and attributes named as in files and JSON ---------------------------------
+
+
+def test_a_polynomial_is_given_by_its_keyword() -> None:
+    # A plant in the first place was asked for, though the polynomial stands in its place.
+    found = symobs.stability_region(polynomial="s^2 + h s + 1", parameters=["h"])
+    assert found.intervals == (("0", "oo"),)
+
+
+def test_symbols_are_an_attribute_as_they_are_a_field() -> None:
+    plant = symobs.StateSpace("[0 1; -k -d]", C="[1 0]", symbols={"k": "positive", "d": "real"})
+    assert symobs.observer(plant, poles=["-1", "-2"]).symbols == {"d": "real", "k": "positive"}
+
+
+def test_infinity_and_polynomials_of_sympy_are_read() -> None:
+    plant = symobs.StateSpace("[-1]", B="[1]", C="[1]")
+    assert symobs.gramian(plant, horizon=sympy.oo).matrix == sympy.Matrix([[sympy.Rational(1, 2)]])
+    s = sympy.Symbol("s")
+    assert sympy.Matrix([[3]]) == symobs.observer(plant, polynomial=sympy.Poly(s + 4, s)).L
