@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import Condition
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.exact.functions import PI, symbols_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,6 +20,16 @@ class Faces:
     def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
         """Return the result in a format, in a convention."""
         raise NotImplementedError
+
+    @property
+    def symbols(self) -> dict[str, str]:
+        """Every symbol of the result with its sign."""
+        result: Any = self
+        names = set(result.plant.symbols.signs) | set(result.plant.field.names)
+        for value in result.answer.values():
+            names |= getattr(value, "names", frozenset())
+        names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t", PI}
+        return {name: result.plant.symbols.sign(name) for name in sorted(names)}
 
     def to_latex(self) -> str:
         """Return the derivation as a LaTeX article."""

@@ -101,6 +101,8 @@ class _Search:
             rows = independent_rows(self.matrix.select(range(self.matrix.shape[0]), columns), ideal)
         except TooLarge as error:
             raise _Exhausted from error
+        if len(rows) != len(columns):  # the locus is several, and a pivot vanishes on some of them
+            raise _Exhausted
         return len(columns), (rows, columns), self._minor((rows, columns), ideal)
 
     def _minor(self, minor: Minor, ideal: Ideal | None = None) -> Scalar:

@@ -92,7 +92,10 @@ def _case(
             there = plant.restricted(equations, others)
         else:
             there = plant.substitute(values)
-        yield Case(when, values or {}, solve(there, values or {}))
+        found = solve(there, values or {})
+        if there.equations:  # its own strata are made now, where what cannot be claimed on them can be left undecided
+            _ = found.case_tree
+        yield Case(when, values or {}, found)
     except ZeroDivisionError:
         return
     except NotWritten:

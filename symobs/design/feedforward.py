@@ -45,9 +45,9 @@ class FeedforwardDesign(Result):
         plant = loop.plant
         answer: dict[str, Any] = dict.fromkeys(("F", "transfer_function", "w", "stuck"))
         if loop.exists:
-            stuck = kernel(moving_at_rest(loop))
+            stuck = kernel(moving_at_rest(loop), plant.ideal)
             G = None if stuck.shape[1] else gain_at_rest(loop)
-            left = Matrix.zeros(1, 0) if G is None else kernel(G.T)
+            left = Matrix.zeros(1, 0) if G is None else kernel(G.T, plant.ideal)
             if G is None:
                 answer["stuck"] = stuck.select(range(plant.order), [0])
             elif left.shape[1]:

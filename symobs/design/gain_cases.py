@@ -34,11 +34,11 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
         return common_zeros(plant, design.needed, solve) if design.needed else ()
     found = carried(plant, design.test.case_tree, solve)
     if design._pair.is_observable or design.answer[letter] is not None:  # noqa: SLF001 - the witness
-        return (*found, *strata(plant, _chosen(design), solve))
+        return (*found, *strata(plant, chosen(design), solve))
     return (*found, *common_zeros(plant, design.existence, solve)) if design.existence else found
 
 
-def _chosen(design: GainDesign) -> tuple[Scalar, ...]:
+def chosen(design: GainDesign) -> tuple[Scalar, ...]:
     """Return what the gain divides by because it is this one of many: where it vanishes another one serves."""
     pair = design._pair  # noqa: SLF001 - the witness
     if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, SeveralOutputs)):

@@ -51,9 +51,11 @@ class MinimalOrderCompensator(OutputFeedback):
         """Return the compensator of two designs for one plant."""
         K, L = feedback.answer["K"], estimator.answer["L"]
         answer: dict[str, Any] = {"K": K, "L": L, "F": None}
-        if K is not None and L is not None and not well_posedness(feedback.plant, K, estimator).is_zero:
-            answer["F"] = _function(feedback.plant, K, estimator)
-        return cls(feedback.plant, method_name, answer, feedback, estimator)
+        plant = feedback.plant
+        have = K is not None and L is not None
+        if have and not plant.simplified(well_posedness(plant, K, estimator).numerator).is_zero:
+            answer["F"] = _function(plant, K, estimator)
+        return cls(plant, method_name, answer, feedback, estimator)
 
     @property
     def has_reduced_observer(self) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.gain import letters_of
+from symobs.design.gain_cases import chosen
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Root, Scalar, echelon, unit_rows
@@ -225,8 +226,8 @@ class ReducedOrderObserver(Result):
             usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
-        own = strata(self.plant, (determinant, *self.inner.existence), solve)
-        if self.plant.outputs == 1:
+        own = strata(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)), solve)
+        if self.plant.outputs == 1 and not self.unmoved_modes:
             return own
         return tuple({case.when: case for case in (*carried(self.plant, self.inner.case_tree, solve), *own)}.values())
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.strata import carried, common_zeros
+from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar, independent_rows, kernel
+from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -47,20 +47,20 @@ class TrackingDesign(Result):
     @classmethod
     def of(cls, loop: OutputFeedback, reference: Matrix, start: Matrix | None, method_name: str) -> Self:
         """Return the tracking design, or the negative result."""
-        B = loop.plant.matrices.B
+        B, ideal = loop.plant.matrices.B, loop.plant.ideal
         passed = trajectory(reference, start)
         wanted = ((loop.plant.matrices.A - reference) @ passed).normal()
-        rows, columns = independent_rows(B), independent_rows(B.T)
+        rows, columns = independent_rows(B, ideal), independent_rows(B.T, ideal)
         found = B.select(rows, columns).solve(wanted.select(rows, range(wanted.shape[1])))
         Y = placed(found, columns, B.shape[1])
         answer: dict[str, Any] = {"K_d": None, "w": None}
-        if (B @ Y - wanted).normal().is_zero:
+        if modulo((B @ Y - wanted).normal(), ideal).is_zero:
             square = passed.shape[0] == passed.shape[1]
             back = passed.inverse() if square else (passed.T @ passed).inverse() @ passed.T
             answer["K_d"] = (Y @ back).normal()
         else:
-            left = kernel(B.T)
-            free = (left.T @ wanted).normal()
+            left = kernel(B.T, ideal)
+            free = modulo((left.T @ wanted).normal(), ideal)
             index = next(i for i in range(free.shape[0]) if not free.select([i], range(free.shape[1])).is_zero)
             answer["w"] = left.select(range(B.shape[0]), [index]).T
         return cls(loop.plant, method_name, answer, loop, reference, start)
@@ -166,7 +166,9 @@ class TrackingDesign(Result):
 
         cases = carried(self.plant, self.loop.case_tree, on)
         if self.answer["w"] is None:
-            return cases
+            known = {condition.expression for condition in self.loop.holds_where}
+            own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
+            return tuple({case.when: case for case in (*cases, *strata(self.plant, own, on))}.values())
         left = (self.answer["w"] @ (self.plant.matrices.A - self.reference) @ self.passed).normal()
         obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
         if any(entry.is_constant for entry in obstacles):

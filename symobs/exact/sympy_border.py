@@ -112,6 +112,8 @@ def complex_from_sympy(expression: Any, where: str) -> Complex:
     """Return the exact value of a SymPy expression built from numbers, symbols, i and the four operations."""
     if isinstance(expression, (int, Fraction)):
         return Complex.of(expression)
+    if isinstance(expression, sympy.Poly):
+        return complex_from_sympy(expression.as_expr(), where)
     if not isinstance(expression, sympy.Expr):
         message = f"{type(expression).__name__} is not an exact expression"
         raise InputError(message, where=where)

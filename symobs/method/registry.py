@@ -15,7 +15,6 @@ from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.method.result import Document, Result
-    from symobs.system import StateSpace
 
 Kind = TypeVar("Kind", bound=type)
 Callback = TypeVar("Callback", bound=Callable[..., Any])
@@ -65,13 +64,14 @@ def _of_constant_plants(function: Callback) -> Callback:
     """Refuse a plant whose matrices contain the time t, naming the tasks that take it."""
 
     @wraps(function)
-    def refusing(plant: StateSpace, *arguments: Any, **keywords: Any) -> Result:
+    def refusing(*arguments: Any, **keywords: Any) -> Result:
+        plant = arguments[0] if arguments else keywords.get("plant")
         if getattr(plant, "is_time_varying", False):  # a text is no plant
             message = f"{function.__name__} is for plants with constant matrices, and this plant depends on the time t"
             tasks()
             repair = f"use {' or '.join(_IN_TIME)}, or give a constant that is called t another name"
             raise InputError(message, where="plant", repair=repair)
-        result: Result = function(plant, *arguments, **keywords)
+        result: Result = function(*arguments, **keywords)
         return result
 
     return refusing  # type: ignore[return-value]

@@ -6,7 +6,6 @@ import json
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.convention import STANDARD, Convention
-from symobs.exact.functions import PI, symbols_named
 from symobs.face import to_json
 from symobs.method import Case, Result, output_format
 from symobs.viewed import Viewed
@@ -77,19 +76,10 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
         "condition_kinds": [condition.kind for condition in result.holds_where],
         "cases": [_case_object(case, answers) for case in result.case_tree],
         "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
-        "symbols": _symbols(result),
+        "symbols": result.symbols,
         **answers,
         "in_convention": {"name": convention.name, **in_convention},
     }
-
-
-def _symbols(result: Result) -> dict[str, str]:
-    """Return every symbol of the result with its sign."""
-    names = set(result.plant.symbols.signs) | set(result.plant.field.names)
-    for value in result.answer.values():
-        names |= getattr(value, "names", frozenset())
-    names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t", PI}
-    return {name: result.plant.symbols.sign(name) for name in sorted(names)}
 
 
 def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:

@@ -5,22 +5,22 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from symobs.certificate import verify
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
-from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank, root_of_pole
-from symobs.exact.functions import identities, roots_in, symbols_in
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
+from symobs.exact.functions import roots_in, symbols_in
+from symobs.expect.functions import functions_agree
+from symobs.expect.roots import COUNTED, is_number, key_of, numbers_agree, read_roots
+from symobs.expect.structure import RELATION, agree, factored_table, factors_agree, relation
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
-from symobs.formula import Environment, Literal, Relation
 
 if TYPE_CHECKING:
     from symobs.viewed import Answered
 
-_RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
-_COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
 _NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
 _FUNCTION = re.compile(r"\b(exp|sin|cos|sinh|cosh)\b|\bt\b")
 _WORD = re.compile(r"[A-Za-z]+")
@@ -104,9 +104,9 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
         elif isinstance(value, list):
             waiting += [(f"{where}[{i}]", entry) for i, entry in enumerate(value)]
         elif isinstance(value, str) and not _WORD.fullmatch(value) and not _NOT_RATIONAL.search(value):
-            relation = _RELATION.match(value)
+            sides = RELATION.match(value)
             try:
-                for part in (relation[1], relation[3]) if relation else (value,):
+                for part in (sides[1], sides[3]) if sides else (value,):
                     if part.lstrip().startswith("[") or _FUNCTION.search(part):
                         others = known and {name: sign for name, sign in known.items() if name != "t"}
                         parse_matrix(part, others, variable="t", where=where, functions=True)
@@ -152,6 +152,8 @@ def _names(result: Answered) -> Any:
 
 
 def _shown(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_shown(entry)}" for key, entry in value.items()) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_shown(entry) for entry in value) + "]"
     return "none" if value is None else str(value)
@@ -167,8 +169,12 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     if isinstance(found, Matrix):
         known = names if names is None or variable not in found.names else {**names, variable: "real"}
         return parse_matrix(expected, known, where=where) == found
+    table = factored_table(found)
+    if table is not None:
+        known = None if names is None else {**names, variable: "real"}
+        return parse_matrix(expected, known, where=where) == table
     if isinstance(found, Mapping):
-        return isinstance(expected, Mapping) and dict(expected) == dict(found)
+        return agree(found, expected, names, where)
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
@@ -180,15 +186,11 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     if found is None or isinstance(found, (str, bool)):
         return isinstance(expected, type(found)) and bool(found == expected)
     if isinstance(found, (list, tuple)):
-        return _lists_agree(list(found), expected if isinstance(expected, list) else [expected], result, where)
+        wanted = expected if isinstance(expected, list) else [expected]
+        if name == "kernel" and found and wanted:
+            return _same_span(list(found), wanted, names, where)
+        return _lists_agree(list(found), wanted, result, where)
     raise InputError(f"the field {name} cannot be compared", where=where, repair="leave it out")
-
-
-def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
-    """Tell whether two values are equal as functions: brought to common exponentials, sines and cosines."""
-    meanings, relations = identities([left, right])
-    environment = Environment(coefficients=meanings, relations=relations)
-    return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])
 
 
 def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
@@ -196,14 +198,12 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if not found or not expected:
         return not found and not expected
     if all(isinstance(entry, Root) for entry in found):
-        return Counter(map(_key, found)) == Counter(map(_key, _roots(expected, names, variable, where)))
+        return Counter(map(key_of, found)) == Counter(map(key_of, read_roots(expected, names, variable, where)))
     if all(isinstance(entry, (Complex, Root)) for entry in found):
-        return _numbers_agree(found, expected, names, where)
-    if all(isinstance(entry, (Condition, str)) for entry in found):
-        return {_relation(entry, names, where) for entry in expected} == {
-            _relation(str(entry), names, where) for entry in found
-        }
-    if all(isinstance(entry, Mapping) for entry in found):
+        return numbers_agree(found, expected, names, where)
+    if all(_is_relation(entry) for entry in found):
+        return {relation(e, names, where) for e in expected} == {relation(str(e), names, where) for e in found}
+    if all(isinstance(entry, Mapping) and "eigenvalue" in entry for entry in found):
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
@@ -220,9 +220,15 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
         )
     if all(isinstance(entry, list) and all(isinstance(end, str) for end in entry) for entry in found):
         return _intervals_agree(found, expected, names, where)
-    if all(isinstance(entry, list) for entry in found):
-        return _same_span(found, expected, names, where)
-    return bool(found == expected)
+    if all(isinstance(entry, (list, tuple)) and list(map(type, entry)) == [Scalar, int] for entry in found):
+        return factors_agree([(factor, power) for factor, power in found], expected, names, where)
+    return agree(found, expected, names, where)
+
+
+def _is_relation(entry: Any) -> bool:
+    return isinstance(entry, Condition) or (
+        isinstance(entry, str) and (entry == "False" or bool(RELATION.match(entry)))
+    )
 
 
 def _intervals_agree(found: list[list[str]], expected: list[Any], names: Any, where: str) -> bool:
@@ -236,7 +242,7 @@ def _intervals_agree(found: list[list[str]], expected: list[Any], names: Any, wh
 def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
     if {found, expected} & {"oo", "-oo"}:
         return found == expected
-    counted = _COUNTED.fullmatch(found), _COUNTED.fullmatch(expected)
+    counted = COUNTED.fullmatch(found), COUNTED.fullmatch(expected)
     if counted[0] and counted[1]:
         polynomials = [parse_scalar(match[1], names, where=where).numerator.factors()[1] for match in counted if match]
         return polynomials[0] == polynomials[1] and int(counted[0][2]) == int(counted[1][2])
@@ -249,106 +255,6 @@ def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
 def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
     """Tell whether an entry of a list is this matrix; a number alone is none."""
     return isinstance(expected, (str, list)) and parse_matrix(expected, names, where=where) == found
-
-
-# -- relations ------------------------------------------------------------------------------------------------------
-
-
-def _relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
-    """Return a relation as (what is compared with 0, up to a factor that does not matter, operator)."""
-    if text == "False":
-        return Scalar.of(0), ">"
-    match = _RELATION.match(str(text))
-    if match is None:
-        message = f'"{shown(str(text))}" is not a relation'
-        raise InputError(message, where=where, repair='write for example "2*c - 1 != 0"')
-    left, operator, right = match.groups()
-    difference = parse_scalar(left, names, where=where, functions=True)
-    difference = difference - parse_scalar(right, names, where=where, functions=True)
-    if operator in {"<", "<="}:
-        difference, operator = -difference, operator.replace("<", ">")
-    if difference.is_zero:
-        return difference, operator
-    unit, _ = difference.factors()
-    return difference / (unit if operator in {"!=", "=="} else Scalar.of(abs(unit.fraction()))), operator
-
-
-# -- roots ----------------------------------------------------------------------------------------------------------
-
-
-def _key(root: Root) -> Any:
-    exact: Complex | None = root.exact()
-    return exact if exact is not None else (root.centre, root.radicand, root.sign, root.factor, root.index)
-
-
-def _roots(expected: list[Any], names: Any, variable: str, where: str) -> list[Root]:
-    """Return the roots that texts stand for: numbers, a + b sqrt(c), CRootOf(polynomial, index)."""
-    roots: list[Root] = []
-    for i, entry in enumerate(expected):
-        place = f"{where}[{i}]" if len(expected) > 1 else where
-        counted = _COUNTED.fullmatch(entry) if isinstance(entry, str) else None
-        if counted is not None:
-            factor, zero = parse_scalar(counted[1], names, variable=variable, where=place), Scalar.of(0)
-            roots.append(Root(factor, variable, zero, zero, 1, int(counted[2])))
-        elif isinstance(entry, str) and "sqrt" in entry:
-            roots += [_surd(part, names, variable, place) for part in entry.strip(" []").split(",")]
-        else:
-            read = parse_poles(entry if isinstance(entry, str) else [entry], names, where=place)
-            roots += [root_of_pole(pole, variable) for pole in read]
-    return roots
-
-
-def _surd(text: str, names: Any, variable: str, where: str) -> Root:
-    """Return the root a + b sqrt(c) or a + b sqrt(c) I: sqrt(c) is read as a new name q, with q**2 = c."""
-    before, _, behind = text.partition("sqrt")
-    end = depth = 0
-    while end < len(behind) and (depth or not end):
-        depth += (behind[end] == "(") - (behind[end] == ")")
-        end += 1
-    q = "sqrt_"
-    while names is not None and q in names:
-        q += "_"
-    known = None if names is None else {**names, q: "real"}
-    value = parse_poles(before + q + behind[end:], known, where=where)[0]
-    square = parse_scalar(behind[:end], names, where=where)
-    real, imaginary = (_in_powers(part, q, text, where) for part in (value.real, value.imaginary))
-    if not imaginary[0].is_zero or not (real[1] * imaginary[1]).is_zero:
-        raise _no_surd(text, where)
-    slope = real[1] + imaginary[1]
-    radicand = slope**2 * (square if imaginary[1].is_zero else -square)
-    sign = -1 if not slope.is_zero and slope.factors()[0].fraction() < 0 else 1
-    return Root((Scalar.symbol(variable) - real[0]) ** 2 - radicand, variable, real[0], radicand, sign)
-
-
-def _in_powers(value: Scalar, q: str, text: str, where: str) -> tuple[Scalar, Scalar]:
-    """Return (a, b) with value = a + b q."""
-    if not value.is_polynomial_in(q) or value.degree(q) > 1:
-        raise _no_surd(text, where)
-    *slope, constant = value.coefficients(q) or (Scalar.of(0),)
-    return constant, slope[0] if slope else Scalar.of(0)
-
-
-def _no_surd(text: str, where: str) -> InputError:
-    return InputError(f'"{shown(text)}" is not of the form a + b sqrt(c)', where=where, repair="leave it out")
-
-
-def _numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether complex numbers with square roots, and roots without a form, are those expected, each once."""
-    waiting = list(found)
-    for i, entry in enumerate(expected):
-        counted = isinstance(entry, str) and "CRootOf" in entry
-        read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True)
-        match = next((n for n in waiting if (str(n) == entry if counted else _is_number(n, read[0]))), None)
-        if match is None:
-            return False
-        waiting.remove(match)
-    return not waiting
-
-
-def _is_number(found: Complex | Root, expected: Complex) -> bool:
-    if isinstance(found, Root):
-        return False
-    return functions_agree(found.real, expected.real) and functions_agree(found.imaginary, expected.imaginary)
 
 
 # -- modes ----------------------------------------------------------------------------------------------------------
@@ -373,14 +279,31 @@ def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str)
     for key, entry in wanted.items():
         value = mode[key]
         if isinstance(value, Root):
-            if Counter(map(_key, _roots([entry], names, variable, f"{where}.{key}"))) != Counter([_key(value)]):
+            if Counter(map(key_of, read_roots([entry], names, variable, f"{where}.{key}"))) != Counter([key_of(value)]):
+                return False
+        elif key == "conditions":
+            if not _lists_agree(value, entry if isinstance(entry, list) else [entry], result, f"{where}.{key}"):
                 return False
         elif isinstance(value, list):
-            table = [[str(cell) for cell in row] for row in value]
-            if parse_matrix(entry, names, where=f"{where}.{key}") != parse_matrix(table, names, where=f"{where}.{key}"):
+            if not _tables_agree(value, entry, names, f"{where}.{key}"):
                 return False
         elif type(value) is not type(entry) or value != entry:
             return False
+    return True
+
+
+def _tables_agree(found: list[list[Any]], expected: Any, names: Any, where: str) -> bool:
+    """Tell whether a matrix, whose entries may be complex, is the one expected."""
+    table = [[str(cell) for cell in row] for row in found]
+    if not isinstance(expected, list) or [len(row) if isinstance(row, list) else 0 for row in expected] != [
+        len(row) for row in table
+    ]:
+        return bool(parse_matrix(expected, names, where=where) == parse_matrix(table, names, where=where))
+    for left, right in zip(chain(*table), chain(*expected), strict=True):
+        if left != right:
+            one, other = (parse_poles([cell], names, where=where, functions=True)[0] for cell in (left, right))
+            if not is_number(one, other):
+                return False
     return True
 
 

@@ -1,0 +1,91 @@
+"""Roots and numbers that texts stand for: a + b sqrt(c), CRootOf(polynomial, index), sums of square roots."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from symobs.errors import InputError
+from symobs.exact import Complex, Root, Scalar, root_of_pole
+from symobs.expect.functions import functions_agree
+from symobs.expression import parse_poles, parse_scalar
+from symobs.expression.source import shown
+
+COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
+
+
+def key_of(root: Root) -> Any:
+    """Return what is the same for two ways to write one root."""
+    exact: Complex | None = root.exact()
+    return exact if exact is not None else (root.centre, root.radicand, root.sign, root.factor, root.index)
+
+
+def read_roots(expected: list[Any], names: Any, variable: str, where: str) -> list[Root]:
+    """Return the roots that texts stand for: numbers, a + b sqrt(c), CRootOf(polynomial, index)."""
+    roots: list[Root] = []
+    for i, entry in enumerate(expected):
+        place = f"{where}[{i}]" if len(expected) > 1 else where
+        counted = COUNTED.fullmatch(entry) if isinstance(entry, str) else None
+        if counted is not None:
+            factor, zero = parse_scalar(counted[1], names, variable=variable, where=place), Scalar.of(0)
+            roots.append(Root(factor, variable, zero, zero, 1, int(counted[2])))
+        elif isinstance(entry, str) and "sqrt" in entry:
+            roots += [_surd(part, names, variable, place) for part in entry.strip(" []").split(",")]
+        else:
+            read = parse_poles(entry if isinstance(entry, str) else [entry], names, where=place)
+            roots += [root_of_pole(pole, variable) for pole in read]
+    return roots
+
+
+def _surd(text: str, names: Any, variable: str, where: str) -> Root:
+    """Return the root a + b sqrt(c) or a + b sqrt(c) I: sqrt(c) is read as a new name q, with q**2 = c."""
+    before, _, behind = text.partition("sqrt")
+    end = depth = 0
+    while end < len(behind) and (depth or not end):
+        depth += (behind[end] == "(") - (behind[end] == ")")
+        end += 1
+    q = "sqrt_"
+    while names is not None and q in names:
+        q += "_"
+    known = None if names is None else {**names, q: "real"}
+    value = parse_poles(before + q + behind[end:], known, where=where)[0]
+    square = parse_scalar(behind[:end], names, where=where)
+    real, imaginary = (_in_powers(part, q, text, where) for part in (value.real, value.imaginary))
+    if not imaginary[0].is_zero or not (real[1] * imaginary[1]).is_zero:
+        raise _no_surd(text, where)
+    slope = real[1] + imaginary[1]
+    radicand = slope**2 * (square if imaginary[1].is_zero else -square)
+    sign = -1 if not slope.is_zero and slope.factors()[0].fraction() < 0 else 1
+    return Root((Scalar.symbol(variable) - real[0]) ** 2 - radicand, variable, real[0], radicand, sign)
+
+
+def _in_powers(value: Scalar, q: str, text: str, where: str) -> tuple[Scalar, Scalar]:
+    """Return (a, b) with value = a + b q."""
+    if not value.is_polynomial_in(q) or value.degree(q) > 1:
+        raise _no_surd(text, where)
+    *slope, constant = value.coefficients(q) or (Scalar.of(0),)
+    return constant, slope[0] if slope else Scalar.of(0)
+
+
+def _no_surd(text: str, where: str) -> InputError:
+    return InputError(f'"{shown(text)}" is not of the form a + b sqrt(c)', where=where, repair="leave it out")
+
+
+def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str) -> bool:
+    """Tell whether complex numbers with square roots, and roots without a form, are those expected, each once."""
+    waiting = list(found)
+    for i, entry in enumerate(expected):
+        counted = isinstance(entry, str) and "CRootOf" in entry
+        read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True)
+        match = next((n for n in waiting if (str(n) == entry if counted else is_number(n, read[0]))), None)
+        if match is None:
+            return False
+        waiting.remove(match)
+    return not waiting
+
+
+def is_number(found: Complex | Root, expected: Complex) -> bool:
+    """Tell whether a complex number is the one expected, as functions of its symbols."""
+    if isinstance(found, Root):
+        return False
+    return functions_agree(found.real, expected.real) and functions_agree(found.imaginary, expected.imaginary)

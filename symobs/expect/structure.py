@@ -1,0 +1,95 @@
+"""Values made of several: tables by the keys that are expected, lists entry by entry, down to expressions and words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from symobs.errors import InputError, SymobsError
+from symobs.exact import Factored, Matrix, Scalar
+from symobs.exact.functions import symbols_in
+from symobs.expect.functions import functions_agree
+from symobs.expression import parse_matrix, parse_scalar
+from symobs.expression.source import shown
+
+RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
+
+
+def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
+    """Tell whether a value is the one expected: of a table the keys that are given are compared."""
+    if isinstance(found, Mapping):
+        alike = isinstance(expected, Mapping) and set(expected) <= set(found)
+        return alike and all(agree(found[key], entry, names, f"{where}.{key}") for key, entry in expected.items())
+    if isinstance(found, (list, tuple)):
+        if not isinstance(expected, list) or len(expected) != len(found):
+            return False
+        pairs = enumerate(zip(found, expected, strict=True))
+        return all(agree(entry, wanted, names, f"{where}[{i}]") for i, (entry, wanted) in pairs)
+    if found is None or isinstance(found, bool) or expected is None or isinstance(expected, (bool, list, Mapping)):
+        if isinstance(found, Matrix) and isinstance(expected, list):
+            return parse_matrix(expected, _knowing(names, found), where=where) == found
+        return type(found) is type(expected) and bool(found == expected)
+    if isinstance(found, Matrix):
+        return isinstance(expected, str) and parse_matrix(expected, _knowing(names, found), where=where) == found
+    if isinstance(found, (Scalar, Factored, int)):
+        value = found.value if isinstance(found, Factored) else Scalar.of(found) if isinstance(found, int) else found
+        return functions_agree(parse_scalar(expected, _knowing(names, value), where=where, functions=True), value)
+    return str(found) == str(expected) or _agree_as_mathematics(str(found), str(expected), names, where)
+
+
+def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
+    """Return a relation as (what is compared with 0, up to a factor that does not matter, operator)."""
+    if text == "False":
+        return Scalar.of(0), ">"
+    match = RELATION.match(str(text))
+    if match is None:
+        message = f'"{shown(str(text))}" is not a relation'
+        raise InputError(message, where=where, repair='write for example "2*c - 1 != 0"')
+    left, operator, right = match.groups()
+    difference = parse_scalar(left, names, where=where, functions=True)
+    difference = difference - parse_scalar(right, names, where=where, functions=True)
+    if operator in {"<", "<="}:
+        difference, operator = -difference, operator.replace("<", ">")
+    if difference.is_zero:
+        return difference, operator
+    unit, _ = difference.factors()
+    return difference / (unit if operator in {"!=", "=="} else Scalar.of(abs(unit.fraction()))), operator
+
+
+def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: Any, where: str) -> bool:
+    """Tell whether the factors with their powers are those expected, in any order."""
+    read: list[tuple[Scalar, int]] = []
+    for i, pair in enumerate(expected):
+        if not isinstance(pair, list) or len(pair) != 2 or type(pair[1]) is not int:
+            return False
+        known = names
+        for factor, _ in found:
+            known = _knowing(known, factor)
+        read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]"), pair[1]))
+    return len(read) == len(found) and all(pair in read for pair in found)
+
+
+def factored_table(found: Any) -> Matrix | None:
+    """Return the matrix that a table of factored entries is; None for any other value."""
+    if not isinstance(found, tuple) or not found or not all(isinstance(row, tuple) and row for row in found):
+        return None
+    if not all(isinstance(entry, Factored) for row in found for entry in row):
+        return None
+    return Matrix.of([[entry.value for entry in row] for row in found])
+
+
+def _knowing(names: Any, value: Scalar | Matrix) -> Any:
+    """Return the names with those that an answer has beside the declared ones: its variable, free parameters."""
+    return None if names is None else {**dict.fromkeys(sorted(symbols_in(value)), "real"), **names}
+
+
+def _agree_as_mathematics(found: str, expected: str, names: Any, where: str) -> bool:
+    """Tell whether two texts say the same; what is no mathematics says nothing but itself."""
+    try:
+        if RELATION.match(found) or RELATION.match(expected):
+            return relation(found, names, where) == relation(expected, names, where)
+        left, right = (parse_scalar(text, names, where=where, functions=True) for text in (found, expected))
+    except SymobsError:
+        return False
+    return functions_agree(left, right)
