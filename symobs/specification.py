@@ -171,9 +171,8 @@ def read_poles(value: object, symbols: Symbols, where: str, variable: str | None
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
     if len(poles) != degree:
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
-        raise InputError(
-            message, where=where, repair=f"give as many poles as the order asks for, {degree}, with commas between"
-        )
+        repair = f"give as many poles as the order asks for, {degree}, with commas between"
+        raise InputError(message, where=where, repair=repair, given=len(poles))
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
     )
@@ -206,7 +205,7 @@ def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) 
         raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 4 {variable} + 4"')
     if found != degree:
         message = f"a polynomial of degree {found} given, degree {degree} needed"
-        raise InputError(message, where=where, repair=f"give a polynomial of degree {degree}")
+        raise InputError(message, where=where, repair=f"give a polynomial of degree {degree}", given=found)
     lead = polynomial.coefficients(variable)[0]
     if not lead.is_one:
         message = f"the polynomial is not monic, its leading coefficient is {lead}"

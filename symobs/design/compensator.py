@@ -203,13 +203,22 @@ def observer_based(
     def wanted(loop: str, given: tuple[object, object], degree: int) -> DesiredPolynomial | None:
         return desired_polynomial(plant, *given, names=(f"{loop}_poles", f"{loop}_polynomial"), degree=degree)
 
+    def of_observer() -> DesiredPolynomial | None:
+        try:
+            return wanted("observer", estimate, estimated) if observer in _METHODS else None
+        except InputError as error:
+            other, orders = "full" if minimal else "minimal", (plant.order, plant.order - plant.outputs)
+            if error.facts.get("given") == orders[not minimal]:
+                error.repair += f', or write observer = "{other}"'
+            raise
+
     minimal = "minimal" in (observer, method_name.removesuffix("_order"))
     estimated = plant.order - (plant.outputs if minimal else 0)
     _, chosen, control_wish, observer_wish = together(
         lambda: _require_kind(observer, plant, method_name),
         lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
         lambda: wanted("control", control, plant.order),
-        lambda: wanted("observer", estimate, estimated) if observer in _METHODS else None,
+        of_observer,
     )
     found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found

@@ -283,7 +283,8 @@ class _Page:
         is_numbered = self.numbered and title.key not in _UNNUMBERED
         self.numbers[-1] += is_numbered
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
-        self.blocks.append(Heading(number, filled(title, self.convention)))
+        heading = Heading(number, filled(title, self.convention))
+        self.blocks.append(heading)
         self.numbers.append(0)
         columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
         self.blocks += self.side_by_side(columns)
@@ -291,6 +292,9 @@ class _Page:
             if step not in columns and (isinstance(step, Section) or step not in self.told):
                 self.tell_step(step)
         self.numbers.pop()
+        if self.blocks[-1] is heading and not self.told.isdisjoint(steps):  # all of it was told before
+            self.blocks.pop()
+            self.numbers[-1] -= is_numbered
 
     def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
         """Yield sections beside each other, each cell written on a page of its own."""
