@@ -10,6 +10,7 @@ import pytest
 import sympy
 
 import symobs
+from symobs.errors import ProblemErrors
 from symobs.expect import mismatches
 from symobs.problem import read
 from symobs.render.json import result_object
@@ -296,3 +297,43 @@ def test_infinity_and_polynomials_of_sympy_are_read() -> None:
     assert symobs.gramian(plant, horizon=sympy.oo).matrix == sympy.Matrix([[sympy.Rational(1, 2)]])
     s = sympy.Symbol("s")
     assert sympy.Matrix([[3]]) == symobs.observer(plant, polynomial=sympy.Poly(s + 4, s)).L
+
+
+# -- messages: all errors of a file at once, in sentences ------------------------------------------------------------
+
+
+def test_a_plant_that_cannot_be_read_does_not_hide_what_is_missing() -> None:
+    with pytest.raises(ProblemErrors) as refused:
+        read(
+            """
+            task = "compensator"
+            [symbols]
+            a = { sign = "postive", tex = "a" }
+            [plant]
+            A = "[1 2; 3 4]"
+            B = "[1 2]"
+            C = "[1 2 3]"
+            [specification]
+            control_poles = "-1, -2"
+            """
+        )
+    places = [error.where for error in refused.value.errors]
+    assert places == ["symbols.a", "symbols.a", "plant.B", "plant.C", "specification.observer_poles"]
+
+
+@pytest.mark.parametrize(
+    ("poles", "said"),
+    [
+        ("-1, -2, -5", "its fixed modes -1, -2 are among the poles asked for"),
+        ("-1, -3, -5", "its fixed modes -1, -2 are not all among the poles asked for"),
+    ],
+)
+def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> None:
+    problem = {
+        "task": "observer",
+        "symbols": {"c": "real"},
+        "plant": {"A": "[-1 0 0; 0 -2 0; 0 0 0]", "C": "[c c 1]"},
+        "specification": {"poles": poles},
+    }
+    (result,) = read(json.dumps(problem)).solve()
+    assert said in " ".join(str(result.to("text")).split())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import SIGNS
@@ -11,7 +12,9 @@ from symobs.specification import KINDS
 from symobs.viewed import names_in
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterator
+
+    from symobs.method.registry import Task
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -117,3 +120,11 @@ def schema() -> dict[str, Any]:
 def _has(table: str, key: str) -> dict[str, Any]:
     """Return that a key stands in a table."""
     return {"required": [table], "properties": {table: {"type": "object", "required": [key]}}}
+
+
+def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str, str, str]]:
+    """Yield message, place and repair for the poles that tasks need and a specification gives in no way."""
+    for name in {name: None for task in wanted for name in task.keywords if name.endswith("poles")}:
+        instead = (name, f"{name.removesuffix('poles')}polynomial", *("KLMH" if name == "poles" else ()))
+        if not isinstance(given, Mapping) or not any(other in given for other in instead):
+            yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'

@@ -16,7 +16,7 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, PRINTED, TOP, repair_of
+from symobs.problem.keys import PLANT, PRINTED, TOP, missing_poles, repair_of
 from symobs.problem.tables import Decimal
 from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
@@ -135,6 +135,8 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
+        for message, where, repair in missing_poles(wanted, data.get("specification")):
+            errors.note(message, where, repair)
     raise errors.together(convention)
 
 
@@ -250,8 +252,12 @@ def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
     for name in list(table)[:_MAX_SYMBOLS]:
         with errors:
             kept[declared_name(name, f"symbols.{shown(name, 40)}")] = "real"
-            Symbols.of({name: table[name]})
-            kept[name] = table[name]
+            entry, before = table[name], len(errors.found)
+            for part in [{key: value} for key, value in entry.items()] if isinstance(entry, Mapping) else [entry]:
+                with errors:
+                    Symbols.of({name: part})
+            if len(errors.found) == before:
+                kept[name] = entry
     return Symbols.of(kept)
 
 
