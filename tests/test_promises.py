@@ -337,3 +337,40 @@ def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> 
     }
     (result,) = read(json.dumps(problem)).solve()
     assert said in " ".join(str(result.to("text")).split())
+
+
+# -- JSON: every field of the table, whatever the verdict ------------------------------------------------------------
+
+HIDDEN = {"A": "[0 0; 0 1]", "B": "[1; 0]", "C": "[0 1]"}
+
+
+@pytest.mark.parametrize(
+    ("problem", "fields"),
+    [
+        (
+            {"task": "compensator", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}},
+            "F F_stable closed_loop_polynomial closed_loop closed_loop_matrix closed_loop_matrix_estimate",
+        ),
+        (
+            {"task": "tracking", "specification": {"control_poles": "-3, -4", "observer_poles": "-3"}},
+            "error_matrix polynomial",
+        ),
+        ({"task": "feedforward", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}}, "F"),
+    ],
+)
+def test_what_a_negative_answer_does_not_have_is_null(problem: dict[str, Any], fields: str) -> None:
+    found = answered({**problem, "plant": HIDDEN})
+    assert found["verdict"] == "no"
+    assert {name: found[name] for name in fields.split()} == dict.fromkeys(fields.split())
+
+
+def test_what_is_not_known_of_a_region_is_null() -> None:
+    found = answered(
+        {
+            "task": "stability_region",
+            "symbols": {"a": "real", "b": "real"},
+            "plant": {"A": "[0 a; 0 -1]", "C": "[1 0]"},
+            "specification": {"L": "[h1; h2]", "parameters": "h1, h2"},
+        }
+    )
+    assert found["bounded"] is None
