@@ -10,8 +10,11 @@ import pytest
 import sympy
 
 import symobs
+from symobs.derivation.properties import PREDICATES, polynomial_of
 from symobs.errors import ProblemErrors
 from symobs.expect import mismatches
+from symobs.expression import parse_scalar
+from symobs.formula import Environment
 from symobs.problem import read
 from symobs.render.json import result_object
 from tests.campaign.points import value
@@ -341,6 +344,7 @@ def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> 
 
 # -- JSON: every field of the table, whatever the verdict ------------------------------------------------------------
 
+CONTINUOUS = False
 HIDDEN = {"A": "[0 0; 0 1]", "B": "[1; 0]", "C": "[0 1]"}
 
 
@@ -374,3 +378,84 @@ def test_what_is_not_known_of_a_region_is_null() -> None:
         }
     )
     assert found["bounded"] is None
+
+
+# -- strata whose points are not rational ----------------------------------------------------------------------------
+
+
+def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
+    # d = sqrt(7) - 2 makes (3, d) the eigenvector of -sqrt(7): "no" was said there, as of all other d.
+    found = answered(
+        {
+            "task": "gramian",
+            "symbols": {"d": "positive"},
+            "plant": {"A": "[-2 -3; -1 2]", "B": "[3; d]"},
+            "specification": {"of": "controllability", "horizon": "inf"},
+        }
+    )
+    there = case(found, "d**2 + 4*d - 3 == 0")
+    d = sympy.sqrt(7) - 2
+    b = sympy.Matrix([3, d])
+    assert sympy.simplify(sympy.Matrix([[-2, -3], [-1, 2]]) * b + sympy.sqrt(7) * b).is_zero_matrix
+    assert there["verdict"] == "conditional"
+    assert there["conditions"] == ["-2*d + 3 > 0"]
+    assert 2 * d < 3
+    W = sympy.Matrix([[9, 3 * d], [3 * d, d**2]]) / (2 * sympy.sqrt(7))
+    near = Fraction(6457513110645906, 10**16)
+    numbers = [[value(entry, {"d": near}) for entry in row] for row in there["matrix"]]
+    assert all(abs(float(W[i, j]) - numbers[i][j]) < 1e-12 for i in range(2) for j in range(2))
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        {  # a fixed mode among the poles asked for, on a curve of another degree: a fraction that is a polynomial there
+            "task": "observer",
+            "symbols": {"a": "nonzero", "b": "nonnegative"},
+            "plant": {"A": "[b^2 0; 0 2*a-b]", "C": "[-3 0]"},
+            "specification": {"polynomial": "s^2 + 9 s + 7"},
+        },
+        {
+            "task": "gramian",
+            "symbols": {"d": "positive"},
+            "plant": {"A": "[-2 -3; -1 2]", "B": "[3; d]"},
+            "specification": {"of": "controllability", "horizon": "inf"},
+        },
+        {  # entries of a gain with several rows and columns are given names
+            "task": "compensator",
+            "symbols": {"a": "nonnegative", "b": "real", "p": "positive"},
+            "plant": {"A": "[a-1 a+b; 0 -a]", "B": "[-a -1; a+b 0]", "C": "[1 -1]"},
+            "specification": {"control_poles": "b-1, -p", "observer_poles": "-p, -b"},
+        },
+    ],
+)
+def test_pages_of_such_problems_can_be_written(problem: dict[str, Any]) -> None:
+    (result,) = read(json.dumps(problem)).solve()
+    assert result.to("latex")
+
+
+@pytest.mark.parametrize(
+    ("text", "equation", "holds"),
+    [
+        ("(s^2 + 9 s + 7)/(s - a)", "a^2 + 9 a + 7", {"polynomial"}),  # a is a root
+        ("(s^2 + 9 s + 8)/(s - a)", "a^2 + 9 a + 7", {"not_polynomial"}),
+        ("(s^2 + 9 s + 7)/(s - a)", "", {"not_polynomial"}),
+        ("s^2 + a", "a^2 - 2", {"polynomial"}),
+        ("(s^2 + 1)/((a^2 - 2) s + a)", "a^2 - 2", set()),  # 0 s + a: what it is there nobody knows
+    ],
+)
+def test_a_fraction_is_a_polynomial_where_its_remainder_vanishes(text: str, equation: str, holds: set[str]) -> None:
+    names = {"a": "real", "s": "real"}
+    relations = (parse_scalar(equation, names),) if equation else ()
+    environment = Environment(variable="s", relations=relations)
+    fraction = parse_scalar(text, names)
+    assert {n for n in ("polynomial", "not_polynomial") if PREDICATES[n](fraction, environment, CONTINUOUS)} == holds
+
+
+def test_what_is_a_polynomial_on_a_curve_has_its_stability() -> None:
+    names = {"d": "real", "s": "real"}
+    environment = Environment(variable="s", relations=(parse_scalar("d^2 + 4 d - 3", names),), signs={"d": "positive"})
+    fraction = parse_scalar("(s^2 - 7)/(s d + 2 d - 3)", names)
+    found = polynomial_of(fraction, environment)
+    assert found.degree("s") == 1
+    assert not PREDICATES["unstable"](fraction, environment, CONTINUOUS)

@@ -196,7 +196,8 @@ def name_entries(page: Page, gain: str) -> None:
     value = page[gain].value
     names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
     letters = [page.name_coefficient(name, entry) for name, entry in zip(names, value.entries, strict=True)]
-    named = Matrix.row(letters) if value.shape[0] == 1 else Matrix.column(letters)
+    columns = value.shape[1]
+    named = Matrix.of([letters[k : k + columns] for k in range(0, len(letters), columns)])
     page.equal(relation(page[gain], named), say="named_entries")
     page.set(gain, named)
 
