@@ -145,7 +145,8 @@ def desired_polynomial(
         if not required:
             return None
         message = f"{names[0]} are missing"
-        repair = f'give {names[0]} = "{", ".join(str(-k) for k in range(1, degree + 1))}" or a {names[1]}'
+        article = "an" if names[1].startswith("o") else "a"
+        repair = f'give {names[0]} = "{", ".join(str(-k) for k in range(1, degree + 1))}" or {article} {names[1]}'
         raise InputError(message, where=first, repair=repair)
     if poles is not None and polynomial is not None:
         message = f"both {names[0]} and {names[1]} are given"

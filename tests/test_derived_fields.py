@@ -343,7 +343,7 @@ def said_stable(part: Result) -> list[tuple[Scalar, str, list[str] | None]]:
     found: list[tuple[Scalar, str, list[str] | None]] = []
     if "stable" in part.fields:
         found.append((part.answer["polynomial"], part.fields["stable"], part.fields["stable_if"]))
-    if "F_stable" in part.fields:
+    if part.fields.get("F_stable") is not None:
         F = part.answer["F"]
         entries = F.entries if isinstance(F, Matrix) else [F]
         found.append(

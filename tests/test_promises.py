@@ -10,7 +10,11 @@ import pytest
 import sympy
 
 import symobs
+from symobs.derivation.properties import PREDICATES, polynomial_of
+from symobs.errors import ProblemErrors
 from symobs.expect import mismatches
+from symobs.expression import parse_scalar
+from symobs.formula import Environment
 from symobs.problem import read
 from symobs.render.json import result_object
 from tests.campaign.points import value
@@ -296,3 +300,162 @@ def test_infinity_and_polynomials_of_sympy_are_read() -> None:
     assert symobs.gramian(plant, horizon=sympy.oo).matrix == sympy.Matrix([[sympy.Rational(1, 2)]])
     s = sympy.Symbol("s")
     assert sympy.Matrix([[3]]) == symobs.observer(plant, polynomial=sympy.Poly(s + 4, s)).L
+
+
+# -- messages: all errors of a file at once, in sentences ------------------------------------------------------------
+
+
+def test_a_plant_that_cannot_be_read_does_not_hide_what_is_missing() -> None:
+    with pytest.raises(ProblemErrors) as refused:
+        read(
+            """
+            task = "compensator"
+            [symbols]
+            a = { sign = "postive", tex = "a" }
+            [plant]
+            A = "[1 2; 3 4]"
+            B = "[1 2]"
+            C = "[1 2 3]"
+            [specification]
+            control_poles = "-1, -2"
+            """
+        )
+    places = [error.where for error in refused.value.errors]
+    assert places == ["symbols.a", "symbols.a", "plant.B", "plant.C", "specification.observer_poles"]
+
+
+@pytest.mark.parametrize(
+    ("poles", "said"),
+    [
+        ("-1, -2, -5", "its fixed modes -1, -2 are among the poles asked for"),
+        ("-1, -3, -5", "its fixed modes -1, -2 are not all among the poles asked for"),
+    ],
+)
+def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> None:
+    problem = {
+        "task": "observer",
+        "symbols": {"c": "real"},
+        "plant": {"A": "[-1 0 0; 0 -2 0; 0 0 0]", "C": "[c c 1]"},
+        "specification": {"poles": poles},
+    }
+    (result,) = read(json.dumps(problem)).solve()
+    assert said in " ".join(str(result.to("text")).split())
+
+
+# -- JSON: every field of the table, whatever the verdict ------------------------------------------------------------
+
+CONTINUOUS = False
+HIDDEN = {"A": "[0 0; 0 1]", "B": "[1; 0]", "C": "[0 1]"}
+
+
+@pytest.mark.parametrize(
+    ("problem", "fields"),
+    [
+        (
+            {"task": "compensator", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}},
+            "F F_stable closed_loop_polynomial closed_loop closed_loop_matrix closed_loop_matrix_estimate",
+        ),
+        (
+            {"task": "tracking", "specification": {"control_poles": "-3, -4", "observer_poles": "-3"}},
+            "error_matrix polynomial",
+        ),
+        ({"task": "feedforward", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}}, "F"),
+    ],
+)
+def test_what_a_negative_answer_does_not_have_is_null(problem: dict[str, Any], fields: str) -> None:
+    found = answered({**problem, "plant": HIDDEN})
+    assert found["verdict"] == "no"
+    assert {name: found[name] for name in fields.split()} == dict.fromkeys(fields.split())
+
+
+def test_what_is_not_known_of_a_region_is_null() -> None:
+    found = answered(
+        {
+            "task": "stability_region",
+            "symbols": {"a": "real", "b": "real"},
+            "plant": {"A": "[0 a; 0 -1]", "C": "[1 0]"},
+            "specification": {"L": "[h1; h2]", "parameters": "h1, h2"},
+        }
+    )
+    assert found["bounded"] is None
+
+
+# -- strata whose points are not rational ----------------------------------------------------------------------------
+
+
+def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
+    # d = sqrt(7) - 2 makes (3, d) the eigenvector of -sqrt(7): "no" was said there, as of all other d.
+    found = answered(
+        {
+            "task": "gramian",
+            "symbols": {"d": "positive"},
+            "plant": {"A": "[-2 -3; -1 2]", "B": "[3; d]"},
+            "specification": {"of": "controllability", "horizon": "inf"},
+        }
+    )
+    there = case(found, "d**2 + 4*d - 3 == 0")
+    d = sympy.sqrt(7) - 2
+    b = sympy.Matrix([3, d])
+    assert sympy.simplify(sympy.Matrix([[-2, -3], [-1, 2]]) * b + sympy.sqrt(7) * b).is_zero_matrix
+    assert there["verdict"] == "conditional"
+    assert there["conditions"] == ["-2*d + 3 > 0"]
+    assert 2 * d < 3
+    W = sympy.Matrix([[9, 3 * d], [3 * d, d**2]]) / (2 * sympy.sqrt(7))
+    near = Fraction(6457513110645906, 10**16)
+    numbers = [[value(entry, {"d": near}) for entry in row] for row in there["matrix"]]
+    assert all(abs(float(W[i, j]) - numbers[i][j]) < 1e-12 for i in range(2) for j in range(2))
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        {  # a fixed mode among the poles asked for, on a curve of another degree: a fraction that is a polynomial there
+            "task": "observer",
+            "symbols": {"a": "nonzero", "b": "nonnegative"},
+            "plant": {"A": "[b^2 0; 0 2*a-b]", "C": "[-3 0]"},
+            "specification": {"polynomial": "s^2 + 9 s + 7"},
+        },
+        {
+            "task": "gramian",
+            "symbols": {"d": "positive"},
+            "plant": {"A": "[-2 -3; -1 2]", "B": "[3; d]"},
+            "specification": {"of": "controllability", "horizon": "inf"},
+        },
+        {  # entries of a gain with several rows and columns are given names
+            "task": "compensator",
+            "symbols": {"a": "nonnegative", "b": "real", "p": "positive"},
+            "plant": {"A": "[a-1 a+b; 0 -a]", "B": "[-a -1; a+b 0]", "C": "[1 -1]"},
+            "specification": {"control_poles": "b-1, -p", "observer_poles": "-p, -b"},
+        },
+    ],
+)
+def test_pages_of_such_problems_can_be_written(problem: dict[str, Any]) -> None:
+    (result,) = read(json.dumps(problem)).solve()
+    assert result.to("latex")
+
+
+@pytest.mark.parametrize(
+    ("text", "equation", "holds"),
+    [
+        ("(s^2 + 9 s + 7)/(s - a)", "a^2 + 9 a + 7", {"polynomial"}),  # a is a root
+        ("(s^2 + 9 s + 8)/(s - a)", "a^2 + 9 a + 7", {"not_polynomial"}),
+        ("(s^2 + 9 s + 7)/(s - a)", "", {"not_polynomial"}),
+        ("s^2 + a", "a^2 - 2", {"polynomial"}),
+        ("(s^2 + 1)/((a^2 - 2) s + a)", "a^2 - 2", set()),  # 0 s + a: what it is there nobody knows
+    ],
+)
+def test_a_fraction_is_a_polynomial_where_its_remainder_vanishes(text: str, equation: str, holds: set[str]) -> None:
+    names = {"a": "real", "s": "real"}
+    relations = (parse_scalar(equation, names),) if equation else ()
+    environment = Environment(variable="s", relations=relations)
+    fraction = parse_scalar(text, names)
+    assert {n for n in ("polynomial", "not_polynomial") if PREDICATES[n](fraction, environment, CONTINUOUS)} == holds
+
+
+def test_what_is_a_polynomial_on_a_curve_has_its_stability() -> None:
+    names = {"d": "real", "s": "real"}
+    environment = Environment(variable="s", relations=(parse_scalar("d^2 + 4 d - 3", names),), signs={"d": "positive"})
+    fraction = parse_scalar("(s^2 - 7)/(s d + 2 d - 3)", names)
+    found = polynomial_of(fraction, environment)
+    assert found.degree("s") == 1
+    assert not PREDICATES["unstable"](fraction, environment, CONTINUOUS)

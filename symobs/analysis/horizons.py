@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InputError
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, remainder
 from symobs.exact.functions import NotWritten, known
 from symobs.expression import parse_scalar
 from symobs.stability import stability
@@ -71,8 +71,8 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     """Return the polynomial of what the output sees, and the Gramian over all time where that decays."""
     variable, hidden = plant.variable, test["restricted"]
     seen = A.characteristic_polynomial(variable)
-    if hidden.shape[0]:
-        seen = seen / hidden.characteristic_polynomial(variable)
+    if hidden.shape[0]:  # on a stratum the factor divides modulo its equations only
+        seen = plant.simplified(remainder(seen, hidden.characteristic_polynomial(variable), variable)[0])
     found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
     nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
     if found.verdict == "no":

@@ -47,7 +47,7 @@ def of_conditions(found: Simplified, question: Question) -> dict[str, Any]:
     """Return what is known of a region given by inequalities alone: whether it is empty, bounded, and a point of it."""
     empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
     limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None
-    fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant}
+    fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant, "bounded": None}
     if limits is not None and not limits.needs:
         fields["bounded"] = limits.bounded
         fields["components"] = [{"bounded": limits.bounded, "sample": _texts(limits.sample)}]

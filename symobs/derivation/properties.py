@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
 from symobs.conditions import never_zero, sign_of
-from symobs.exact import Ideal, Matrix, Scalar
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, remainder
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
 if TYPE_CHECKING:
@@ -16,8 +16,32 @@ if TYPE_CHECKING:
 
 
 def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial as it is, and of a rational function the denominator."""
-    return value if value.is_polynomial_in(environment.variable) else value.denominator
+    """Return a polynomial, and what is one where the relations hold, and of another rational function the denominator."""
+    found = _divided(value, environment)
+    return found[0] if found is not None and found[1].is_zero else value.denominator
+
+
+def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:
+    """Return quotient and remainder of numerator and denominator where the relations hold; None if that is not known."""
+    variable = environment.variable
+    if value.is_polynomial_in(variable):
+        return value, Scalar.of(0)
+    if not environment.relations:
+        return value, Scalar.of(1)  # in lowest terms a fraction stays one
+    try:
+        ideal = Ideal.of(environment.relations)
+        if value.denominator.coefficients(variable)[0].numerator in ideal:
+            return None
+        quotient, rest = remainder(value.numerator, value.denominator, variable)
+        return ideal.simplified(quotient), ideal.simplified(rest)
+    except TooLarge:
+        return None
+
+
+def _divides(value: Scalar, environment: Environment) -> bool | None:
+    """Tell whether a rational function is a polynomial, None if that is not known."""
+    found = _divided(value, environment)
+    return None if found is None else found[1].is_zero
 
 
 def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
@@ -82,8 +106,8 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
     "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
     "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
-    "polynomial": lambda value, environment, _: value.is_polynomial_in(environment.variable),
-    "not_polynomial": lambda value, environment, _: not value.is_polynomial_in(environment.variable),
+    "polynomial": lambda value, environment, _: _divides(value, environment) is True,
+    "not_polynomial": lambda value, environment, _: _divides(value, environment) is False,
     "no_stable_compensator": lambda value, environment, discrete: (
         not discrete and no_stable_compensator(value, environment.variable, environment.signs)
     ),

@@ -196,7 +196,8 @@ def name_entries(page: Page, gain: str) -> None:
     value = page[gain].value
     names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
     letters = [page.name_coefficient(name, entry) for name, entry in zip(names, value.entries, strict=True)]
-    named = Matrix.row(letters) if value.shape[0] == 1 else Matrix.column(letters)
+    columns = value.shape[1]
+    named = Matrix.of([letters[k : k + columns] for k in range(0, len(letters), columns)])
     page.equal(relation(page[gain], named), say="named_entries")
     page.set(gain, named)
 
@@ -376,6 +377,7 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
     key = "case_no" if gain is None else "case_survives" if own else "case_other"
+    key += "_modes" if len(modes.values) > 1 else ""
     page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
     if gain is None:
         return

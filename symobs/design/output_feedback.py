@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
+#: What an answer has none of where there is no loop.
+_OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
 
 
 class Realisation(NamedTuple):
@@ -290,7 +292,8 @@ class OutputFeedback(Result):
         """The fields of the contract."""
         answers = {name: self.answer[name] for name in ("K", "L", "F")}
         if not self.exists:
-            return answers | {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
+            fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
+            return answers | dict.fromkeys(_OF_A_LOOP) | fixed
         return {
             **answers,
             "F_stable": self.own_stability,

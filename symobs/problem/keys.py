@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import SIGNS
@@ -11,9 +12,9 @@ from symobs.specification import KINDS
 from symobs.viewed import names_in
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterator
 
-    from symobs.method import Task
+    from symobs.method.registry import Task
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -137,3 +138,13 @@ def schema() -> dict[str, Any]:
 def _has(table: str, key: str) -> dict[str, Any]:
     """Return that a key stands in a table."""
     return {"required": [table], "properties": {table: {"type": "object", "required": [key]}}}
+
+
+def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str, str, str]]:
+    """Yield message, place and repair for the poles that tasks need and a specification gives in no way."""
+    known = given if isinstance(given, Mapping) else {}
+    asked = {name: task for task in wanted for name in task.keywords if name.endswith("poles")}
+    for name, task in asked.items():
+        instead = (name, f"{name.removesuffix('poles')}polynomial", *("KLMH" if name == "poles" else ()))
+        if not any(other in known or other in keys_of(task, known) for other in instead):
+            yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'

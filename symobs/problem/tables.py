@@ -81,3 +81,11 @@ def _toml_repair(message: str, line: str, text: str) -> str:
     if brackets and re.search(r"[A-Za-z]", brackets[1]):
         return 'write what has letters in quotes: [-2, "-1+i", "-omega"]'
     return "write `key = value` lines under [tables], texts in quotes"
+
+
+def came(value: object) -> str:
+    """Return what a value of a file is, in words."""
+    if value is None:
+        return "null"
+    words = {bool: "true or false", Decimal: "a number", int: "a number", str: "a text", list: "a list"}
+    return "a table" if isinstance(value, Mapping) else words.get(type(value), "a date or a time")

@@ -16,8 +16,8 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, PRINTED, TOP, keys_of, kinds_of, repair_of
-from symobs.problem.tables import Decimal
+from symobs.problem.keys import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
+from symobs.problem.tables import Decimal, came
 from symobs.record import dataclass
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
@@ -65,8 +65,8 @@ class Problem:
             own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
             errors.found += own.found
         if errors.found:
-            kinds = _kinds(self.tasks)
-            _read_alone(self.specification, kinds, self.expect, self.plant.symbols, self.plant.variable, errors)
+            known = self.plant.symbols, self.plant.variable
+            _read_alone(self.specification, _kinds(self.tasks), self.expect, *known, errors)
             raise errors.together(self.convention)
         return tuple(results)
 
@@ -143,15 +143,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
+        for missing in missing_poles(wanted, data.get("specification")):
+            errors.note(*missing)
     raise errors.together(convention)
-
-
-def _came(value: object) -> str:
-    """Return what a value of a file is, in words."""
-    if value is None:
-        return "null"
-    words = {bool: "true or false", Decimal: "a number", int: "a number", str: "a text", list: "a list"}
-    return "a table" if isinstance(value, Mapping) else words.get(type(value), "a date or a time")
 
 
 def _report_unknown(table: Mapping[str, Any], known: Collection[str], where: str, errors: _Errors) -> None:
@@ -167,7 +161,7 @@ def _table(data: Mapping[str, Any], name: str, errors: _Errors) -> Mapping[str, 
     value = data.get(name, {})
     if isinstance(value, Mapping):
         return value
-    errors.note(f"a table is expected, but {_came(value)} came", name, f"write [{name}] and its keys below")
+    errors.note(f"a table is expected, but {came(value)} came", name, f"write [{name}] and its keys below")
     return {}
 
 
@@ -180,7 +174,7 @@ def _text(table: Mapping[str, Any], name: str, errors: _Errors) -> str:
 def _check_text(value: object, where: str, errors: _Errors) -> None:
     """Note what is no text, or one that is too long or cannot be printed."""
     if not isinstance(value, str) or isinstance(value, Decimal):
-        errors.note(f"a text is expected, but {_came(value)} came", where, "write it in quotes")
+        errors.note(f"a text is expected, but {came(value)} came", where, "write it in quotes")
         return
     if len(value) > _MAX_TEXT:
         errors.note(f"the text has more than {_MAX_TEXT} characters", where, "shorten it")
@@ -195,7 +189,7 @@ def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
     for i, entry in enumerate(entries):
         if not isinstance(entry, str) or isinstance(entry, Decimal):
             where = f"id[{i}]" if isinstance(value, list) else "id"
-            errors.note(f"a text is expected, but {_came(entry)} came", where, 'write id = ["S0-Ex4.2"]')
+            errors.note(f"a text is expected, but {came(entry)} came", where, 'write id = ["S0-Ex4.2"]')
     return tuple(str(entry) for entry in entries)
 
 
@@ -207,14 +201,14 @@ def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
     for i, entry in enumerate(entries[:_MAX_PRINTED]):
         where = f"printed[{i}]"
         if not isinstance(entry, Mapping):
-            errors.note(f"a table is expected, but {_came(entry)} came", where, "write [[printed]] and its keys below")
+            errors.note(f"a table is expected, but {came(entry)} came", where, "write [[printed]] and its keys below")
             continue
         _report_unknown(entry, PRINTED, where, errors)
         texts = {f"{where}.{key}": entry[key] for key in entry if PRINTED.get(key, {}).get("type") == "string"}
         for key in [key for key in ("let", "expect") if key in entry]:
             meanings = _table(entry, key, errors) if isinstance(entry[key], Mapping) else None
             if meanings is None:
-                errors.note(f"a table is expected, but {_came(entry[key])} came", f"{where}.{key}", "write { … }")
+                errors.note(f"a table is expected, but {came(entry[key])} came", f"{where}.{key}", "write { … }")
             elif key == "let":
                 texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
         for place, text in texts.items():
@@ -235,7 +229,7 @@ def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple
     for i, name in enumerate(value if isinstance(value, list) else [value]):
         where = f"{key}[{i}]" if isinstance(value, list) else key
         if not isinstance(name, str):
-            errors.note(f"the name of a task is expected, but {_came(name)} came", where, _listed())
+            errors.note(f"the name of a task is expected, but {came(name)} came", where, _listed())
         elif (task := task_named(name)) is None:
             errors.note(f'"{shown(name, 40)}" is not a task', where, _listed(name))
         elif name in found:
@@ -258,8 +252,12 @@ def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
     for name in list(table)[:_MAX_SYMBOLS]:
         with errors:
             kept[declared_name(name, f"symbols.{shown(name, 40)}")] = "real"
-            Symbols.of({name: table[name]})
-            kept[name] = table[name]
+            entry, before = table[name], len(errors.found)
+            for part in [{key: value} for key, value in entry.items()] if isinstance(entry, Mapping) else [entry]:
+                with errors:
+                    Symbols.of({name: part})
+            if len(errors.found) == before:
+                kept[name] = entry
     return Symbols.of(kept)
 
 
@@ -306,7 +304,7 @@ def _convention(data: Mapping[str, Any], folder: Path | None, errors: _Errors) -
     """Return the convention the file is written in, the standard one where it names none that exists."""
     name = data.get("convention", STANDARD.name)
     if not isinstance(name, str) or isinstance(name, Decimal):
-        errors.note(f"a name is expected, but {_came(name)} came", "convention", 'write convention = "standard"')
+        errors.note(f"a name is expected, but {came(name)} came", "convention", 'write convention = "standard"')
         return STANDARD
     try:
         return convention_named(re.sub(r"(\.toml)+\Z", "", name), folder)  # a file names no path
@@ -343,7 +341,7 @@ def _specification(
     found: dict[str, Any] = {}
     for name in [name for name in table if name in kinds]:
         if kinds[name] == "Name" and (not isinstance(table[name], str) or isinstance(table[name], Decimal)):
-            message = f"a name is expected, but {_came(table[name])} came"
+            message = f"a name is expected, but {came(table[name])} came"
             errors.note(message, f"specification.{name}", "write it in quotes")
         else:
             found[name] = table[name]
