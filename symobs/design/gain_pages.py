@@ -377,7 +377,6 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
     key = "case_no" if gain is None else "case_survives" if own else "case_other"
-    key += "_modes" if len(modes.values) > 1 else ""
     page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
     if gain is None:
         return

@@ -77,21 +77,9 @@ PHRASES: dict[str, str] = {
     "works there is",
     "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for. "
     "A gain that works there is",
-    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed <mode|modes> {modes} <is|are> not among the poles asked for: no gain "
+    "case_no_observer": "There the pair ($C$, $A$) is not observable, and its fixed <mode|modes> {modes} <is not|are not all> among the poles asked for: no gain "
     "places them.",
-    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed <mode|modes> {modes} <is|are> not among the poles asked for: no "
-    "gain places them.",
-    "case_survives_modes_observer": "There the pair ($C$, $A$) is not observable, but its fixed modes {modes} are among the poles asked for, so this $L$ "
-    "still works; it is no longer the only one.",
-    "case_survives_modes_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed modes {modes} are among the poles asked for, "
-    "so this $K$ still works; it is no longer the only one.",
-    "case_other_modes_observer": "There the pair ($C$, $A$) is not observable, but its fixed modes {modes} are among the poles asked for. A gain that "
-    "works there is",
-    "case_other_modes_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed modes {modes} are among the poles asked for. "
-    "A gain that works there is",
-    "case_no_modes_observer": "There the pair ($C$, $A$) is not observable, and its fixed modes {modes} are not all among the poles asked for: no gain "
-    "places them.",
-    "case_no_modes_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed modes {modes} are not all among the poles asked for: no "
+    "case_no_state_feedback": "There the pair ($A$, $B$) is not controllable, and its fixed <mode|modes> {modes} <is not|are not all> among the poles asked for: no "
     "gain places them.",
 }
 
@@ -103,9 +91,6 @@ ASSERTS: dict[str, tuple[str, ...]] = {
         ("case_survives", "polynomial"),
         ("case_other", "polynomial"),
         ("case_no", "not_polynomial"),
-        ("case_survives_modes", "polynomial"),
-        ("case_other_modes", "polynomial"),
-        ("case_no_modes", "not_polynomial"),
         ("impossible", "not_polynomial"),
     )
 }

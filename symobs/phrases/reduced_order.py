@@ -44,7 +44,7 @@ PHRASES: dict[str, str] = {
     "rest_estimated": "The estimate is found again from the definition of its state,",
     "assembled": "and the whole state is estimated by",
     "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the <mode|modes> "
-    "{modes}, and <it is|they are> not among the poles asked for: there is no such observer.",
+    "{modes}, and <it is not|they are not all> among the poles asked for: there is no such observer.",
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
 
