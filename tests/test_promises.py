@@ -459,3 +459,16 @@ def test_what_is_a_polynomial_on_a_curve_has_its_stability() -> None:
     found = polynomial_of(fraction, environment)
     assert found.degree("s") == 1
     assert not PREDICATES["unstable"](fraction, environment, CONTINUOUS)
+
+
+@pytest.mark.parametrize("names", [("w",), ("v",), ("v", "w"), ()])
+def test_the_map_from_the_disc_takes_a_letter_that_is_free(names: tuple[str, ...]) -> None:
+    # A symbol w of the user's own was taken for the variable of the mapped polynomial, and the page was refused.
+    problem = {
+        "task": "stability_region",
+        "symbols": {"h": "real", **dict.fromkeys(names, "positive")},
+        "plant": {"dt": True},
+        "specification": {"polynomial": "*".join(["z^2 + h*z + 1/2", *names]), "parameters": "h"},
+    }
+    (result,) = read(json.dumps(problem)).solve()
+    assert result.to("latex")

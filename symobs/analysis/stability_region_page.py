@@ -119,7 +119,11 @@ def _table(page: Page, result: StabilityRegion, chi: str) -> None:
         page.remark("root_on_circle")
         page.equal(relation(page.value(1).apply(f"{chi}_at"), 0))
         return
-    w = Scalar.symbol("w")
+    taken = result.plant.symbols.signs.keys() | result.answer["polynomial"].names
+    name_of_w = next((name for name in ("w", "v") if name not in taken), None)
+    if name_of_w is None:  # the conditions stand without their table
+        return
+    w = Scalar.symbol(name_of_w)
     image = page.term(Quotient(Literal(w + 1), Literal(w - 1)))
     order = result.critical.order
     powers = [(c, order - k) for k, c in enumerate(result.critical.written) if not c.is_zero]
@@ -129,8 +133,9 @@ def _table(page: Page, result: StabilityRegion, chi: str) -> None:
     scale = result.critical.scale
     if not scale.is_one:
         product = page.value(scale) * product
-    q = page.define("q_w", product, value, say="mapped", closing=False, image=image)
-    page.tabulate(q, "w", say="routh_table", polynomial=q)
+    say = "mapped" if name_of_w == "w" else "mapped_from_v"
+    q = page.define(f"q_{name_of_w}", product, value, say=say, closing=False, image=image)
+    page.tabulate(q, name_of_w, say="routh_table", polynomial=q)
 
 
 def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:

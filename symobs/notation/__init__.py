@@ -103,6 +103,7 @@ LETTERS: dict[str, LetterForm] = {
     "chi_cl": LetterForm(r"\chi_{\mathrm{cl}}({v})", "χ_cl({v})", "polynomial of the closed loop"),
     "q_s": LetterForm("q({v})", "q({v})", "polynomial with the boundary moved"),
     "q_w": LetterForm("q(w)", "q(w)", "polynomial carried to the half plane"),
+    "q_v": LetterForm("q(v)", "q(v)", "polynomial carried to the half plane"),
     **{f"Delta_{k}": LetterForm(rf"\Delta_{k}", f"Δ{'₀₁₂₃₄₅₆₇₈₉'[k]}", "Hurwitz determinant") for k in range(1, 10)},
     "phi": LetterForm(r"\varphi({v})", "φ({v})", "desired polynomial"),
     "phi_c": LetterForm(r"\varphi_{\mathrm c}({v})", "φ_c({v})", "desired control polynomial"),

@@ -18,6 +18,8 @@ PHRASES: dict[str, str] = {
     "root_on_circle": "Whatever the values, not all roots lie in the open unit disc:",
     "mapped": "The map from $w$ to {image} carries the open left half plane to the open unit disc, so all roots lie in the disc exactly where those "
     "of this polynomial lie in the left half plane:",
+    "mapped_from_v": "The map from $v$ to {image} carries the open left half plane to the open unit disc, so all roots lie in the disc exactly where those "
+    "of this polynomial lie in the left half plane:",
     "crossing_one": "As {names} {vary}, the root leaves the left half plane only through 0: where this vanishes.",
     "crossing": "As {names} {vary}, a root leaves the left half plane only through 0 or with another one through the imaginary axis: where one of these "
     "vanishes.",
@@ -65,7 +67,7 @@ RESTS_ON: dict[str, str] = {
 
 ASSERTS: dict[str, tuple[str, ...]] = {"case_everywhere": ("stable",), "case_nowhere": ("unstable",)}
 
-NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped")
+NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped", "mapped_from_v")
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
