@@ -60,9 +60,6 @@ _OTHER_WORDS = [
     ("stable_continuous", "unstable_continuous"),
     ("stable_discrete", "unstable_discrete"),
     ("compensator_stable", "compensator_unstable"),
-    ("compensator_unstable", "compensator_unstable_alone"),
-    ("compensator_unstable_low", "compensator_unstable_low_alone"),
-    ("minimal_unstable", "minimal_unstable_alone"),
     ("case_survives_observer", "case_no_observer"),
     ("case_survives_state_feedback", "case_no_state_feedback"),
     ("routh_positive", "routh_negative"),
@@ -89,7 +86,13 @@ _NUMBERS = (
     ("first", "second", "third", "only"),
     ("nine", "twelve", "eleven"),
 )
-OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS}
+#: Sentences that say more with the same slots; what says less is as true.
+_MORE_WORDS = {
+    "compensator_unstable": "compensator_unstable_alone",
+    "compensator_unstable_low": "compensator_unstable_low_alone",
+    "minimal_unstable": "minimal_unstable_alone",
+}
+OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS} | _MORE_WORDS
 
 
 @dataclass(frozen=True)
