@@ -427,6 +427,18 @@ def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
             "plant": {"A": "[a-1 a+b; 0 -a]", "B": "[-a -1; a+b 0]", "C": "[1 -1]"},
             "specification": {"control_poles": "b-1, -p", "observer_poles": "-p, -b"},
         },
+        {  # a law that is solved for u, with letters for the coefficients of F
+            "task": "compensator",
+            "symbols": {"a": "positive", "b": "negative", "c": "negative"},
+            "plant": {"A": "[1 3; a-b c-b]", "B": "[-3; 3]", "C": "[2 3/4]", "D": "[2]"},
+            "specification": {"control_poles": "-5, -1", "observer_poles": "-4", "observer": "minimal"},
+        },
+        {  # the same without direct term of the plant, of third order and in discrete time
+            "task": "compensator",
+            "symbols": {"a": "negative", "b": "positive"},
+            "plant": {"A": "[1 -b 0; 0 a*b b; 0 0 a]", "B": "[-2; -a; 1]", "C": "[-2 0 a]", "dt": True},
+            "specification": {"control_poles": "-a, 0, 0", "observer_poles": "0, 1/2", "observer": "minimal"},
+        },
     ],
 )
 def test_pages_of_such_problems_can_be_written(problem: dict[str, Any]) -> None:

@@ -55,7 +55,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
         if not design.is_single:
             return_path_of_several(page, design)
         elif large:
-            named_return_path(page, design, _own_determinant(page))
+            named_return_path(page, design, _own_denominator(page))
         else:
             return_path(page, design)
     caution_hidden(page, design)
@@ -138,9 +138,11 @@ def _closed(page: Page, *, large: bool) -> None:
     )
 
 
-def _own_determinant(page: Page) -> Term:
+def _own_denominator(page: Page) -> Term:
+    """Return det(sI − A_c), over W where the output contains the input."""
     order = page.plant.order - page.plant.outputs
-    return (page.s @ page.identity(order) - page["A_c"]).apply("det")
+    own = (page.s @ page.identity(order) - page["A_c"]).apply("det")
+    return own / page["W_u"] if page.plant.matrices.has_feedthrough else own
 
 
 def _apart(page: Page, pencil: Term) -> list[Term]:
@@ -176,6 +178,11 @@ def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bo
         page.define("F", formula, page.value(above / below), say="minimal_transfer", answer=True)
         names.show()
         page.conclude_silently(relation(page["F"], design.answer["F"]))
+        # The letters of F say nothing of the stability of what they stand for.
+        top = page.value(above.coefficients(variable)[0] if above.degree(variable) == below.degree(variable) else 0)
+        falls = predicate("strictly_proper", page["F"] - top)
+        page.conclude("minimal_proper", falls, direct=relation(direct, top))
+        return
     else:
         numbers = _plain(page, K_2) @ _plain(page, pencil).inverse @ _plain(page, B_c) + _plain(page, K_y)
         if page.plant.matrices.has_feedthrough:
