@@ -10,8 +10,9 @@ import pytest
 import sympy
 
 import symobs
-from symobs.derivation.properties import PREDICATES, polynomial_of
+from symobs.derivation.properties import PREDICATES, are_roots, polynomial_of
 from symobs.errors import ProblemErrors
+from symobs.exact import roots_of
 from symobs.expect import mismatches
 from symobs.expression import parse_scalar
 from symobs.formula import Environment
@@ -484,3 +485,19 @@ def test_the_map_from_the_disc_takes_a_letter_that_is_free(names: tuple[str, ...
     }
     (result,) = read(json.dumps(problem)).solve()
     assert result.to("latex")
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "equation", "said"),
+    [
+        ("s^2 - 2", "a^2 - 2", True),
+        ("s^2 - 2", "", False),
+        ("s^2 - 3", "a^2 - 2", False),
+        ("s^2 + a s", "a^2 - 2", False),
+    ],
+)
+def test_roots_are_compared_where_the_relations_hold(polynomial: str, equation: str, said: bool) -> None:  # noqa: FBT001
+    names = {"a": "real", "s": "real"}
+    environment = Environment(variable="s", relations=(parse_scalar(equation, names),) if equation else ())
+    roots = (*roots_of(parse_scalar("s - a", names), "s"), *roots_of(parse_scalar("s + a", names), "s"))
+    assert are_roots(roots, parse_scalar(polynomial, names), environment) is said

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.certificate import SENSELESS, as_scalar, verify
 from symobs.conditions import vanishing_factors
-from symobs.derivation.properties import PREDICATES, polynomial_of, subjects
+from symobs.derivation.properties import PREDICATES, are_roots, polynomial_of, subjects
 from symobs.derivation.region_claims import is_exactly
 from symobs.derivation.rejection import BUG, reject
 from symobs.derivation.steps import (
@@ -35,7 +35,7 @@ from symobs.derivation.steps import (
 from symobs.derivation.strata import on_stratum
 from symobs.derivation.words import fits, rests
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, product_of, roots_are
+from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
     Apply,
     Derivative,
@@ -287,7 +287,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         polynomial = polynomial_of(value, environment)
         if polynomial is not value:
             polynomial = monic(polynomial, environment.variable)
-        if not roots_are(polynomial, environment.variable, fact.values):
+        if not are_roots(fact.values, polynomial, environment):
             reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
     if isinstance(fact, Exactly):

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 from symobs.certificate import as_scalar
 from symobs.conditions import never_zero, sign_of
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, remainder
+from symobs.exact.roots import polynomial_of_roots
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from symobs.exact import Root
     from symobs.formula import Environment
 
 
@@ -51,6 +53,19 @@ def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  #
 
 def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
     return value.degree(environment.variable), value.denominator.degree(environment.variable)
+
+
+def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environment) -> bool:
+    """Tell whether these are the roots of a monic polynomial where the relations hold."""
+    product = polynomial_of_roots(environment.variable, values)
+    if product is None or product == polynomial:
+        return product is not None
+    try:
+        ideal = Ideal.of(environment.relations)
+        divides_by_zero = any(part.denominator in ideal for part in (product, polynomial))
+        return not divides_by_zero and (product - polynomial).numerator in ideal
+    except TooLarge:
+        return False
 
 
 def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:

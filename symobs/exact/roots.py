@@ -204,7 +204,12 @@ def _roots_of_factor(factor: Scalar, variable: str) -> list[Root]:
 
 
 def roots_are(polynomial: Scalar, variable: str, roots: tuple[Root, ...]) -> bool:
-    """Tell whether these are the roots of a monic polynomial, by multiplying (s − root) out pair by pair."""
+    """Tell whether these are the roots of a monic polynomial."""
+    return polynomial_of_roots(variable, roots) == polynomial
+
+
+def polynomial_of_roots(variable: str, roots: tuple[Root, ...]) -> Scalar | None:
+    """Return Π (s − root), multiplied out pair by pair; None where a root is there without its partners."""
     s = Scalar.symbol(variable)
     waiting, product = list(roots), Scalar.of(1)
     while waiting:
@@ -213,7 +218,7 @@ def roots_are(polynomial: Scalar, variable: str, roots: tuple[Root, ...]) -> boo
             same = [r for r in waiting if r.factor == root.factor and r.index != root.index]
             partners = {r.index: r for r in same}
             if len(partners) + 1 != root.factor.degree(variable):
-                return False
+                return None
             for partner in partners.values():
                 waiting.remove(partner)
             product = product * root.factor
@@ -222,10 +227,10 @@ def roots_are(polynomial: Scalar, variable: str, roots: tuple[Root, ...]) -> boo
         else:
             partner = Root(root.factor, variable, root.centre, root.radicand, -root.sign)
             if partner not in waiting:
-                return False
+                return None
             waiting.remove(partner)
             product = product * ((s - root.centre) ** 2 - root.radicand)
-    return product == polynomial
+    return product
 
 
 def root_of_pole(pole: Complex, variable: str) -> Root:
