@@ -145,6 +145,19 @@ def test_a_locus_of_several_points_does_not_end_the_search_for_ranks() -> None:
     assert {one["verdict"] for one in found["cases"]} <= {"no", "undecided"}
 
 
+def test_a_stratum_of_several_points_does_not_end_the_search_for_meetings() -> None:
+    found = answered(
+        {
+            "task": "detectability",
+            "symbols": {"a": "nonpositive", "b": "positive"},
+            "plant": {"A": "[a+2 b -1; 0 b a^2; 0 0 1-a]", "C": "[2 1 -1]"},
+            "specification": {"meaning": "lyapunov"},
+        }
+    )
+    assert found["fixed_polynomial"] == "1"
+    assert "undecided" in json.dumps(found["cases"])
+
+
 def test_a_stratum_whose_own_cases_cannot_be_claimed_is_undecided() -> None:
     # The claim about a case within a case was refused when the case was written, too late to leave it undecided.
     found = answered(
@@ -427,6 +440,12 @@ def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
             "symbols": {"a": "nonnegative", "b": "real", "p": "positive"},
             "plant": {"A": "[a-1 a+b; 0 -a]", "B": "[-a -1; a+b 0]", "C": "[1 -1]"},
             "specification": {"control_poles": "b-1, -p", "observer_poles": "-p, -b"},
+        },
+        {  # a fixed mode on a curve, written as a fraction that is the root there
+            "task": "state_feedback",
+            "symbols": {"a": "real", "b": "real", "p": "positive"},
+            "plant": {"A": "[2 -a -2; 0 a^2 a^2; 0 0 2]", "B": "[a-1; 1; a-b]"},
+            "specification": {"poles": "-a, b-1, -p"},
         },
         {  # a law that is solved for u, with letters for the coefficients of F
             "task": "compensator",

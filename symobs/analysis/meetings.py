@@ -76,6 +76,8 @@ def _constancy(
         matrix = shifted(X, factor, plant.variable)
         columns = echelon(matrix, region.ideal)[0]
         rows = independent_rows(matrix.select(range(matrix.shape[0]), columns), region.ideal)
+        if len(rows) != len(columns):  # the stratum is several, and a pivot vanishes on some of them
+            return None
         node = node_of(matrix, region, (rows, columns))
         if node is None or len(columns) != X.shape[0] - dimension:
             return None
