@@ -22,6 +22,7 @@ from symobs.design.tracking import TrackingDesign
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import symbols_in
+from symobs.picture import TimeResponse
 from symobs.region.proof import Combined, Opposite
 from tests.claims import HOLDS, Setting
 from tests.claims_in_time import FUNCTIONS_OF_TIME
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if WHOLE else (12, 130)
-#: Of a picture at least so many: it has hundreds of places, and what is asked of the others is kept.
+#: Of a region, an interval or a map of poles at least so many: what the check asks of its other places is kept.
 OF_A_PICTURE = 60
 #: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
 LEAST = 110
@@ -336,7 +337,7 @@ def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
     for number, (line, some) in enumerate(zip(lines, found, strict=True)):
-        is_drawn = isinstance(line.step, Plot)
+        is_drawn = isinstance(line.step, Plot) and not isinstance(line.step.picture, TimeResponse)
         with remembered() if is_drawn else nullcontext():
             chosen = sample(some, max(most, OF_A_PICTURE) if is_drawn else most)
             _try_line(line, f"{result.task}, line {number}", chosen, count)

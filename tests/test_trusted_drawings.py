@@ -50,6 +50,7 @@ def test_a_place_is_stable_or_not() -> None:
     assert asked(s + 1 / h1, "h1").is_stable(Fraction(1)) is True
     for value, expected in (("1/2", True), ("-1/2", True), (1, False), (-2, False)):
         assert asked(z + h1, "h1", discrete=True).is_stable(Fraction(value)) is expected
+    assert len({asked(s + h1, "h1"), asked(h1 + s, "h1"), asked(s + h1, "h1", h1="positive")}) == 2  # plain values
     dropped = asked(h2 * s**2 + s + 1, "h2")
     assert dropped.is_stable(Fraction(1)) is True
     assert dropped.is_stable(Fraction(0)) is False  # a root has gone to infinity
@@ -323,7 +324,7 @@ def test_a_curve_is_drawn_where_it_is() -> None:
     assert drawn(at(2, -1000), at(0, 1000)) == drawn(at(0, -1000), at(2, 1000)) == []
     on_the_left = ["h1 = 0 is a boundary"]  # of nothing: on both sides of it nothing is stable
     assert drawn(at(-2, -1000), at(0, 1000)) == drawn(at(0, -1000), at(-2, 1000)) == on_the_left
-    for off in (Fraction("2.01"), Fraction("-2.01")):
+    for off in (Fraction("2.001"), Fraction("-2.001")):
         assert drawn(at(off, -1000), at(0, 1000)) == drawn(at(0, -1000), at(off, 1000)) == ["h1 = 0"]
     assert drawn(at(0, -1000), at(0, 1000), boundary=False) == ["h1 = 0 is no boundary"]
     # Its middle lies out of sight, or is looked at.
@@ -387,6 +388,24 @@ def test_an_area_has_its_edges_on_curves_or_on_the_border() -> None:
     for index, x, y in ((3, 3, 1000), (3, 40, 1000), (0, 3, -1000), (0, 40, -1000)):  # where a curve meets the border
         moved = (*RIGHT[:index], at(x, y), *RIGHT[index + 1 :])
         assert told(replace(HALF, areas=(moved,), marks=()), STABLE) == [f"an edge at ({x}, {y})"]
+
+
+def test_a_corner_inside_of_the_window_lies_on_a_curve() -> None:
+    """A notch whose edges are parallel to the axes."""
+    notch = at(0, 500), at(50, 500), at(50, 400), at(0, 400)
+    found = told(replace(HALF, areas=((*RIGHT, *notch),), marks=()), STABLE)
+    assert found == ["an edge at (50, 500)", "an edge at (50, 400)"]
+
+
+def test_the_middle_of_every_edge_is_asked_for() -> None:
+    """Those of a parabola cut short: the second edge lies too far off, beside the first, which does not."""
+    high, c = ((Fraction(-500), Fraction(500)), (Fraction(0), Fraction(1000))), 190
+    places = [at(Fraction(c * k * k, 9), Fraction(1000 * k, 3)) for k in range(4)]
+    bent = Curve(tuple(places), said(h1 * 10**6, c * h2**2))
+    area = (*places[:2], places[3], at(500, 1000), at(500, 0))
+    drawn = RegionPicture(AXES, high, (area,), (bent,))
+    found = told(drawn, s + h1 - h2**2 * Fraction(c, 10**6))
+    assert [text for text in found if "edge" in text] == ["an edge at (950/9, 2000/3)"]
 
 
 def test_the_middle_of_an_edge_may_lie_farther_off() -> None:

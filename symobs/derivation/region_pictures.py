@@ -245,9 +245,9 @@ def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:
             yield x0 + (x1 - x0) * (y - y0) / (y1 - y0)
 
 
-def within_area(area: Sequence[Place], places: Sequence[Place]) -> frozenset[Place]:
+def within_area(area: Sequence[Place], places: Sequence[Place]) -> list[Place]:
     """Return those of some places that lie in a polygon."""
-    return frozenset(place for place in places if _contains(area, place))
+    return [place for place in places if _contains(area, place)]
 
 
 def _contains(area: Sequence[Place], place: Place) -> bool:
