@@ -64,3 +64,48 @@ def test_a_horizon_of_no_length_is_no_case() -> None:
     design = symobs.initial_state_covariance(plant, Q="q", R="r", horizon="T")
     assert not design.cases
     assert "Case" not in text_of(design)
+
+
+# -- gains ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_gain_of_many_is_not_called_the_only_one() -> None:
+    # Two outputs see the modes -1, -2, c: for c = -2 one of two modes -2 is hidden.
+    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
+    text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
+    assert "is among the poles asked for, so this L still works." in text
+    assert "only one" not in text
+
+
+def test_the_equation_is_solved_where_its_own_spectra_are_apart() -> None:
+    # The plant has the poles -1 and -2 that are asked for; a gain taken out first moves them away.
+    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
+    text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
+    assert "where no pole asked for is an eigenvalue of the plant" not in text
+    assert "where the two square matrices beside the unknown one have no eigenvalue in common" in text
+
+
+def test_gains_that_a_family_leaves_out_are_told() -> None:
+    # L = [3 0] places -1 as well, and has no G with 1 in its second row.
+    text = text_of(symobs.observer(symobs.StateSpace("[2]", C="[1; 3]"), poles=[-1]))
+    assert "and special ones for which that row cannot be held. All the others are" in text
+
+
+@pytest.mark.parametrize("outputs", ["[0 0]", "[0 0; 0 0]"])
+def test_where_all_poles_are_fixed_there_are_no_others(outputs: str) -> None:
+    text = text_of(symobs.observer(symobs.StateSpace("[-1 0; 0 -2]", C=outputs), poles=[-1, -2]))
+    assert "There are no others to place, so every gain serves, for example" in text
+    assert "places the others" not in text
+    assert "Sylvester" not in text
+
+
+def test_what_is_hidden_from_the_input_is_not_called_seen() -> None:
+    plant = symobs.StateSpace("[-1 0; 0 -2]", "[1 2; 0 0]")
+    text = text_of(symobs.state_feedback(plant, poles=[-2, -5]))
+    assert "the part that the input moves has the freedom of Sylvester's equation" in text
+
+
+def test_the_smallest_feedback_speaks_of_a_controllable_pair() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[1 0; 0 1; 1 1]")
+    text = text_of(symobs.state_feedback(plant, poles=[-1, -2, -3], member="smallest"))
+    assert "The pair is controllable and the polynomial asked for has no multiple root" in text
