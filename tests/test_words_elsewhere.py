@@ -109,3 +109,118 @@ def test_the_smallest_feedback_speaks_of_a_controllable_pair() -> None:
     plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[1 0; 0 1; 1 1]")
     text = text_of(symobs.state_feedback(plant, poles=[-1, -2, -3], member="smallest"))
     assert "The pair is controllable and the polynomial asked for has no multiple root" in text
+
+
+# -- cautions ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("poles", "dt", "words"),
+    [
+        (
+            [0, -1],
+            None,
+            "A pole asked for is 0: with this feedback the loop comes to rest, but where its start decides.",
+        ),
+        (
+            [1, "1/2"],
+            1,
+            "A pole asked for is 1: with this feedback the loop comes to rest, but where its start decides.",
+        ),
+        ([-1, "1/2"], 1, "lies on the unit circle: with this feedback the loop does not come to rest by itself."),
+    ],
+)
+def test_a_loop_that_keeps_a_part_of_its_start_does_come_to_rest(poles: list[Any], dt: Any, words: str) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", dt=dt)
+    assert words in text_of(symobs.state_feedback(plant, poles=poles))
+
+
+# -- compensators -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("B", "C", "control", "observer"),
+    [("[0; 0]", "[1 1]", "-1, -2", "-4, -5"), ("[1; 1]", "[0 0]", "-3, -4", "-1, -2")],
+)
+def test_a_loop_without_response_has_no_poles(B: str, C: str, control: str, observer: str) -> None:
+    design = symobs.compensator(symobs.StateSpace("[-1 0; 0 -2]", B, C), control_poles=control, observer_poles=observer)
+    assert "It has no poles: those of the state feedback and of the observer, -" in text_of(design)
+
+
+def test_a_single_pole_that_is_left_is_one() -> None:
+    plant = symobs.StateSpace("[1 0; 0 -2]", "[1; 1]", "[0 1]")
+    text = text_of(symobs.compensator(plant, control_poles=[-1, -2], observer_poles=[1, -4]))
+    assert "The only pole, -2, is among those of the state feedback and of the observer" in text
+
+
+def test_a_direct_term_that_is_zero_is_not_given_a_reason() -> None:
+    # The control poles are those of the plant: K = 0, and so is the law.
+    plant = symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 1]")
+    text = text_of(symobs.compensator(plant, control_poles=[-1, -2], observer_poles=[-3], observer="minimal"))
+    assert "has a direct term" not in text
+
+
+# -- reduced-order observers ------------------------------------------------------------------------------------------
+
+
+def test_what_no_gain_moves_is_not_compared() -> None:
+    text = text_of(symobs.reduced_order_observer(symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 0]"), poles=[-2]))
+    assert "No L moves the mode -2, and it is the pole asked for: every gain serves, for example" in text
+    assert "Equal coefficients require" not in text
+    assert "of no use here" not in text
+
+
+def test_coordinates_under_a_condition_are_told_in_whole_sentences() -> None:
+    # For c = 0 there is no output, which no row completes.
+    text = text_of(symobs.reduced_order_observer(symobs.StateSpace("[0 0; 0 1]", C="[0 c]"), poles=[0]))
+    assert "elsewhere other rows would have to complete C. In them the measured states come first:" in text
+
+
+# -- feedforward and tracking -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("A", "B", "C", "D", "poles", "words"),
+    [
+        ("[0 1; 0 0]", "[0; 1]", "[0 1]", None, "-1, -1; -2, 0", "the plant has a zero there"),
+        ("[-1 0; 0 -2]", "[0; 0]", "[1 1]", None, "-1, -2; -3, -4", "The transfer function of the plant is zero"),
+        ("[0 1; 0 0]", "[1 0; 0 1]", "[1 0; 2 0]", None, "-1, -2; -3, 0", "= 1, and there are more outputs"),
+        ("[0 1; 0 0]", "[0; 1]", "[1 0; 0 1]", None, "-1, -2; -3, -4", "= 1, and there are more outputs"),
+        ("[-1 0; 0 -2]", "[1 0; 0 1]", "[1 0; 0 1]", "[-1 0; 0 0]", "-1, -2; -3, -4", "the plant has a zero there"),
+        ("[0 1; 0 0]", "[0; 1]", "[1 0]", None, "-1, 0; -3, -4", "where it comes to rest, if it does, depends on its"),
+    ],
+)
+def test_why_the_output_at_rest_cannot_be_set(A: str, B: str, C: str, D: Any, poles: str, words: str) -> None:
+    control, observer = poles.split(";")
+    plant = symobs.StateSpace(A, B, C, D)
+    text = text_of(symobs.feedforward(plant, control_poles=control, observer_poles=observer, observer="full"))
+    assert words in text
+    assert ("has a zero there" in text) == ("has a zero there" in words)
+
+
+def test_a_reference_that_stays_in_0_is_refused() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    with pytest.raises(symobs.InputError, match="reference_start is 0"):
+        symobs.tracking(plant, control_poles=[-1, -2], observer_poles=[-3], reference_start="[0; 0]")
+
+
+# -- integrals over time ----------------------------------------------------------------------------------------------
+
+
+def test_a_gramian_that_may_not_exist_is_not_said_to_have_no_kernel() -> None:
+    # The integral over all time exists for a > 0 alone.
+    text = text_of(symobs.gramian(symobs.StateSpace("[-a 0; 0 -2]", C="[1 1]"), horizon="inf"))
+    assert "so it has no kernel." in text
+    assert "neither has W" not in text
+
+
+def test_without_input_noise_there_is_one_part() -> None:
+    plant = symobs.StateSpace("[-1]", "[1]", "[1]")
+    assert "two parts" not in text_of(symobs.initial_state_covariance(plant, R="r", horizon="T"))
+    assert "two parts" in text_of(symobs.initial_state_covariance(plant, Q="q", R="r", horizon="T"))
+
+
+@pytest.mark.parametrize(("B", "Q"), [("[0]", "q"), ("[1]", "0")])
+def test_input_noise_that_does_not_arrive_spoils_no_estimate(B: str, Q: str) -> None:
+    text = text_of(symobs.initial_state_covariance(symobs.StateSpace("[-1]", B, "[1]"), Q=Q, R="r", horizon="T"))
+    assert "does not have the smallest variance" not in text
