@@ -224,3 +224,21 @@ def test_without_input_noise_there_is_one_part() -> None:
 def test_input_noise_that_does_not_arrive_spoils_no_estimate(B: str, Q: str) -> None:
     text = text_of(symobs.initial_state_covariance(symobs.StateSpace("[-1]", B, "[1]"), Q=Q, R="r", horizon="T"))
     assert "does not have the smallest variance" not in text
+
+
+# -- time-varying plants ----------------------------------------------------------------------------------------------
+
+
+def test_not_every_function_is_an_output() -> None:
+    # x stays where it is, so y = x1 + t x2, and t^2 is no output.
+    text = text_of(
+        symobs.time_varying_observability(symobs.StateSpace("[0 0; 0 0]", C="[1 t]"), interval="0, 1", output="t^2")
+    )
+    assert "No initial state has this output" in text
+    assert "no two initial states have the same output" in text
+
+
+def test_a_rank_that_drops_is_not_told_of_every_instant() -> None:
+    # [C; CA] = [t t^2; 0 0] has the rank 1 but for t = 0.
+    text = text_of(symobs.time_varying_observability(symobs.StateSpace("[0 0; 0 0]", C="[t t^2]"), interval="0, 1"))
+    assert "= 1 at almost every instant, and nowhere more, and yet the plant is observable" in text
