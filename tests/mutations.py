@@ -76,7 +76,15 @@ _OTHER_WORDS = [
     ("case_stack", "case_stack_yes"),
 ]
 #: Sentences whose counting words are made, and checked, by what they count.
-_COUNTING = {"points_decide", "cells_decide", "pieces", "number_is_root", "routh_changes", "routh_changes_axis"}
+_COUNTING = {
+    "points_decide",
+    "point_decides",
+    "cells_decide",
+    "pieces",
+    "number_is_root",
+    "routh_changes",
+    "routh_changes_axis",
+}
 #: Sentences that say of a value only that nothing is decided where it vanishes.
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
 #: Words that count something: another of the same row says another number.

@@ -56,20 +56,20 @@ ROOT_OF_TWO = square_root(Scalar.of(2))
 CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
 ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "the only real root", "h**3 - 2 = 0")
 ON_A_LINE = {
-    "half": (s + h, [("points_decide", "one point", "one interval")], ["h > 0"]),
+    "half": (s + h, [("point_decides", "one interval")], ["h > 0"]),
     "empty": ((s - 1) * (s + h), [("region_empty",)], []),
     "cut": (
         CUT,
         [("points_decide", "two points", "two intervals"), ("point_missing", "h", "1")],
         ["h < 1", "1 < h < 2"],
     ),
-    "root": (s + h**3 - 2, [("points_decide", "one point", "one interval"), ROOT], ["h > CRootOf(h**3 - 2, 0)"]),
+    "root": (s + h**3 - 2, [("point_decides", "one interval"), ROOT], ["h > CRootOf(h**3 - 2, 0)"]),
     "three": (
         s + (h**2 - 1) * (h**2 - 4),
         [("points_decide", "four points", "three intervals")],
         ["h < -2", "-1 < h < 1", "h > 2"],
     ),
-    "whole": (s + h**2 + 1, [], [""]),
+    "whole": (s + h**2 + 1, [("region_everywhere", "Names(names=('h',))")], [""]),
     "never": (s**2 - h, [("region_empty",)], []),
     "two cuts": (
         s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
@@ -138,7 +138,8 @@ def test_only_pieces_that_the_signs_allow_are_counted() -> None:
         ("cells_decide", "two open pieces", "one of them is"),
         ("connected_unbounded",),
     ]
-    assert found(s + a + k, known) == [("connected_unbounded",)]
+    assert found(s + a + k, known) == [("region_everywhere", "Names(names=('a', 'k'))")]
+    assert found(s + (a - k) ** 2, known)[-1] == ("curve_missing", "a - k = 0")
 
 
 def test_parts_of_a_plane_are_its_own() -> None:

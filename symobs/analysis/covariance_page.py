@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from symobs.analysis.initial_state_covariance import InitialStateCovariance
     from symobs.page import Page
 
+#: How the output noise enters, and what stands between two inverse Gramians.
+_WITH_INPUT = ("estimate_is", "parts_of_covariance")
+_OUTPUT_ONLY = ("estimate_of_output", "covariance_of_output")
+
 
 def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
     """Write one branch: noise, Gramian, the two integrals, the parts, the sum."""
@@ -42,7 +46,9 @@ def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
     gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian"]), horizon)
     W = page.define("W", page.term(gramian), values["W"], say="gramian_is", closing=False)
     noise = since_start((Phi.T @ C.T @ R @ C @ Phi).formula, Literal(answer["R_primitive"]), horizon)
-    S_R = page.define("S_R", page.term(noise), values["S_R"], say="estimate_is", closing=False)
+    S_R = page.define(
+        "S_R", page.term(noise), values["S_R"], say="estimate_is" if has_input else "estimate_of_output", closing=False
+    )
     if has_input:
         page.set("Phi_m", values["Phi_m"])
         page.set("W_t", values["W_t"])
@@ -54,7 +60,10 @@ def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
         page.define("S_Q", page.term(driven), values["S_Q"], say="estimate_input_integral", closing=False)
     output = page.set("Cov_R", values["Cov_R"])
     page.conclude_silently(relation(W @ output @ W, S_R))
-    page.equal(relation(output, W.inverse @ S_R @ W.inverse, values["Cov_R"]), say="parts_of_covariance")
+    page.equal(
+        relation(output, W.inverse @ S_R @ W.inverse, values["Cov_R"]),
+        say="parts_of_covariance" if has_input else "covariance_of_output",
+    )
     total = output
     if has_input:
         part = page.set("Cov_Q", values["Cov_Q"])
@@ -62,7 +71,7 @@ def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
         total = output + part
     page.define("Cov", total, values["Cov"], say="covariance_is", answer=True, closing=False)
     _tell_horizons(result, page)
-    if has_input:
+    if has_input and any(result.answer["S_Q"].entries):
         page.remark("not_minimum_variance")
 
 

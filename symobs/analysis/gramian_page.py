@@ -185,7 +185,8 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
     if not kernel.shape[1]:
         value = M.value.determinant()
         key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
-        key = "kernel_none_of_sum" if result.answer["matrix"] is None else key
+        is_somewhere = result.answer["horizon"] == INFINITE and bool(result.decay.positive)
+        key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere else key
         says = Conclude(sentence(key, {"determinant": relation(M.apply("det"), value)}), (relation(value, "!=", 0),))
         factors = vanishing_factors([value], result.plant.symbols.signs)
         apart = Together(tuple(relation(factor, "!=", 0) for factor in factors))

@@ -97,11 +97,16 @@ class InitialStateCovariance(Branched):
         return vanishing_factors([minor], self.plant.symbols.signs)
 
     @cached_property
+    def stated(self) -> tuple[Condition, ...]:
+        """The horizon is positive: that it is not 0 is no condition, and 0 no case."""
+        return tuple(c for c in super().stated if c.expression.names != {"T"})
+
+    @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
-        """Observability is a condition; the horizon is positive."""
+        """Observability is a condition."""
         known = super().holds_where
         beyond = [Condition("existence", f) for f in self.further_zeros if f not in {c.expression for c in known}]
-        return (*(c for c in known if c.expression.names != {"T"}), *beyond)
+        return (*known, *beyond)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the integrals, the two parts between Gramians, and their sum."""

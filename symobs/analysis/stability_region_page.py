@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: A region in more parts than this is left to its inequalities and its picture.
 MOST_PARTS = 8
+#: Findings that say how a region was found.
+HOW = {"points_decide", "point_decides", "cells_decide"}
 #: Hurwitz' matrix is written out up to this order.
 WRITTEN_ORDER = 4
 
@@ -157,7 +159,7 @@ def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
         value = page.value(place).apply(name)
         shown.append(relation(value, determinant_form(page, value.scalar)))
     if critical.boundary.discrete:
-        key = "crossing_discrete"
+        key = "crossing_discrete" if critical.order > 1 else "crossing_one_discrete"
     elif not critical.written[0].is_constant:
         key = "crossing_infinite"
     else:
@@ -231,11 +233,11 @@ def _case(page: Page, case: Case, chi: str) -> Step:
 
 def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show the inequalities, and the region in words and parts."""
-    region, bounds = result.region, result.answer["bounds"]
+    region = result.region
     assert region is not None  # noqa: S101 - there is one here
     found = findings_of_region(region)
     names = (region.name,) if isinstance(region, LineRegion) else region.names
-    decided = tuple(finding for finding in found if finding.key in {"points_decide", "cells_decide"})
+    decided = tuple(finding for finding in found if finding.key in HOW)
     if decided:
         page.steps.append(Survey(page[chi].formula, names, decided))
     if result.empty:
@@ -245,8 +247,6 @@ def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     if relations:
         fact = Exactly(predicate("stable", page[chi]), relations)
         page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
-    elif bounds == ():
-        page.conclude("region_everywhere", predicate("stable", page[chi]), names=_listed(result))
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
     if others or parts:
@@ -284,4 +284,5 @@ def _parts(result: StabilityRegion, region: object) -> tuple[tuple[Relation, ...
     assert isinstance(region, PlaneRegion)  # noqa: S101 - the other kind
     if not 0 < len(parts) <= MOST_PARTS or not all(map(is_written, parts)) or not are_whole(region, parts):
         return ()
-    return tuple(relations_of(part, region.names) for part in parts)
+    found = tuple(relations_of(part, region.names) for part in parts)
+    return found if all(found) else ()

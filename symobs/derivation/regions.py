@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.real import real_roots
-from symobs.formula import Literal, Relation
+from symobs.formula import Literal, Names, Relation
 from symobs.phrases.regions import counted, in_words, root_in_words
 from symobs.region.bounds import box
 from symobs.region.cells_proof import are_parts, is_region
@@ -67,26 +67,37 @@ def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]
     if region.empty:
         return (Sentence("region_empty"),)
     if isinstance(region, LineRegion):
-        return tuple(_of_line(region))
-    return tuple(_of_plane(region))
+        return (*_of_line(region), *_of_everything(region, (region.name,)))
+    whole = tuple(_of_everything(region, region.names))
+    return (*_how_plane(region), *(whole or _of_plane(region)))
+
+
+def _of_everything(region: LineRegion | PlaneRegion, names: tuple[str, ...]) -> Iterator[Sentence]:
+    """Yield that no value is left out, where it is so."""
+    if all(sample.stable for sample in region.samples(())) and is_region(region, ()):
+        yield Sentence("region_everywhere", (("names", Names(names)),))
 
 
 def _of_line(region: LineRegion) -> Iterator[Sentence]:
     if region.points:
-        slots = {"points": counted(len(region.points), "point"), "stable": counted(len(region.intervals), "interval")}
-        yield Sentence("points_decide", tuple(slots.items()))
+        slots = {"points": counted(len(region.points), "point")} if len(region.points) > 1 else {}
+        slots["stable"] = counted(len(region.intervals), "interval")
+        yield Sentence("points_decide" if len(region.points) > 1 else "point_decides", tuple(slots.items()))
     for point in region.cuts:
         number = Literal(point.scalar(region.name))
         yield Sentence("point_missing", (("name", Literal(Scalar.symbol(region.name))), ("point", number)))
     yield from _numbers([end for piece in region.intervals for end in (piece.low, piece.high)], region.name)
 
 
-def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
+def _how_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
         slots = {"cells": counted(len(allowed), "open piece"), "stable": in_words(stable, len(allowed))}
         yield Sentence("cells_decide", tuple(slots.items()))
+
+
+def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
     count, bounded = len(region.components), sum(component.bounded for component in region.components)
     if count == 1:
         yield Sentence("connected_bounded" if bounded else "connected_unbounded")

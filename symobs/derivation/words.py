@@ -52,7 +52,7 @@ LOW_RANK = _LOW_EVERYWHERE | _LOW_IN_GENERAL | {"stack_no", "case_stack"}
 
 _KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
 #: Sentences that a fact of their step holds up: a full rank, a lower one, hidden modes that are stable or are not.
-OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS}
+OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS} | {"no_feedforward_zero"}
 OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
 OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
 OF_STABLE_LOOP = {

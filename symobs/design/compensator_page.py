@@ -258,9 +258,18 @@ def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
         cancelled = roots_of(lost, variable)
         left = tuple((Counter(poles) - Counter(cancelled)).elements())
         rest = Roots((product / page.value(denominator)).formula, cancelled)
-        page.conclude("loop_poles_left", poles=Roots(page["G_cl"].formula, left), lost=rest)
+        _say_left(page, left, rest)
     else:
         page.conclude("loop_polynomial_divides", predicate("polynomial", product / page.value(denominator)))
+
+
+def _say_left(page: Page, left: tuple[Root, ...], lost: Roots) -> None:
+    """Say which poles are left where others cancel."""
+    if not left:
+        page.conclude("loop_no_poles", relation(page["G_cl"], page["G_cl"].value), lost=lost)
+        return
+    poles = Roots(page["G_cl"].formula, left)
+    page.conclude("loop_poles_left" if len(left) > 1 else "loop_pole_left", poles=poles, lost=lost)
 
 
 def _has_short_roots(factor: Scalar, variable: str) -> bool:

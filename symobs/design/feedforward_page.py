@@ -12,7 +12,7 @@ from symobs.design.gain_pages import FEEDBACK, OBSERVER, error_determinant
 from symobs.design.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.minimal_order_page import partitioned_gain
 from symobs.design.pole_cautions import caution_law
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, rank, transfer_matrix
 from symobs.formula.term import Term, block
 from symobs.page import Page, relation
 
@@ -59,15 +59,30 @@ def _impossible(page: Page, design: FeedforwardDesign) -> None:
         page.conclude("no_rest", state=relation(x, x.shown), still=relation(moved, there))
         return
     page.define("G_0", _at_rest(page), say="gain_at_rest")
+    m = page.plant.matrices
+    whole = rank(transfer_matrix(m.A, m.B, m.C, m.D, page.plant.variable)[0])
+    if not whole:
+        page.conclude(
+            "no_feedforward_none", relation(_response(page), Matrix.zeros(page.plant.outputs, page.plant.inputs))
+        )
+        return
     if page["G_0"].value.shape == (1, 1):
-        page.conclude("no_feedforward_single")
+        page.conclude("no_feedforward_single", relation(page["G_0"], Matrix.zeros(1, 1)))
         return
     w = page.set("w_0", design.answer["w"])
-    page.conclude(
-        "no_feedforward",
-        row=relation(w, w.shown),
-        vanishes=relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs)),
-    )
+    slots = {"row": relation(w, w.shown), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
+    found = relation(_response(page).apply("rank"), whole)
+    if whole < page.plant.outputs:
+        page.conclude("no_feedforward_low", rank=found, **slots)
+    else:
+        page.conclude("no_feedforward_zero", found, **slots)
+
+
+def _response(page: Page) -> Term:
+    """C(sI − A)⁻¹B + D."""
+    resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
+    response = page["C"] @ resolvent @ page["B"]
+    return response + page["D"] if page.plant.matrices.has_feedthrough else response
 
 
 def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:

@@ -56,8 +56,15 @@ def write_sylvester(page: Page, design: GainDesign, side: Side, desired: Desired
 def write_hidden_family(page: Page, design: GainDesign, side: Side) -> None:
     """Write one gain and the dimension of the family where some modes are fixed."""
     assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
-    page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
-    page.remark("family_hidden", count=str(len(design.chart.names)))
+    key = of_the_others(design)
+    page.define(side.gain, design.answer[side.gain], say=f"{key}_{side.kind}", answer=True)
+    if key == "one_gain":
+        page.remark(f"family_hidden_{side.kind}", count=str(len(design.chart.names)))
+
+
+def of_the_others(design: GainDesign) -> str:
+    """Return how a gain is announced beside fixed modes: it places the other poles, or there are none."""
+    return "no_others" if design.fixed_polynomial.degree(design.plant.variable) == design.plant.order else "one_gain"
 
 
 def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:

@@ -18,7 +18,7 @@ from symobs.analysis.pages import (
 )
 from symobs.derivation import Case as CaseStep
 from symobs.design.gain import GainDesign
-from symobs.design.gain_family_page import write_hidden_family, write_sylvester
+from symobs.design.gain_family_page import of_the_others, write_hidden_family, write_sylvester
 from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
@@ -280,7 +280,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     if design.chart is not None:
         write_hidden_family(page, design, side)
         return
-    gain = page.define(side.gain, design.answer[side.gain], say=f"one_gain_{side.kind}", answer=True)
+    gain = page.define(side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}", answer=True)
     free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
     page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
@@ -376,7 +376,8 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
     fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
-    key = "case_no" if gain is None else "case_survives" if own else "case_other"
+    kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
+    key = "case_no" if gain is None else kept if own else "case_other"
     page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
     if gain is None:
         return

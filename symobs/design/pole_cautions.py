@@ -9,6 +9,7 @@ from symobs.stability import is_beyond, is_marginal, stability
 
 if TYPE_CHECKING:
     from symobs.design.output_feedback import OutputFeedback
+    from symobs.exact import Scalar
     from symobs.page import Page
     from symobs.specification import DesiredPolynomial
 
@@ -27,9 +28,22 @@ def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> 
     elif is_marginal(polynomial, plant.variable, signs, discrete=discrete):
         facts.append(predicate("marginal", subject))
         key = "stays"
+        moved = page.s - page.value(1) if discrete else page.s
+        rest = subject / moved
+        if of == "state_feedback" and _is_stable(rest.scalar, page):
+            facts.append(predicate("stable", rest))
+            key = "drifts"
     else:
         key = "lasts"
     page.caution(f"{key}_{of}_{time}", *facts)
+
+
+def _is_stable(rest: Scalar, page: Page) -> bool:
+    """Tell whether what is left of a polynomial is one and surely stable."""
+    plant = page.plant
+    if not rest.is_polynomial_in(plant.variable) or rest.degree(plant.variable) < 1:
+        return False
+    return stability(rest, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "yes"
 
 
 def caution_law(page: Page, loop: OutputFeedback) -> None:

@@ -101,7 +101,7 @@ def _coordinates(page: Page, parts: Partition) -> None:
     if trivial:
         page.conclude_silently(*shown)
     else:
-        page.equal(*shown, say="measured_first")
+        page.equal(*shown, say="measured_are_first" if exceptions else "measured_first")
 
 
 def _parts(page: Page, design: ReducedOrderObserver) -> None:
@@ -165,6 +165,8 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
 
 def _mere_copy(page: Page) -> None:
     """S2's first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
+    if not any(page["A_12"].value.entries):  # then no observer does better
+        return
     x_2, x_2_hat = page["x_2"], page["x_2_hat"]
     copy = page["A_21"] @ page["x_1"] + page["A_22"] @ x_2_hat
     if page.plant.matrices.has_input:
@@ -204,11 +206,16 @@ def write_inner_gain(page: Page, design: ReducedOrderObserver) -> None:
     page.define("phi_o", *wished, say="polynomial_is_to_be" if several else "wanted_polynomial")
     if not several:
         pairs = zip(found.coefficients(variable)[1:], desired.coefficients, strict=True)
-        page.equal(*(relation(have, want) for have, want in pairs if not have.is_constant), say="compare")
+        open_ = [relation(have, want) for have, want in pairs if not have.is_constant]
+        if open_:
+            page.equal(*open_, say="compare")
     if not design.inner.fixed_polynomial.is_one:
         fixed, facts = _fixed_modes(page, design)
         modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, variable))
-        page.remark("reduced_not_unique", *facts, predicate("polynomial", page["phi_o"] / fixed), modes=modes)
+        rest = page["phi_o"] / fixed
+        key = "reduced_all_fixed" if rest.value == 1 else "reduced_not_unique"
+        held = relation(rest, 1) if rest.value == 1 else relation(rest, rest.value)
+        page.remark(key, *facts, predicate("polynomial", rest), held, modes=modes)
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)

@@ -58,7 +58,7 @@ def _least_stationary(page: Page, design: GainDesign, side: Side) -> None:
     gain = design.answer[side.gain]
     page.with_roots(gain)
     page.remark(f"smallest_wanted_{side.kind}")
-    page.remark("smallest_stationary")
+    page.remark(f"smallest_stationary_{side.kind}")
     _root(page, r"\rho", "smallest_sum", gain)
     _gain(page, side, gain)
     entries = page.set("entries_g", stacked(design.oriented(gain)))

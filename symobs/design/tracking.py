@@ -12,7 +12,7 @@ from symobs.analysis.strata import carried, common_zeros, strata
 from symobs.certificate import Certificate, Claim
 from symobs.design.compensator import observer_based
 from symobs.design.gain import letters_of
-from symobs.errors import CertificateRejected
+from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
@@ -255,6 +255,11 @@ def tracking(
         m.A if reference_matrix is None else read_gain(reference_matrix, plant, "reference_matrix", (order, order))
     )
     start = None if reference_start is None else read_gain(reference_start, plant, "reference_start", (order, 1))
+    if start is not None and not any(start.entries):
+        message = "reference_start is 0, where the reference stays for ever"
+        raise InputError(
+            message, where="specification.reference_start", repair="give a start that is not 0, or leave it out"
+        )
     loop = observer_based(
         plant,
         task="tracking",

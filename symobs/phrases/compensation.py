@@ -52,6 +52,8 @@ PHRASES: dict[str, str] = {
     "loop_poles": "The poles {poles} are those of the state feedback and those of the observer, as they must be.",
     "loop_matrix_poles": "The poles of its entries are among those of the state feedback and those of the observer.",
     "loop_poles_left": "The poles {poles} are among those of the state feedback and of the observer, as they must be; what cancels is {lost}.",
+    "loop_pole_left": "The only pole, {poles}, is among those of the state feedback and of the observer, as it must be; what cancels is {lost}.",
+    "loop_no_poles": "It has no poles: those of the state feedback and of the observer, {lost}, all cancel.",
     "loop_polynomial_divides": "The denominator divides the product of the two polynomials asked for, as it must.",
     "loop_polynomial": "The denominator is the product of the two polynomials asked for, as it must be.",
     "defective": _DEFECTIVE,

@@ -12,21 +12,21 @@ PHRASES: dict[str, str] = {
     "similar_observer": "Where $X_o$ is regular, the gain that follows makes the transpose of $A - L C$ similar to $F_o$:",
     "similar_state_feedback": "Where $X_c$ is regular, the gain that follows makes $A - B K$ similar to $F_c$:",
     **{
-        f"one_row_held_{kind}": f"A polynomial in $F_{side}$ may be multiplied to $G_{side}$ from the right without changing the gain, so one row of it, "
-        "or one combination of rows, can be held:"
+        f"one_row_held_{kind}": f"A polynomial in $F_{side}$ may be multiplied to $G_{side}$ from the right without changing the gain, so in general one "
+        "row of it, or one combination of rows, can be held:"
         for kind, side in _SIDES
     },
     "solution_is": "The solution of the equation is then",
     "determinant_free": "where the free entries must not make the determinant vanish,",
-    "spectra_provided": "There is one, whatever stands on the right, where no pole asked for is an eigenvalue of the plant. For this way to the gain we assume {condition}.",
-    "spectra_apart": "There is one, whatever stands on the right, where no pole asked for is an eigenvalue of the plant.",
+    "spectra_provided": "There is one, whatever stands on the right, where the two square matrices beside the unknown one have no eigenvalue in common. For this way to the gain we assume {condition}.",
+    "spectra_apart": "There is one, whatever stands on the right, where the two square matrices beside the unknown one have no eigenvalue in common.",
     "solution_long": "for which the solution, too long to be written out, has the determinant",
     "solution_of_member": "for which the solution is",
     "one_gain_only": "For one output (input) nothing is left free. The solution of the equation is",
-    "general_gain": "All these gains are",
+    "general_gain": "All the others are",
     **{
         f"dimension_{kind}": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of "
-        f"$G_{side}$. Left out are gains whose closed-loop matrix is not cyclic."
+        f"$G_{side}$. Left out are gains whose closed-loop matrix is not cyclic, and special ones for which that row cannot be held."
         for kind, side in _SIDES
     },
     "member_several": "A gain with short entries belongs to",
@@ -54,9 +54,12 @@ PHRASES: dict[str, str] = {
     "the entries of $K$, one row transposed under the other. Lagrange's method adds to their squares the coefficients of the difference between the "
     "closed-loop polynomial and the one asked for, each times a multiplier; where the sum is stationary and the coefficients vanish, the gain may be the "
     "smallest.",
-    "smallest_stationary": "The pair is observable and the polynomial asked for has no multiple root: every matrix with this polynomial is cyclic, the "
-    "derivatives of the coefficients are independent, and Lagrange's equations hold for the smallest gain, which exists. They have finitely many "
-    "solutions. The sums of squares at all of them are eigenvalues of one matrix.",
+    **{
+        f"smallest_stationary_{kind}": f"The pair is {able} and the polynomial asked for has no multiple root: every matrix with this polynomial is "
+        "cyclic, the derivatives of the coefficients are independent, and Lagrange's equations hold for the smallest gain, which exists. They have "
+        "finitely many solutions. The sums of squares at all of them are eigenvalues of one matrix."
+        for kind, able in (("observer", "observable"), ("state_feedback", "controllable"))
+    },
     "smallest_sum": "The least positive eigenvalue of that matrix is a root of",
     "smallest_sum_of_gain": "No other gain is smaller, since the sum of the squares of the entries of this one is that least eigenvalue:",
     "smallest_root": "The solution is made of a root of a polynomial,",
@@ -90,8 +93,10 @@ PHRASES: dict[str, str] = {
     "undecided_zero": "No gain with rational entries and zeros in the places {places} was found, and it is not proved that there is none.",
     "gain_follows": "The gain is",
     "no_member": "A gain with short entries, whose closed-loop matrix is not cyclic, is",
-    "family_hidden": "It is not the only one. The gains form a family of dimension {count}: the part that is seen has the freedom of Sylvester's equation, "
-    "and along the hidden subspace the gain is free.",
+    "family_hidden_observer": "It is not the only one. The gains form a family of dimension {count}: the part that is seen has the freedom of "
+    "Sylvester's equation, and along the hidden subspace the gain is free.",
+    "family_hidden_state_feedback": "It is not the only one. The gains form a family of dimension {count}: the part that the input moves has the "
+    "freedom of Sylvester's equation, and along the directions that it never moves the gain is free.",
 }
 
 NAMING = ("impossible_zero_unless",)

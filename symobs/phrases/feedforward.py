@@ -10,10 +10,14 @@ PHRASES: dict[str, str] = {
     "feedforward_gain": "For the output to equal $v_r$ at rest,",
     "feedforward_smallest": "There are more inputs than outputs. The smallest $F_v$ for which the output equals $v_r$ at rest is",
     "feedforward_response": "From $v_r$ to $y$ the error has no part, so the modes of the observer do not appear:",
-    "no_rest": "With {state} one has {still}: a control pole keeps the loop from coming to rest, so nothing can be asked of the output at rest.",
+    "no_rest": "With {state} one has {still}: the loop stays in this state as well as in 0. So where it comes to rest, if it does, depends on its start, "
+    "and nothing is asked of the output at rest.",
     "no_feedforward_single": "At rest the output is zero whatever the input is: the plant has a zero there, which feedback does not move. There is no such $F_v$.",
-    "no_feedforward": "With {row} the product {vanishes}, so the outputs at rest cannot be set one by one: the plant has a zero there, which feedback does "
-    "not move, or too few inputs. There is no such $F_v$.",
+    "no_feedforward_zero": "With {row} the product {vanishes}, so the outputs at rest cannot be set one by one: the plant has a zero there, which feedback "
+    "does not move. There is no such $F_v$.",
+    "no_feedforward_low": "With {row} the product {vanishes}, so the outputs at rest cannot be set one by one: {rank}, and there are more outputs. "
+    "There is no such $F_v$.",
+    "no_feedforward_none": "The transfer function of the plant is zero, so no input moves the output, at rest or not. There is no such $F_v$.",
 }
 
 OPENS = ("feedforward_law",)

@@ -59,6 +59,8 @@ PHRASES: dict[str, str] = {
     "fixed_but_wanted_state_feedback": "No gain moves the uncontrollable <mode|modes> {roots}, but <it is|they are> among the poles asked for.",
     "one_gain_observer": "A gain that places the others is",
     "one_gain_state_feedback": "A gain that places the others is",
+    "no_others_observer": "There are no others to place, so every gain serves, for example",
+    "no_others_state_feedback": "There are no others to place, so every gain serves, for example",
     "family_observer": "It is not the only one: all of them are {gain}.",
     "family_state_feedback": "It is not the only one: all of them are {gain}.",
     "impossible_observer": "Every gain leaves the factor {fixed} in the polynomial of $A - L C$, and this factor does not divide "
@@ -73,6 +75,10 @@ PHRASES: dict[str, str] = {
     "still works; it is no longer the only one.",
     "case_survives_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for, "
     "so this $K$ still works; it is no longer the only one.",
+    "case_same_observer": "There the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for, so this "
+    "$L$ still works.",
+    "case_same_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked "
+    "for, so this $K$ still works.",
     "case_other_observer": "There the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for. A gain that "
     "works there is",
     "case_other_state_feedback": "There the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the poles asked for. "
@@ -89,6 +95,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     for phrase, fact in (
         ("fixed_but_wanted", "polynomial"),
         ("case_survives", "polynomial"),
+        ("case_same", "polynomial"),
         ("case_other", "polynomial"),
         ("case_no", "not_polynomial"),
         ("impossible", "not_polynomial"),

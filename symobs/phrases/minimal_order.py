@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-_DIRECT = "It has a direct term, {direct}, because the measured states act at once."
+_DIRECT = "Its direct term, with which the measured states act at once, is {direct}."
 
 PHRASES: dict[str, str] = {
     "partitioned_gain": "Measured and estimated states are fed back by",

@@ -10,7 +10,7 @@ PHRASES: dict[str, str] = {
     "advice_zeros": "The <only zero is|zeros are> {roots}.",
     "no_zeros": "The plant has no finite zeros.",
     "zeros_taken": "The fastest observer is not the most robust one: its eigenvalues belong first at the stable zeros§. Those used here are the roots of",
-    "no_zeros_taken": "No stable zero is there to be used.",
+    "no_zeros_taken": "No zero is used.",
     "none_remains": "They take all of the eigenvalues: none remains to be placed.",
     "one_on_circle": "One eigenvalue remains. It goes far to the left:",
     "some_on_circle": "The remaining {count} eigenvalues go far to the left, equally far from the origin and spread evenly: to the Butterworth "

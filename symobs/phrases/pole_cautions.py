@@ -12,6 +12,8 @@ PHRASES: dict[str, str] = {
     "grows_state_feedback_continuous": "Not all poles asked for lie in the open left half plane: this feedback makes the loop unstable.",
     "lasts_state_feedback_continuous": "Not all poles asked for lie in the open left half plane: with this feedback the loop need not come to rest.",
     "stays_state_feedback_continuous": "A pole asked for lies on the imaginary axis: with this feedback the loop does not come to rest by itself.",
+    "drifts_state_feedback_continuous": "A pole asked for is 0: with this feedback the loop comes to rest, but where its start decides.",
+    "drifts_state_feedback_discrete": "A pole asked for is 1: with this feedback the loop comes to rest, but where its start decides.",
     "grows_state_feedback_discrete": "Not all poles asked for lie inside the unit circle: this feedback makes the loop unstable.",
     "lasts_state_feedback_discrete": "Not all poles asked for lie inside the unit circle: with this feedback the loop need not come to rest.",
     "stays_state_feedback_discrete": "A pole asked for lies on the unit circle: with this feedback the loop does not come to rest by itself.",
@@ -25,6 +27,7 @@ PHRASES: dict[str, str] = {
 _TELL: dict[str, tuple[str, ...]] = {
     "grows": ("unstable", "beyond"),
     "stays": ("unstable", "marginal"),
+    "drifts": ("unstable", "marginal", "stable"),
     "lasts": ("unstable",),
     "law": ("unstable",),
     "hides": ("unstable",),

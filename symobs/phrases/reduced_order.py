@@ -5,7 +5,8 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "coordinates": "In the coordinates",
     "measured_first": "the measured states come first:",
-    "coordinates_assumed": "These are coordinates where {condition}; elsewhere other rows must complete $C$.",
+    "measured_are_first": "In them the measured states come first:",
+    "coordinates_assumed": "These are coordinates where {condition}; elsewhere other rows would have to complete $C$.",
     "parts": "Only {unmeasured} has to be estimated, since {measured} is measured. The plant falls into two parts,",
     "parts_blocks": "Only {unmeasured} has to be estimated, since {measured} is measured. Accordingly the matrices fall into the blocks",
     "parts_with_feedthrough_blocks": "Only {unmeasured} has to be estimated, since {measured} is known. Accordingly the matrices fall into the "
@@ -26,7 +27,7 @@ PHRASES: dict[str, str] = {
     "undetermined_matrices": "With this gain the matrices are",
     "rest_set_out": "What is not measured is estimated, as it was set out, by",
     "right_side_collected": "With this gain, and collected by its signals, the observer reads",
-    "reduced_observer": "The observer copies the second part and corrects it by that measurement:",
+    "reduced_observer": "The observer copies the second part and corrects it by the first, as far as that measures $x_2$:",
     "with_gain_unknown": "Its gain still unknown, this is",
     "reduced_error": "Whatever the input, the error {error} then obeys",
     "with_unknown_gain": "With unknown entries of $L$ its characteristic polynomial is",
@@ -45,12 +46,14 @@ PHRASES: dict[str, str] = {
     "assembled": "and the whole state is estimated by",
     "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the <mode|modes> "
     "{modes}, and <it is not|they are not all> among the poles asked for: there is no such observer.",
+    "reduced_all_fixed": "No $L$ moves the <mode|modes> {modes}, and <it is the pole|they are the poles> asked for: every gain serves, for example",
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "reduced_impossible": ("not_polynomial",),
     "reduced_not_unique": ("polynomial",),
+    "reduced_all_fixed": ("polynomial",),
 }
 
 OPENS = (
@@ -74,6 +77,7 @@ EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails", "mere_copy_gr
 SPELLS_OUT = (
     "coordinates",
     "measured_first",
+    "measured_are_first",
     "parts",
     "parts_blocks",
     "parts_with_feedthrough",

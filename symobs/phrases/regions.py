@@ -8,8 +8,8 @@ PHRASES: dict[str, str] = {
     "gain_open": "The gain is left open,",
     "sought_continuous": "Sought are all values of {names} for which every root has a negative real part.",
     "sought_discrete": "Sought are all values of {names} for which every root lies in the open unit disc.",
-    "sought_margin": "Sought are all values of {names} for which every root has a real part below {limit}.",
-    "sought_radius": "Sought are all values of {names} for which every root has an absolute value below {limit}.",
+    "sought_margin": "Sought are all values of {names} for which every root has a real part below {limit}; a root that has is called stable here.",
+    "sought_radius": "Sought are all values of {names} for which every root has an absolute value below {limit}; a root that has is called stable here.",
     "polynomial_of_loop": "The characteristic polynomial is",
     "moved_right": "Moved to the right by {by}, the roots are those of",
     "enlarged": "Divided by {by}, the roots are those of",
@@ -24,7 +24,8 @@ PHRASES: dict[str, str] = {
     "crossing": "As {names} {vary}, a root leaves the left half plane only through 0 or with another one through the imaginary axis: where one of these "
     "vanishes.",
     "crossing_infinite": "As {names} {vary}, a root leaves the left half plane only through 0, with another one through the imaginary axis or through infinity, "
-    "where the leading coefficient vanishes: where one of these is zero.",
+    "where the leading coefficient vanishes: where one of these is zero. Values at which a root is lost in this way do not count.",
+    "crossing_one_discrete": "As {names} {vary}, the root leaves the disc only at 1 or at −1: where one of these vanishes.",
     "crossing_discrete": "As {names} {vary}, a root leaves the disc only at 1, at −1 or with another one through the circle: where one of these vanishes.",
     "hurwitz_determinant": "with the determinant of Hurwitz",
     "always_critical": "One of them is zero whatever the values: there is always a root that is not stable.",
@@ -32,6 +33,7 @@ PHRASES: dict[str, str] = {
     "region_empty": "There are no such values.",
     "region_everywhere": "So all roots are stable for all values of {names}.",
     "points_decide": "Between {points} on the line nothing changes, so one rational value decides for a whole interval: all roots are stable on {stable}.",
+    "point_decides": "On either side of this point nothing changes, so one rational value decides for a whole side: all roots are stable on {stable}.",
     "cells_decide": "These curves, with lines through the points where they turn or meet, cut the plane into {cells}. Inside one nothing changes, so one "
     "rational point decides for all of it: {stable} stable.",
     "point_missing": "The value {name} = {point} itself is not among them.",
@@ -58,6 +60,7 @@ PHRASES: dict[str, str] = {
 RESTS_ON: dict[str, str] = {
     "cells_decide": "collins",
     "points_decide": "sturm",
+    "point_decides": "sturm",
     "crossing": "orlando",
     "crossing_infinite": "orlando",
     "crossing_discrete": "orlando",
@@ -105,4 +108,5 @@ EXPLAINS = (
     "crossing_discrete",
     "cells_decide",
     "points_decide",
+    "point_decides",
 )

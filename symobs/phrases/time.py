@@ -30,7 +30,7 @@ PHRASES: dict[str, str] = {
     "gramian_infinite_observability": "The integral over all time exists, since what the output sees decays.",
     "gramian_infinite_controllability": "The integral over all time exists, since what the input moves decays.",
     "lyapunov_alone": "It solves Lyapunov's equation {equation}, whose only solution is",
-    "lyapunov_with_kernel": "It solves Lyapunov's equation {equation}, and of its solutions it is the one with {nothing},",
+    "lyapunov_with_kernel": "It solves Lyapunov's equation {equation}, and of its symmetric solutions it is the one with {nothing},",
     "part_observability": "Of this the output sees the part that is left without the hidden modes,",
     "part_controllability": "Of this the input moves the part that is left without the modes that it does not move,",
     "gramian_diverges_observability": "What the output sees does not decay, so the integral over all time does not exist.",
@@ -75,6 +75,8 @@ PHRASES: dict[str, str] = {
     "noise_output_only": "White noise of intensity $R$ is added to the output,",
     "estimate_is": "The estimate is linear in the measurements, so it is unbiased, and its covariance is the sum of two parts. "
     "The output noise enters through",
+    "estimate_of_output": "The estimate is linear in the measurements, so it is unbiased. The output noise enters its covariance through",
+    "covariance_of_output": "Between two inverse Gramians this is the covariance,",
     "estimate_input": "The input noise reaches the estimate through",
     "estimate_input_integral": "which gives",
     "parts_of_covariance": "Between two inverse Gramians these are the two parts of the covariance, the one from the output noise",
@@ -89,7 +91,8 @@ PHRASES: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
-    "gramian_infinite": ("stable",),
+    "gramian_infinite_observability": ("stable",),
+    "gramian_infinite_controllability": ("stable",),
     "gramian_diverges_observability": ("unstable",),
     "gramian_diverges_controllability": ("unstable",),
 }
@@ -101,6 +104,7 @@ RESTS_ON: dict[str, str] = {
     "kernel_shared": "finite_sum",
     "moments": "reconstruction",
     "estimate_is": "noise",
+    "estimate_of_output": "noise",
 }
 
 NAMING = ("no_closed_form",)

@@ -31,7 +31,7 @@ PHRASES: dict[str, str] = {
     "$W x_0$ with",
     "gramian_open_integral": "What the input forces taken away, the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains "
     "the integral of {integrand} over $t$, of which no closed form is known here, so it is not given.",
-    "gramian_regular": "Its determinant is not 0, so the kernel of $W$ is trivial, and every output belongs to one initial state.",
+    "gramian_regular": "Its determinant is not 0, so the kernel of $W$ is trivial, and no two initial states have the same output.",
     "gramian_generic": "The initial state is determined exactly where this is not 0, and the rank test tells when.",
     "gramian_singular": "It is singular, and an initial state in its kernel is never seen at the output:",
     "never_seen_start": "An initial state in this direction is never seen at the output:",
@@ -56,7 +56,7 @@ PHRASES: dict[str, str] = {
     "frozen_misled_no": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing. Here "
     "{frozen} at almost every instant, and yet the plant is not observable.",
     "frozen_misled_yes": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing. Here "
-    "{frozen} at every instant, and yet the plant is observable.",
+    "{frozen} at almost every instant, and nowhere more, and yet the plant is observable.",
     "frozen_example": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing in general. With "
     "{state} and {output} it is passed at every $t$, {frozen}, although {derived}: the output of that plant is constant, and from it only one number "
     "can be found.",
