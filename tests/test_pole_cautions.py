@@ -103,15 +103,15 @@ def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
 
 HIDDEN = [
     # the observer cannot move the mode 1, nor does K look at it: F = 2/(s + 4)
-    (("[1 0; 0 -1]", "[1; 1]", "[0 1]"), "1, -3", "1, -2", "no", "of the modes that cancel in it, 1, not all lie in"),
-    (("[a 0; 0 -1]", "[1; 1]", "[0 1]"), "a, -3", "a, -2", "conditional", "a, are stable exactly where a < 0"),
+    (("[1 0; 0 -1]", "[1; 1]", "[0 1]"), "1, -3", "1, -2", "no", "the mode that cancels in it, 1, does not lie in"),
+    (("[a 0; 0 -1]", "[1; 1]", "[0 1]"), "a, -3", "a, -2", "conditional", "a, is stable exactly where a < 0"),
     (("[-1 0; 0 -2]", "[1; 1]", "[0 1]"), "-1, -3", "-1, -4", "yes", ""),
     (
         ("[1 0 0; 0 -1 0; 0 0 -2]", "[1 0; 1 0; 0 1]", "[0 1 0; 0 0 1]"),
         "1, -3, -4",
         "1, -2, -5",
         "no",
-        "not all lie in",
+        "does not lie in",
     ),
 ]
 

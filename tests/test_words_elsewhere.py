@@ -242,3 +242,32 @@ def test_a_rank_that_drops_is_not_told_of_every_instant() -> None:
     # [C; CA] = [t t^2; 0 0] has the rank 1 but for t = 0.
     text = text_of(symobs.time_varying_observability(symobs.StateSpace("[0 0; 0 0]", C="[t t^2]"), interval="0, 1"))
     assert "= 1 at almost every instant, and nowhere more, and yet the plant is observable" in text
+
+
+def test_several_hidden_directions_may_be_combined() -> None:
+    two = symobs.StateSpace("[0 0 0; 0 0 0; 0 0 -1]", C="[0 0 1]")
+    text = text_of(symobs.initial_state(two, output="exp(-t)", horizon=1))
+    assert "those of the vectors beside it vanish, so every combination of these may be added" in text
+    one = symobs.StateSpace("[0 0; 0 -1]", C="[0 1]")
+    assert "so every multiple of that one may be added" in text_of(
+        symobs.initial_state(one, output="exp(-t)", horizon=1)
+    )
+
+
+# -- advice on poles --------------------------------------------------------------------------------------------------
+
+
+def test_a_radius_is_said_to_be_positive() -> None:
+    # For r < 0 the roots of s^2 + sqrt(2) r s + r^2 lie in the right half-plane.
+    double = ("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    assert "As a radius, r is positive." in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius="r"))
+    known = symobs.StateSpace(*double, symbols={"r": "positive"})
+    assert "As a radius" not in text_of(symobs.pole_advice(known, radius="r"))
+    assert "As a radius" not in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius=10))
+
+
+def test_a_zero_that_is_stable_and_slow_is_not_denied() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1/10 1 0]")
+    text = text_of(symobs.pole_advice(plant, settling_time=2, overshoot="1/20"))
+    assert "too slow for the settling time" in text
+    assert "No stable zero" not in text

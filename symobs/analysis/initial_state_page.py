@@ -75,8 +75,9 @@ def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
     x0: Matrix = answer["x0"]
     if not result.is_unique:
         page.define("x_0", x0, say="initial_not_unique", answer=True, closing=False)
-        page.equal(relation(C @ Phi @ page["x_0"], free), say="initial_kernel")
         N = answer["rank"]["kernel"]
+        say = "initial_kernel" if N.shape[1] == 1 else "initial_kernel_several"
+        page.equal(relation(C @ Phi @ page["x_0"], free), say=say)
         for j in range(N.shape[1]):
             v = page.value(N.select(range(N.shape[0]), [j]))
             page.equal(relation(C @ Phi @ v, _entry(Matrix.zeros(C.value.shape[0], 1))))

@@ -15,6 +15,7 @@ from symobs.analysis.pages import (
     stratum_of,
     undecided,
 )
+from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Given
 from symobs.design.pole_advice import FURTHER_LEFT, numerator_term
@@ -146,6 +147,8 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
         return
     factors = advice.answer["rest"].factors
     whole = _product(page, factors)
+    if sign_of(radius, page.plant.symbols.signs) != "positive":
+        page.remark("radius_is_positive", radius=radius)
     if count == 1:
         page.define("phi_r", whole, say="one_on_circle", closing=False)
     else:

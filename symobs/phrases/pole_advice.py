@@ -15,6 +15,7 @@ PHRASES: dict[str, str] = {
     "one_on_circle": "One eigenvalue remains. It goes far to the left:",
     "some_on_circle": "The remaining {count} eigenvalues go far to the left, equally far from the origin and spread evenly: to the Butterworth "
     "configuration",
+    "radius_is_positive": "As a radius, {radius} is positive.",
     "is_butterworth": "Its roots are those in the left half-plane of {identity}.",
     "circle_pairs": "Real and imaginary parts of the pairs can be read off",
     "rate_from_settling": "A mode with the real part $-sigma_d$ has decayed to less than 2 % after the settling time with",
@@ -55,5 +56,7 @@ PHRASES: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {"always_unstable": ("no_stable_compensator",)}
+
+NAMING = ("radius_is_positive",)
 
 RESTS_ON: dict[str, str] = {"zeros_taken": "zeros_first", "some_on_circle": "butterworth"}

@@ -65,6 +65,7 @@ PHRASES: dict[str, str] = {
     "initial_not_unique": "The output does not fix the initial state, since the pair ($C$, $A$) is not observable. One state that "
     "explains it is",
     "initial_kernel": "Its output is the one measured, and that of the vector beside it vanishes, so every multiple of that one may be added:",
+    "initial_kernel_several": "Its output is the one measured, and those of the vectors beside it vanish, so every combination of these may be added:",
     "initial_candidate": "The value and the derivatives of {free} at 0 leave one candidate only,",
     "initial_refused": "but its output is another one: what is left, {rest}, is not 0. No initial state explains these data.",
     "initial_start": "The value and the derivatives at 0 would have to be $O x_0$. They are",
