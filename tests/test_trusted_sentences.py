@@ -165,3 +165,9 @@ def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:
         assert not rests(key, [], here)
         assert not rests(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
         assert not rests(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))
+
+
+def test_a_zero_is_named_only_beside_a_full_rank() -> None:
+    assert rests("no_feedforward_zero", [FULL], E)
+    assert not rests("no_feedforward_zero", [LOW], E)
+    assert not rests("no_feedforward_zero", [], E)
