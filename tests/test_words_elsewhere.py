@@ -114,6 +114,11 @@ def test_the_smallest_feedback_speaks_of_a_controllable_pair() -> None:
 # -- cautions ---------------------------------------------------------------------------------------------------------
 
 
+def test_a_single_pole_at_0_keeps_the_start() -> None:
+    text = text_of(symobs.state_feedback(symobs.StateSpace("[2]", "[1]"), poles=[0]))
+    assert "A pole asked for is 0: with this feedback the loop comes to rest" in text
+
+
 @pytest.mark.parametrize(
     ("poles", "dt", "words"),
     [

@@ -41,7 +41,7 @@ def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> 
 def _is_stable(rest: Scalar, page: Page) -> bool:
     """Tell whether what is left of a polynomial is one and surely stable."""
     plant = page.plant
-    if not rest.is_polynomial_in(plant.variable) or rest.degree(plant.variable) < 1:
+    if not rest.is_polynomial_in(plant.variable):
         return False
     return stability(rest, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "yes"
 
