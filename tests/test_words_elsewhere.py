@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import symobs
+from symobs import phrases
 
 
 def text_of(result: Any) -> str:
@@ -276,3 +277,15 @@ def test_a_zero_that_is_stable_and_slow_is_not_denied() -> None:
     text = text_of(symobs.pole_advice(plant, settling_time=2, overshoot="1/20"))
     assert "too slow for the settling time" in text
     assert "No stable zero" not in text
+
+
+def test_what_is_demanded_of_phrases_is_demanded_of_phrases_that_exist() -> None:
+    for listed in (
+        phrases.ASSERTS,
+        phrases.RESTS_ON,
+        phrases.NAMING,
+        phrases.OPENS,
+        phrases.EXPLAINS,
+        phrases.SPELLS_OUT,
+    ):
+        assert set(listed) <= phrases.PHRASES.keys()
