@@ -6,7 +6,15 @@ from fractions import Fraction
 
 import pytest
 
-from symobs.derivation.words import OF_STABLE_LOOP, OF_STABLE_MODES, OF_UNSTABLE_MODES, fits, rests
+from symobs.derivation.words import (
+    OF_DEFECTIVE_POLE,
+    OF_FULL_RANK,
+    OF_STABLE_LOOP,
+    OF_STABLE_MODES,
+    OF_UNSTABLE_MODES,
+    fits,
+    rests,
+)
 from symobs.exact import Matrix, Scalar, roots_of
 from symobs.exact.functions import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
@@ -163,6 +171,7 @@ def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:
         ):
             assert not rests(key, [fact], here)
         assert not rests(key, [], here)
+        assert not rests(key, [compared("O", "=", 1)], here)
         assert not rests(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
         assert not rests(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))
 
@@ -171,3 +180,9 @@ def test_a_zero_is_named_only_beside_a_full_rank() -> None:
     assert rests("no_feedforward_zero", [FULL], E)
     assert not rests("no_feedforward_zero", [LOW], E)
     assert not rests("no_feedforward_zero", [], E)
+
+
+def test_the_sentences_that_rest_on_such_facts() -> None:
+    assert {"compensator_unstable_alone", "compensator_unstable_low_alone", "minimal_unstable_alone"} == OF_STABLE_LOOP
+    assert {"defective", "defective_instead"} == OF_DEFECTIVE_POLE
+    assert "no_feedforward_zero" in OF_FULL_RANK

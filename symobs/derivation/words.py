@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.certificate import as_scalar
 from symobs.exact import Scalar, rank
 from symobs.exact.functions import PI, function
-from symobs.formula import Apply, Exact, Predicate, Relation, Roots, evaluate
+from symobs.formula import Apply, Exact, Letter, Predicate, Product, Relation, Roots, agree, evaluate
 from symobs.pointwise import Pointwise
 
 if TYPE_CHECKING:
@@ -55,9 +55,7 @@ _KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "sta
 OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS} | {"no_feedforward_zero"}
 OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
 OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
-OF_STABLE_LOOP = {
-    f"{key}_unstable{why}_alone" for key, why in (("compensator", ""), ("compensator", "_low"), ("minimal", ""))
-}
+OF_STABLE_LOOP = {"compensator_unstable_alone", "compensator_unstable_low_alone", "minimal_unstable_alone"}
 OF_DEFECTIVE_POLE = {"defective", "defective_instead"}
 
 
@@ -97,25 +95,31 @@ def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
     """Tell whether a predicate says that the polynomial of the loop, φ_c φ_o, is stable."""
     if fact.name != "stable" or not {"phi_c", "phi_o"} <= environment.values.keys():
         return False
-    whole = as_scalar(environment.values["phi_c"]) * as_scalar(environment.values["phi_o"])
-    return bool(evaluate(fact.subject, environment, Exact(environment)) == whole)
+    exact, loop = Exact(environment), Product((Letter("phi_c"), Letter("phi_o")))
+    return agree(evaluate(fact.subject, environment, exact), evaluate(loop, environment, exact), exact)
 
 
 def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:
     """Tell whether a pole of φ_c is met more often than a matrix X lacks in rank, φ_c(s + pole) being det(sI − X)."""
-    matrices = [fact.members[0].argument for fact in facts if isinstance(fact, Relation) and _is_rank(fact)]  # type: ignore[union-attr]
-    poles = [root for fact in facts if isinstance(fact, Roots) for root in fact.values]
+    ranked = [_ranked(fact) for fact in facts if isinstance(fact, Relation)]
+    matrices = [formula for formula in ranked if formula is not None]
+    poles = [root.centre for fact in facts if isinstance(fact, Roots) for root in fact.values]
     if len(matrices) != 1 or len(poles) != 1 or "phi_c" not in environment.values:
         return False
-    X, variable = evaluate(matrices[0], environment, Exact(environment)), environment.variable
-    moved = Scalar.symbol(variable) + poles[0].centre
-    polynomial = as_scalar(environment.values["phi_c"]).substitute({variable: moved})
+    (matrix,), (pole,), variable = matrices, poles, environment.variable
+    X, phi = (evaluate(formula, environment, Exact(environment)) for formula in (matrix, Letter("phi_c")))
+    polynomial = phi.substitute({variable: Scalar.symbol(variable) + pole})
+    if X.characteristic_polynomial(variable) != polynomial:
+        return False
     times = sum(1 for _ in takewhile(lambda c: c.is_zero, reversed(polynomial.coefficients(variable))))
-    return bool(X.characteristic_polynomial(variable) == polynomial and X.shape[0] - rank(X) < times)
+    lacking: int = polynomial.degree(variable) - rank(X)
+    return lacking < times
 
 
-def _is_rank(relation: Relation) -> bool:
-    return isinstance(relation.members[0], Apply) and relation.members[0].function == "rank"
+def _ranked(relation: Relation) -> Formula | None:
+    """Return the matrix of whose rank a relation begins to speak."""
+    first = relation.members[0]
+    return first.argument if isinstance(first, Apply) and first.function == "rank" else None
 
 
 def _is_everywhere(relation: Relation, environment: Environment) -> bool:
@@ -132,10 +136,10 @@ def _is_everywhere(relation: Relation, environment: Environment) -> bool:
 
 def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:
     """Tell whether a relation is rank = r with the full r, or with a lower one, followed by nothing but the full one."""
-    first, *others = relation.members
-    if not isinstance(first, Apply) or not _is_rank(relation):
+    matrix, others = _ranked(relation), relation.members[1:]
+    if matrix is None:
         return False
-    full = min(evaluate(first.argument, environment, Exact(environment)).shape)
+    full = min(evaluate(matrix, environment, Exact(environment)).shape)
     ranks = [as_scalar(evaluate(member, environment, Exact(environment))).fraction() for member in others]
     if is_full:
         return relation.operators == ("=",) and ranks == [full]
