@@ -55,7 +55,7 @@ def is_stable(chi: Scalar, *, discrete: bool, **numbers: Fraction) -> bool:
 
 
 def critical(curves: Sequence[Scalar], window: Window) -> list[float]:
-    """Where the number of branches may change, or two cross: found by halving between places where it did."""
+    """Where the number of branches may change, two cross, or one leaves the window; by halving, but for the last."""
     low, high = window[0]
 
     def pattern(x: Fraction) -> tuple[int, ...]:
@@ -75,7 +75,9 @@ def critical(curves: Sequence[Scalar], window: Window) -> list[float]:
         changes.append(float(a + c) / 2)
     leading = [curve.coefficients("h2")[0] for curve in curves]
     walls = [x for value in leading for x in real_roots(_numbers(value, "h1")) if "h1" in value.names]
-    inside = [x for x in (*changes[1:], *walls) if low < x < high]
+    cut = [at(curve, h2=Fraction(y)) for curve in curves for y in window[1]]
+    leaving = [x for value in cut for x in real_roots(_numbers(value, "h1")) if "h1" in value.names]
+    inside = [x for x in (*changes[1:], *walls, *leaving) if low < x < high]
     return sorted({low, *inside, high})
 
 
