@@ -92,7 +92,7 @@ def faults_of_area(
 
 def faults_of_mark(
     mark: Mark,
-    is_filled: bool,  # noqa: FBT001
+    is_filled: bool,  # noqa: FBT001 - the tests keep what is asked by position
     window: tuple[Interval, Interval],
     test: Stability,
 ) -> Iterator[str]:

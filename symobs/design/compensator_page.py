@@ -266,7 +266,7 @@ def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
 def _say_left(page: Page, left: tuple[Root, ...], lost: Roots) -> None:
     """Say which poles are left where others cancel."""
     if not left:
-        page.conclude("loop_no_poles", relation(page["G_cl"], page["G_cl"].value), lost=lost)
+        page.conclude("loop_no_poles", predicate("polynomial", page["G_cl"]), lost=lost)
         return
     poles = Roots(page["G_cl"].formula, left)
     page.conclude("loop_poles_left" if len(left) > 1 else "loop_pole_left", poles=poles, lost=lost)

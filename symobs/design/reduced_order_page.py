@@ -214,8 +214,7 @@ def write_inner_gain(page: Page, design: ReducedOrderObserver) -> None:
         modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, variable))
         rest = page["phi_o"] / fixed
         key = "reduced_all_fixed" if rest.value == 1 else "reduced_not_unique"
-        held = relation(rest, 1) if rest.value == 1 else relation(rest, rest.value)
-        page.remark(key, *facts, predicate("polynomial", rest), held, modes=modes)
+        page.remark(key, *facts, predicate("polynomial", rest), relation(rest, rest.value), modes=modes)
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)

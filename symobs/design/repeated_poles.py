@@ -34,9 +34,10 @@ def caution_repeated(page: Page, design: OutputFeedback) -> None:
             length = abs(pole.fraction())
             shift = size if length == 1 else page.value(Scalar.of(length)) @ size
             offset = closed + shift if pole.fraction() < 0 else closed - shift
-            held = relation(offset.apply("rank"), rank(offset.value))
-            if plant.order - rank(offset.value) >= power:
+            found = rank(offset.value)
+            if plant.order - found >= power:
                 continue
+            held = relation(offset.apply("rank"), found)
             single = page["phi_c"] / page.value(desired.polynomial / factor)
             instead = _with_distinct_poles(page, desired)
             page.caution(

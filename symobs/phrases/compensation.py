@@ -72,6 +72,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_unstable_low_alone": ("strictly_proper", "unstable", "stable"),
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
+    "loop_no_poles": ("polynomial",),
     "no_stable_compensator": ("no_stable_compensator",),
 }
 
