@@ -1,4 +1,4 @@
-"""README.md does what it says: its Python gives the values in its comments, its shell lines run on its problem file."""
+"""README.md and the guide do what they say: Python gives the values in its comments, shell lines run on the problem file."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 import shlex
 from typing import TYPE_CHECKING, Any
 
+import pytest
 import sympy
 
 from tests.command_line import ROOT, fresh
@@ -14,11 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+README, GUIDE = ((ROOT / path).read_text(encoding="utf-8") for path in ("README.md", "docs/guide.md"))
+#: What a page of the repository links to, from its own folder.
+LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)\)")
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+def blocks(language: str, text: str = README + GUIDE) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
 def promised() -> list[tuple[str, str]]:
@@ -52,24 +55,29 @@ def test_python_gives_the_values_in_its_comments() -> None:
     assert sympy.simplify(minimal.direct_term[0] - 31 / (1 - 31 * d)) == 0
     assert [str(condition) for condition in minimal.conditions] == ["Ne(31*d - 1, 0)"]
     for name in ("region", "pendulum"):
-        (comment,) = re.findall(rf"^{name}\.stable_if  # (.*)$", README, re.MULTILINE)
+        (comment,) = re.findall(rf"^{name}\.stable_if  # (.*)$", GUIDE, re.MULTILINE)
         assert list(names[name].stable_if) == eval(comment)  # noqa: S307
     (component,) = names["region"].components
     assert (component["bounded"], component["parts"][0]["h1"]) == (True, ("3", "8"))
 
 
 def test_every_promised_value_is_on_a_line_of_its_own() -> None:
-    assert len(promised()) == 7
+    assert len(promised()) == 8
+
+
+def test_the_set_up_is_two_commands_of_one_line() -> None:
+    section = README.split("\n## Set-up\n")[1].split("\n## ")[0]
+    assert [len(block.splitlines()) for block in blocks("sh", section)] == [1, 1]
 
 
 def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str], tmp_path: Path) -> None:
     require_tool("latexmk")
     require_tool("pdflatex")
-    problem, *_ = blocks("toml")
-    for name in ("problem", "servo"):
-        (tmp_path / f"{name}.toml").write_text(problem, encoding="utf-8")
-    lines = [line for block in blocks("sh")[2:] for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 19
+    problem, lecture, _ = blocks("toml")
+    for name, text in (("problem", problem), ("servo", problem), ("lecture", lecture)):
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+    lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("symobs ")]
+    assert len(lines) == 21
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
@@ -99,7 +107,9 @@ def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
     assert shown in run.out
 
 
-def test_pictures_are_there() -> None:
-    pictures = re.findall(r"^!\[[^]]*\]\((\S+)\)$", README, re.MULTILINE)
-    assert len(pictures) == 2
-    assert all((ROOT / path).is_file() for path in pictures)
+@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/guide.md", "docs/architecture.md"])
+def test_every_link_leads_somewhere(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    links = LINK.findall(text)
+    assert links
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
