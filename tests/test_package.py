@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -12,7 +13,8 @@ from zipfile import ZipFile
 import pytest
 
 ROOT = Path(__file__).parent.parent
-VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+VERSION = SETTINGS["project"]["version"]
 INFO = f"symobs-{VERSION}.dist-info"
 
 
@@ -70,3 +72,17 @@ def test_metadata(wheel: dict[str, bytes]) -> None:
     assert names == {"click", "jinja2", "lark", "mpmath", "numpy", "python-flint", "sympy"}
     assert set(metadata.get_all("Provides-Extra", [])) == {"batch", "control", "distributed", "plot", "test", "verify"}
     assert b"symobs = symobs.__main__:main" in wheel[f"{INFO}/entry_points.txt"]
+
+
+def test_the_source_distribution_has_what_the_readme_links_to() -> None:
+    included = SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
+    assert [path for path in included if not (ROOT / path.lstrip("/")).exists()] == []
+    links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert links
+    assert [link for link in links if not any(f"/{link}".startswith(path) for path in included)] == []
+
+
+def test_the_citation_is_of_this_version() -> None:
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    assert f"version: {VERSION}" in lines
+    assert f"## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
