@@ -6,13 +6,14 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.exact import Matrix, Scalar, derivative
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Hashable, Mapping
 
+Name = TypeVar("Name", bound="Hashable")
 #: What is asked of a result in both processes.
 Account = dict[str, Any]
 
@@ -30,7 +31,7 @@ def account_of(result: Any) -> Account:
     }
 
 
-def read_in_another_process(results: Mapping[str, Any]) -> dict[str, Account]:
+def read_in_another_process(results: Mapping[Name, Any]) -> dict[Name, Account]:
     """Return the accounts that a fresh interpreter gives of pickled results; it has seen no plant and no generator."""
     run = subprocess.run(
         [sys.executable, "-m", __name__],
@@ -40,7 +41,7 @@ def read_in_another_process(results: Mapping[str, Any]) -> dict[str, Account]:
         capture_output=True,
     )
     assert run.returncode == 0, run.stderr.decode()
-    accounts: dict[str, Account] = pickle.loads(run.stdout)  # noqa: S301 - our own bytes
+    accounts: dict[Name, Account] = pickle.loads(run.stdout)  # noqa: S301 - our own bytes
     return accounts
 
 

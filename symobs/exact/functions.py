@@ -351,7 +351,7 @@ def identities(
     for (turns, monomial), step in steps.items():
         if turns:
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
-    meanings = {}
+    meanings: dict[str, Scalar] = {}
     for f in moving:
         meaning = _in_base(f, steps)
         if meaning != f.value:
