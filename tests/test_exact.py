@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import operator
 import pickle
 from math import gcd, prod
@@ -415,3 +416,16 @@ def test_a_long_numerator_is_reduced_by_what_it_shares(shared: int, own: int) ->
     assert len(found.numerator_part) == len(numerator / common)
     assert found.numerator_part * denominator == numerator * found.denominator_part
     assert found.numerator_part.gcd(found.denominator_part).is_one()
+
+
+def test_polynomials_alike_in_length_and_leading_term_have_different_hashes() -> None:
+    a, b, c, d = (Scalar.symbol(name) for name in "abcd")
+    permuted = [a**3 + p * b + q * c + r * d for p, q, r in itertools.permutations((2, 3, 5))]
+    paired = [1 + a * b + c * d, 1 + a * c + b * d, 1 + a * d + b * c]
+    for values in (permuted, paired, [1 / value for value in permuted + paired]):
+        assert len({hash(value) for value in values}) == len(values)
+    for value in permuted + paired:
+        elsewhere = value + Scalar.symbol("z") - Scalar.symbol("z")
+        assert elsewhere.field is not value.field
+        assert elsewhere == value
+        assert hash(elsewhere) == hash(value)

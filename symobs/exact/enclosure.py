@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symobs.exact.functions import PI, known, symbols_in
+from symobs.exact.precision import Precision
 from symobs.exact.real import RealRoot
 
 if TYPE_CHECKING:
@@ -55,11 +56,8 @@ def near(value: Scalar, bits: int = 40) -> Fraction | None:
 
 def _enclosed(value: Scalar, bits: int) -> arb:
     """Return an interval that holds the number."""
-    before, ctx.prec = ctx.prec, bits
-    try:
+    with Precision(bits):
         return _ball(value)
-    finally:
-        ctx.prec = before
 
 
 def _ball(value: Scalar) -> arb:

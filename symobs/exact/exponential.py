@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic import Extension
 from symobs.exact.field import EIGENVALUE
-from symobs.exact.functions import ONE, ZERO, registered, square_root
+from symobs.exact.functions import ONE, ZERO, square_root
 from symobs.exact.matrix import Matrix
 from symobs.exact.polynomial import companion
 from symobs.exact.quasi import Key, Quasi, matrix_at
@@ -117,7 +117,7 @@ class RootMode:
 
     def values(self, power: int, time: Scalar) -> tuple[Scalar, ...]:
         """Return tᵏ φⱼ."""
-        return tuple(time**power * registered(value) for value in self._sums(time))
+        return tuple(time**power * function.value for function in self._sums(time))
 
 
 @dataclass(frozen=True)

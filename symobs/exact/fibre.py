@@ -9,9 +9,10 @@ from __future__ import annotations
 import itertools
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from flint import acb_poly, arb, arb_mat, ctx, fmpq, fmpq_poly
+from flint import acb_poly, arb, arb_mat, fmpq, fmpq_poly
 
 from symobs.exact.ideal import TooLarge
+from symobs.exact.precision import Precision
 from symobs.exact.real import FIRST_BITS, RealNumber, at_ball, ends_of, rational_between, real_roots, simplest_between
 from symobs.record import dataclass
 
@@ -162,8 +163,7 @@ def _around_one_event(plane: Plane, x: RealNumber, event: Event) -> list[tuple[F
 
 
 def _divided_out(plane: Plane, x: RealNumber, event: Event, bits: int) -> list[tuple[Fraction, Fraction]] | None:
-    before, ctx.prec = ctx.prec, 4 * bits
-    try:
+    with Precision(4 * bits):
         rows = {
             index: [at_ball(c, x.ball(2 * bits), 2 * bits) for c in curve.by_second]
             for index, curve in enumerate(plane.curves)
@@ -181,8 +181,6 @@ def _divided_out(plane: Plane, x: RealNumber, event: Event, bits: int) -> list[t
                 sum((product[i] * row[k - i] for i in range(len(product)) if 0 <= k - i < len(row)), arb(0))
                 for k in range(len(product) + len(row) - 1)
             ]
-    finally:
-        ctx.prec = before
     return _isolated(product, 2 * bits) if len(product) > 1 else []
 
 
@@ -275,14 +273,11 @@ class _Tower:
             bits *= 2
 
     def _ball(self, coefficient: fmpq_poly, bits: int) -> arb:
-        before, ctx.prec = ctx.prec, 2 * bits
-        try:
+        with Precision(2 * bits):
             point, value = self.alpha.ball(2 * bits), arb(0)
             for c in reversed(coefficient.coeffs()):
                 value = value * point + arb(fmpq(c))
             return value
-        finally:
-            ctx.prec = before
 
 
 def _isolated(coefficients: Sequence[arb], bits: int) -> list[tuple[Fraction, Fraction]] | None:
@@ -291,13 +286,11 @@ def _isolated(coefficients: Sequence[arb], bits: int) -> list[tuple[Fraction, Fr
     The balls hold one root each; the conjugate of a root lies in the conjugate ball, so a root is real where that meets
     no ball but its own.
     """
-    before, ctx.prec = ctx.prec, 2 * bits
     try:
-        roots: list[Any] = acb_poly(coefficients).roots(maxprec=4 * bits)
+        with Precision(2 * bits):
+            roots: list[Any] = acb_poly(coefficients).roots(maxprec=4 * bits)
     except ValueError:
         return None
-    finally:
-        ctx.prec = before
     found = []
     for index, root in enumerate(roots):
         if not root.imag.contains(0):

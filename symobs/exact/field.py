@@ -1,23 +1,47 @@
-"""The field Q(generators): which symbols an exact value may contain.
+"""The field Q(generators): which symbols an exact value may contain, and which of them stand for functions.
 
 A `Field` owns one FLINT context.  Generators stand in one canonical order (the variables s, z, t first, then
 alphabetical), so the reduced form of a value, and with it equality, text and hash, does not depend on the field
 in which the value was computed.  Fields are joined by `|`; values follow.
+
+A symbol is a plain name; a function such as exp(-t) is a `Generator`, a name that carries the function.  No table
+beside the field says what a name means, so a value means the same in every process and thread.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, cast
+from threading import Lock
+from typing import TYPE_CHECKING, Any, Self, cast
+from weakref import WeakValueDictionary
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from symobs.exact.functions import Function
+
 VARIABLES = ("s", "z", "t")
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
 EIGENVALUE = "lambda"
+
+
+class Generator(str):
+    """The name of a generator that stands for a function: the function's text, and the function itself."""
+
+    __slots__ = ("function",)
+
+    function: Function
+
+    def __new__(cls, function: Function) -> Self:
+        """Return the name of a function; functions of one text are equal."""
+        name = super().__new__(cls, function.text)
+        name.function = function
+        return name
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (Generator, (self.function,))
 
 
 def _canonical(names: set[str]) -> tuple[str, ...]:
@@ -27,7 +51,7 @@ def _canonical(names: set[str]) -> tuple[str, ...]:
 class Field:
     """Q(names): rational functions with rational coefficients in the generators `names`."""
 
-    __slots__ = ("context", "names", "one", "position", "routes", "zero")
+    __slots__ = ("__weakref__", "context", "functions", "names", "one", "position", "routes", "zero")
 
     names: tuple[str, ...]
     context: fmpz_mpoly_ctx
@@ -35,7 +59,12 @@ class Field:
     def __init__(self, names: tuple[str, ...]) -> None:
         """Use `Field.of`, which returns the one field of a set of names."""
         self.names = names
-        self.context = fmpz_mpoly_ctx.get(names, Ordering.lex)
+        self.functions = {name: name.function for name in names if isinstance(name, Generator)}
+        for name in names:
+            if name.endswith(")") and name[0].isalpha() and name not in self.functions:
+                message = f"{name} is a function, which its text alone does not name"
+                raise ValueError(message)
+        self.context = context_of(names, Ordering.lex)
         self.position = {name: index for index, name in enumerate(names)}
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
@@ -70,6 +99,8 @@ class Field:
         """Return the way of polynomials from `source` to here."""
         route = self.routes.get(source.names)
         if route is None:
+            if len(self.routes) == _ROUTES:  # the rational numbers are met from every field there is
+                self.routes.clear()
             route = self.routes[source.names] = Route(self, source)
         return route
 
@@ -109,14 +140,31 @@ class Route:
 
 #: Polynomials of up to this many terms are carried by composition.
 _SHORT = 40
+#: The most routes that a field remembers.
+_ROUTES = 256
 
 
-@lru_cache(maxsize=4096)
+def context_of(names: Iterable[str], ordering: Ordering) -> fmpz_mpoly_ctx:
+    """Return a new context, freed with its last polynomial; the library's `get` keeps all it has ever made."""
+    maker: Any = fmpz_mpoly_ctx
+    return cast("fmpz_mpoly_ctx", maker._new_(*maker.create_context_key(tuple(names), ordering)))
+
+
+#: The fields in use: two of the same names would have contexts whose polynomials do not meet.
+_FIELDS: WeakValueDictionary[tuple[str, ...], Field] = WeakValueDictionary()
+_MAKING = Lock()
+
+
+@lru_cache(maxsize=1024)
 def _field(names: tuple[str, ...]) -> Field:
-    return Field(names)
+    with _MAKING:
+        found = _FIELDS.get(names)
+        if found is None:
+            found = _FIELDS[names] = Field(names)
+        return found
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def _join(left: Field, right: Field) -> Field:
     return Field.of(left.names + right.names)
 

@@ -1,8 +1,9 @@
 """Functions of time as generators: exp, cos, sin, cosh, sinh of an argument, and square roots that stand in arguments.
 
-A generator is named by what it is, `exp(-2*t)` or `cos(sqrt(3)*t)`, so its text is SymPy's and its derivative is known
-from its name: d/dt is Σ ∂/∂generator · generator′.  Different generators may depend on each other, exp(−2t) = exp(−t)²;
-`identities` says how: what each one is in the base of a set of values, and which polynomials vanish there.
+A generator's name is SymPy's text, `exp(-2*t)` or `cos(sqrt(3)*t)`, and carries the function (`Generator`), so that its
+derivative follows from the value alone: d/dt is Σ ∂/∂generator · generator′.  Different generators may depend on each
+other, exp(−2t) = exp(−t)²; `identities` says how: what each one is in the base of a set of values, and which polynomials
+vanish there.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, overload
 
 from flint import fmpz
 
+from symobs.exact.field import Generator
 from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
@@ -42,9 +44,19 @@ class Function:
     argument: Scalar
 
     @property
-    def name(self) -> str:
-        """The generator's name."""
+    def text(self) -> str:
+        """SymPy's text."""
         return f"{self.kind}({self.argument})"
+
+    @property
+    def name(self) -> Generator:
+        """The generator's name, which carries the function."""
+        return Generator(self)
+
+    @property
+    def value(self) -> Scalar:
+        """The function as a generator."""
+        return Scalar.symbol(self.name)
 
     @property
     def symbols(self) -> frozenset[str]:
@@ -64,24 +76,17 @@ class Function:
         return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
 
 
-_KNOWN: dict[str, Function] = {}
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
 
 
 def known(name: str) -> Function | None:
     """Return the function a generator's name stands for, None for a plain symbol."""
-    return _KNOWN.get(name)
+    return name.function if isinstance(name, Generator) else None
 
 
 def generator(kind: str, argument: Scalar) -> Scalar:
-    """Return the generator of this name as a scalar."""
-    return registered(Function(kind, argument))
-
-
-def registered(function: Function) -> Scalar:
-    """Return a function as a generator, known by its name from now on."""
-    _KNOWN[function.name] = function
-    return Scalar.symbol(function.name)
+    """Return kind(argument) as a generator, whatever the argument."""
+    return Function(kind, argument).value
 
 
 def function(kind: str, argument: Scalar) -> Scalar:
@@ -177,8 +182,8 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
 
 def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
     """Return the functions among the generators that occur; most fields have none, which is soon seen."""
-    having = [value for value in values if not _KNOWN.keys().isdisjoint(value.field.names)]
-    return frozenset(_KNOWN[name] for value in having for name in value.names if name in _KNOWN)
+    having = [value for value in values if value.field.functions]
+    return frozenset(f for value in having for name in value.names if (f := known(name)) is not None)
 
 
 def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
@@ -193,7 +198,7 @@ def tidy(value: Scalar) -> Scalar:
     for root in roots_in(value):
         above = _split(value.numerator, root)
         below = _split(value.denominator, root)
-        q = Scalar.symbol(root.name)
+        q = root.value
         over = below[0] * below[0] - below[1] * below[1] * root.argument
         top = (
             above[0] * below[0] - above[1] * below[1] * root.argument,
@@ -217,7 +222,7 @@ def with_roots(value: Scalar, roots: Iterable[Function]) -> Scalar:
         if root.argument.is_constant:
             continue
         core, power = root.argument.numerator, 0
-        square = Scalar.symbol(root.name) ** 2 * root.argument.denominator
+        square = root.value**2 * root.argument.denominator
         unit, _ = core.factors()
         core, square = core / unit, square / unit
         below = value.denominator
@@ -340,16 +345,16 @@ def identities(
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
     if falling:
         steps = {key: step if key[0] else -step for key, step in steps.items()}
-    relations = [Scalar.symbol(root.name) ** 2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
+    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
     counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
-    relations += [f.argument.substitute(dict.fromkeys(f.argument.names, Scalar.symbol(f.name))) for f in counted]
+    relations += [f.argument.substitute(dict.fromkeys(f.argument.names, f.value)) for f in counted]
     for (turns, monomial), step in steps.items():
         if turns:
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
-    meanings = {}
+    meanings: dict[str, Scalar] = {}
     for f in moving:
         meaning = _in_base(f, steps)
-        if meaning != Scalar.symbol(f.name):
+        if meaning != f.value:
             meanings[f.name] = meaning
     return meanings, tuple(r.numerator for r in relations)
 

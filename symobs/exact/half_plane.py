@@ -7,8 +7,9 @@ from functools import reduce
 from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
-from flint import ctx, fmpz_poly
+from flint import fmpz_poly
 
+from symobs.exact.precision import Precision
 from symobs.exact.real import RealNumber, real_roots
 
 if TYPE_CHECKING:
@@ -68,11 +69,8 @@ def _split(polynomial: fmpz_poly) -> tuple[int, int]:
 def _roots(polynomial: fmpz_poly, bits: int) -> list[Any]:
     if polynomial.degree() < 1:
         return []
-    before, ctx.prec = ctx.prec, bits
-    try:
+    with Precision(bits):
         return list(polynomial.complex_roots())
-    finally:
-        ctx.prec = before
 
 
 def integers(coefficients: Sequence[Fraction]) -> list[int]:

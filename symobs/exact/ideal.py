@@ -11,15 +11,15 @@ from __future__ import annotations
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
+from flint import Ordering, fmpz_mpoly_vec
 
-from symobs.exact.field import EIGENVALUE, Field
+from symobs.exact.field import EIGENVALUE, Field, context_of
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from flint import fmpz_mpoly
+    from flint import fmpz_mpoly, fmpz_mpoly_ctx
 
 #: The most polynomials of a basis, terms of one of them, and bits of a coefficient, before the work is given up.
 LIMITS = (120, 600, 4_000)
@@ -115,9 +115,9 @@ def _home(field: Field) -> fmpz_mpoly_ctx:
     It comes first in a lexicographic order, which eliminates it.
     """
     if EIGENVALUE not in field.position:
-        return fmpz_mpoly_ctx.get(field.names, Ordering.degrevlex)
+        return context_of(field.names, Ordering.degrevlex)
     others = (name for name in field.names if name != EIGENVALUE)
-    return fmpz_mpoly_ctx.get((EIGENVALUE, *others), Ordering.lex)
+    return context_of((EIGENVALUE, *others), Ordering.lex)
 
 
 @lru_cache(maxsize=512)

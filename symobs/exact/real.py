@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import itertools
 from fractions import Fraction
-from functools import cache, total_ordering
+from functools import lru_cache, total_ordering
 from math import ceil, floor
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, fmpq, fmpz_poly
 
 from symobs.exact.field import Field
-from symobs.exact.functions import Function, registered, square_root
+from symobs.exact.functions import Function, square_root
+from symobs.exact.precision import Precision
 from symobs.exact.roots import rational_sqrt
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
@@ -30,14 +31,13 @@ FIRST_BITS = 64
 class RealNumber:
     """The root number `index` (from 0, ascending) among the real roots of an irreducible integer polynomial."""
 
-    __slots__ = ("bits", "enclosed", "index", "polynomial")
+    __slots__ = ("enclosed", "index", "polynomial")
 
     def __init__(self, polynomial: fmpz_poly, index: int) -> None:
         """Take an irreducible polynomial with positive leading coefficient."""
         self.polynomial = polynomial
         self.index = index
-        self.bits = FIRST_BITS
-        self.enclosed: arb | None = None
+        self.enclosed: tuple[int, arb] | None = None
 
     @staticmethod
     def of(value: Fraction | int) -> RealNumber:
@@ -80,11 +80,11 @@ class RealNumber:
 
     def ball(self, bits: int = FIRST_BITS) -> arb:
         """Return an enclosure by a ball that is at least this precise."""
-        if self.enclosed is None or bits > self.bits:
-            most = max(bits, self.bits)
-            self.enclosed = _real_balls(tuple(map(int, self.polynomial.coeffs())), most)[self.index]
-            self.bits = most  # last, so that an interrupt in between leaves no ball called more precise than it is
-        return self.enclosed
+        kept = self.enclosed
+        if kept is None or bits > kept[0]:  # kept in one piece, so that no ball is called more precise than it is
+            most = max(bits, FIRST_BITS)
+            kept = self.enclosed = most, _real_balls(tuple(map(int, self.polynomial.coeffs())), most)[self.index]
+        return kept[1]
 
     def interval(self, bits: int = FIRST_BITS) -> tuple[Fraction, Fraction]:
         """Return rational bounds; both are the number itself where it is rational."""
@@ -155,9 +155,7 @@ class RealNumber:
     def scalar(self, variable: str = "x") -> Scalar:
         """Return the number as a value: its closed form, or a generator that stands for it."""
         closed = self.closed_form()
-        return (
-            closed if closed is not None else registered(RealRoot("CRootOf", self.minimal_polynomial(variable), self))
-        )
+        return closed if closed is not None else RealRoot("CRootOf", self.minimal_polynomial(variable), self).value
 
     def minimal_polynomial(self, variable: str) -> Scalar:
         """Return the polynomial in a variable."""
@@ -182,7 +180,7 @@ class RealRoot(Function):
     number: RealNumber
 
     @property
-    def name(self) -> str:
+    def text(self) -> str:
         """SymPy's text."""
         return f"CRootOf({self.argument}, {self.number.index})"
 
@@ -197,7 +195,7 @@ class RealRoot(Function):
 
     def moved(self, values: Mapping[str, Scalar]) -> Scalar:  # noqa: ARG002
         """Return the number itself."""
-        return Scalar.symbol(self.name)
+        return self.value
 
 
 def _from_coefficients(coefficients: tuple[int, ...], index: int) -> RealNumber:
@@ -206,11 +204,8 @@ def _from_coefficients(coefficients: tuple[int, ...], index: int) -> RealNumber:
 
 def ends_of(ball: arb, bits: int) -> tuple[Fraction, Fraction]:
     """Return rational bounds of a ball; they are rounded to twice the bits, outwards."""
-    before, ctx.prec = ctx.prec, 2 * bits
-    try:
+    with Precision(2 * bits):
         return _fraction(ball.lower()), _fraction(ball.upper())
-    finally:
-        ctx.prec = before
 
 
 def _fraction(exact: arb) -> Fraction:
@@ -225,29 +220,23 @@ def _rounded(value: Fraction, digits: int) -> str:
     return f"-{text}" if value < 0 and scaled else text
 
 
-@cache
+@lru_cache(maxsize=1024)
 def _real_balls(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
     """Return enclosures of the distinct real roots of a polynomial, lowest coefficient first, ascending."""
-    before, ctx.prec = ctx.prec, bits
-    try:
+    with Precision(bits):
         if len(coefficients) == 2:
             return (arb(-coefficients[0]) / coefficients[1],)
         found: Any = fmpz_poly(list(coefficients)).complex_roots()
         return tuple(sorted((root.real for root, _ in found if root.imag == 0), key=lambda ball: ball.mid().fmpq()))
-    finally:
-        ctx.prec = before
 
 
 def at_ball(polynomial: fmpz_poly, point: arb, bits: int) -> arb:
     """Return an enclosure of a polynomial's value, by Horner's rule."""
-    before, ctx.prec = ctx.prec, 2 * bits
-    try:
+    with Precision(2 * bits):
         value = arb(0)
         for coefficient in reversed(polynomial.coeffs()):
             value = value * point + coefficient
         return value
-    finally:
-        ctx.prec = before
 
 
 def real_roots(polynomial: fmpz_poly) -> list[RealNumber]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
+from flint import arb, arb_mat, fmpq, fmpq_mat
+
+from symobs.exact.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,8 +43,7 @@ def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: i
     bits = _BITS + int(_BITS_OF_E * rate * float(step) * count) + parts.bit_length()
     if bits > _MOST_BITS:
         raise ArithmeticError("a course with too much to compute")
-    before, ctx.prec = ctx.prec, bits
-    try:
+    with Precision(bits):
         once = (arb_mat(_rational(matrix)) * arb(fmpq(step.numerator, step.denominator))).exp()
         column = arb_mat([[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start])
         states = []
@@ -50,8 +51,6 @@ def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: i
             states.append([_nearest(entry) for entry in column.entries()])
             column = once * column
         return states
-    finally:
-        ctx.prec = before
 
 
 def _rational(matrix: Matrix) -> fmpq_mat:

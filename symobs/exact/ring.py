@@ -20,6 +20,8 @@ Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
 
 #: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
 _WHOLE_TEXT, _TOLD = 40, 6
+#: Of this many terms, or some more, the exponents are looked at where polynomials are told apart.
+_LOOKED_AT = 6
 #: From this many terms on a common divisor is first looked for in a leading coefficient.
 _LONG = 150
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
@@ -257,6 +259,13 @@ def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
     if length <= _WHOLE_TEXT:
         return str(polynomial)
     return f"{length} {' '.join(str(polynomial.coefficient(k * (length - 1) // _TOLD)) for k in range(_TOLD + 1))}"
+
+
+def invariants(polynomial: fmpz_mpoly, places: Sequence[int]) -> tuple[object, ...]:
+    """Return the coefficients, and the exponents that some terms have at these places: the same in every field."""
+    looked_at = range(0, len(polynomial), len(polynomial) // _LOOKED_AT or 1)
+    exponents = [polynomial.monomial(k) for k in looked_at]
+    return (*polynomial.coeffs(), *(powers[index] for powers in exponents for index in places))
 
 
 def length_bits(polynomial: fmpz_mpoly) -> float:

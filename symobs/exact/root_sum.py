@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic import Extension
 from symobs.exact.field import EIGENVALUE
-from symobs.exact.functions import Function, derivative, function, partial, registered, substitute, symbols_in
+from symobs.exact.functions import Function, derivative, function, partial, substitute, symbols_in
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
 
@@ -32,7 +32,7 @@ class RootSum(Function):
     @staticmethod
     def of(polynomial: Scalar, power: int, time: Scalar) -> Scalar:
         """Return the sum, `power` less than the degree."""
-        return registered(RootSum("RootSum", time, polynomial, power))
+        return RootSum("RootSum", time, polynomial, power).value
 
     @property
     def summand(self) -> Scalar:
@@ -57,7 +57,7 @@ class RootSum(Function):
         return next(name for name in (BOUND + "_" * k for k in range(len(taken) + 1)) if name not in taken)
 
     @property
-    def name(self) -> str:
+    def text(self) -> str:
         """SymPy's text; the variable is named where there are parameters."""
         root = {EIGENVALUE: Scalar.symbol(self.bound)}
         q, below = (p.substitute(root) for p in (self.polynomial, self.slope))
@@ -87,5 +87,5 @@ class RootSum(Function):
         field = Extension(q, EIGENVALUE)
         below = field.inverse(slope)  # raises where two roots are equal
         if not argument.is_zero:
-            return registered(replace(self, argument=argument, polynomial=q))
+            return replace(self, argument=argument, polynomial=q).value
         return field.trace(field.reduce(Scalar.symbol(EIGENVALUE) ** self.power * below))

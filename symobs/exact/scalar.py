@@ -14,15 +14,13 @@ from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.exact.field import RATIONALS, Field
 from symobs.exact.powers import by_powers
-from symobs.exact.ring import common_factor, degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 #: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
 _COEFFICIENT_LIMIT = 2**31
-#: Up to this many terms a fingerprint is the whole text.
-_WHOLE_TEXT = 20
 
 
 class Scalar:
@@ -154,11 +152,13 @@ class Scalar:
     # -- questions ------------------------------------------------------------------------------------------------
 
     def __eq__(self, other: object) -> bool:
-        if isinstance(other, (int, Fraction)):
-            other = Scalar.of(other)
         if not isinstance(other, Scalar):
-            return NotImplemented
-        a, b, _ = self._pair(other)
+            if not isinstance(other, (int, Fraction)):
+                return NotImplemented
+            other = Scalar.of(other)
+        a, b = self, other
+        if a.field is not b.field:
+            a, b, _ = self._pair(other)
         return bool(a.numerator_part == b.numerator_part and a.denominator_part == b.denominator_part)
 
     def __hash__(self) -> int:
@@ -170,16 +170,11 @@ class Scalar:
     def _hash(self) -> int:
         if self.is_constant:
             return hash(self.fraction())
-        numerator, denominator = self.numerator_part, self.denominator_part
-        return hash(
-            (
-                len(numerator),
-                len(denominator),
-                int(numerator.leading_coefficient()),
-                int(denominator.leading_coefficient()),
-                self.names,
-            )
-        )
+        degrees = zip(self.numerator_part.degrees(), self.denominator_part.degrees(), strict=True)
+        places = [index for index, (above, below) in enumerate(degrees) if above > 0 or below > 0]
+        below = () if self.denominator_part.is_one() else invariants(self.denominator_part, places)
+        names = tuple([self.field.names[index] for index in places])
+        return hash((names, invariants(self.numerator_part, places), below))
 
     def __bool__(self) -> bool:
         return bool(self.numerator_part)
@@ -320,7 +315,7 @@ def _from_terms(
     return Scalar(field, field.context.from_dict(dict(numerator)), field.context.from_dict(dict(denominator)))
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
     """Return what `factors` does of a value that is not 0; the same polynomials are asked about again and again."""
     field = value.field
@@ -353,7 +348,8 @@ def _factor(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_
 
 
 def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:
-    rational = fmpq_mpoly_ctx.get(field.names, field.context.ordering())
+    letters = tuple(f"x{index}" for index in range(len(field.names)))  # the library keeps what it is asked for
+    rational = fmpq_mpoly_ctx.get(letters, field.context.ordering())
     _, parts = rational.from_dict({p: fmpq(c) for p, c in polynomial.terms()}).factor()
     found, product = [], field.one
     for part, power in parts:

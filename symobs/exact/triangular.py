@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpz_mpoly_ctx, fmpz_mpoly_vec
+from flint import Ordering, fmpz_mpoly_vec
 
-from symobs.exact.field import Field
+from symobs.exact.field import Field, context_of
 from symobs.exact.ideal import TERMS, TooLarge
 from symobs.exact.scalar import Scalar
 
@@ -26,7 +26,7 @@ def triangular(equations: Sequence[Scalar], unknowns: Sequence[str]) -> tuple[Sc
     for equation in equations:
         field = field | equation.field
     others = [name for name in field.names if name not in unknowns]
-    home = fmpz_mpoly_ctx.get((*unknowns, *others), Ordering.lex)
+    home = context_of((*unknowns, *others), Ordering.lex)
     moved = [field.lift(e.numerator_part, e.field).project_to_context(home) for e in equations if e]
     if any(polynomial.is_constant() for polynomial in moved):
         return (Scalar.of(1),)
