@@ -85,7 +85,10 @@ def read_question(
     asked = Question(plant, found["K"], found["L"], (), boundary)
     names = sorted(asked.polynomial.names - {plant.variable})
     if parameters is not None:
-        chosen = read_names(parameters, names, "parameters")
+        chosen = read_names(parameters, "parameters")
+        if plant.variable in chosen:
+            message = f"{plant.variable} is the variable of the polynomial"
+            raise InputError(message, where="specification.parameters", repair="leave it out")
     else:
         gained = {name for gain in found.values() if gain is not None for name in gain.names}
         chosen = _free((gained or set(names)) - boundary.names or set(names), plant)

@@ -12,9 +12,10 @@ from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
 from symobs.exact.functions import roots_in, symbols_in
+from symobs.expect.conditions import conditions_agree
 from symobs.expect.functions import functions_agree
 from symobs.expect.roots import COUNTED, is_number, key_of, numbers_agree, read_roots
-from symobs.expect.structure import RELATION, agree, factored_table, factors_agree, relation
+from symobs.expect.structure import RELATION, agree, factored_table, factors_agree
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
 
@@ -202,7 +203,7 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if all(isinstance(entry, (Complex, Root)) for entry in found):
         return numbers_agree(found, expected, names, where)
     if all(_is_relation(entry) for entry in found):
-        return {relation(e, names, where) for e in expected} == {relation(str(e), names, where) for e in found}
+        return conditions_agree(found, expected, names, where, result.plant.symbols.signs)
     if all(isinstance(entry, Mapping) and "eigenvalue" in entry for entry in found):
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):

@@ -43,7 +43,17 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     if plain is not None:
         rows, bracketed = plain
         return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
-    return _Evaluator(source, scope).entries(postfix(Tokeniser(source, scope).run(), source))
+    return Evaluator(source, scope).entries(_steps(source, scope))
+
+
+def steps_of(text: str, scope: Scope, where: str) -> tuple[Source, list[Step]]:
+    """Return the steps that compute a text which `read` has read."""
+    source = Source(text, where)
+    return source, _steps(source, scope)
+
+
+def _steps(source: Source, scope: Scope) -> list[Step]:
+    return postfix(Tokeniser(source, scope).run(), source)
 
 
 @dataclass(frozen=True)
@@ -78,7 +88,7 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 _SCALAR_OPERATIONS = 12
 
 
-class _Evaluator:
+class Evaluator:
     """Computes steps on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
 
     def __init__(self, source: Source, scope: Scope) -> None:
