@@ -466,10 +466,6 @@ FAMILIES = {
 }
 
 
-#: Examples of the smallest gain, which Octave and a hand found: `test_worked_examples` holds them to it.
-SMALLEST = {"two_tanks_smallest_gain", "drift_smallest_gain"}
-
-
 def points(name: str, hand: Hand, count: int) -> Iterator[dict[Any, Any]]:
     """Yield points that the declared signs allow and that lose no observability, the same in every run."""
     chance = random.Random(name)  # noqa: S311 - points that repeat

@@ -190,7 +190,6 @@ def test_a_sentence_that_asserts_a_property_has_it_among_its_facts(key: str, mon
         "polynomial": Predicate("polynomial", Letter("chi")),
         "not_polynomial": Predicate("not_polynomial", Power(Letter("chi"), -1)),
         "no_stable_compensator": Predicate("no_stable_compensator", P),
-        "no_negative_coefficient": Predicate("no_negative_coefficient", Letter("chi")),
     }
     plant = Given((said(P, literal((s - 1) / (s * (s - 2)))),))
     needed = tuple(facts[name] for name in ASSERTS[key])

@@ -64,7 +64,7 @@ BY_NAME = {"importlib", "pkgutil", "runpy"}
 FILES_OF_PACKAGES = {"importlib.metadata", "importlib.resources"}
 
 ONLY_IN_EXACT = {"flint", "sympy.polys"}  # in annotations too: the kernel's types never leak
-LATE = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+LATE = {"control", "matplotlib", "mpmath", "numpy", "scipy", "sympy", "z3"}
 SYMPY_BORDER = ("symobs.exact.whole_sympy", "sympy")  # imported only where SymPy objects come or go
 NEVER_NAMED = {"lambdify", "literal_eval", "parse_expr", "sympify"}
 NEVER_CALLED = {"S", "__import__", "compile", "eval", "exec"}  # S: sympy.S("…") executes its text

@@ -309,26 +309,30 @@ def test_decoupled_output_errors_obey_equations_of_their_own() -> None:
         found.with_answer("L", mixed)
 
 
-def test_the_smallest_gain_is_smaller_than_others() -> None:
-    plant = symobs.StateSpace("[0 1; 2 3]", C="[1 0; 2 0; 3 0]")
-    found = symobs.observer(plant, poles=[-1, -2], member="smallest")
-    A, single = plant.A, sympy.symbols("x y")
-    moved = Matrix(single) * Matrix([[1, 0]])
-    error = sympy.Poly((s * sympy.eye(2) - A + moved).det() - (s + 1) * (s + 2), s).coeffs()
-    unique = Matrix(single).subs(sympy.solve(error, single))
-    # Least squares: the row l of L with l (1, 2, 3) given is the shortest along (1, 2, 3).
-    assert unique * Matrix([[1, 2, 3]]) / 14 == found.L
-    with pytest.raises(CertificateRejected):
-        found.with_answer("L", symobs.observer(plant, poles=[-1, -2]).answer["L"])
+def test_a_decoupled_gain_that_lies_in_no_chart_is_written() -> None:
+    """A = 0 and C = I leave A − LC = −L: every output decays by itself, and the closed-loop matrix is not cyclic."""
+    plant = symobs.StateSpace("[0 0; 0 0]", C="[1 0; 0 1]")
+    found = symobs.observer(plant, poles=[-1, -1], member="decoupled")
+    assert sympy.eye(2) == found.L
+    words = " ".join(str(found.to("text")).split())
+    assert "The output errors are decoupled, each obeying an equation of its own, by the gain" in words
+    back = symobs.state_feedback(symobs.StateSpace("[0 0; 0 0]", "[1 0; 0 1]"), poles=[-1, -1], member="decoupled")
+    words = " ".join(str(back.to("text")).split())
+    assert "The inputs are decoupled, each driving a part of its own, by the gain" in words
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [{"member": "nearest"}, {"member": "decoupled", "zero": "(1, 1)"}, {"member": "smallest", "zero": "(1, 1)"}],
-)
-def test_members_that_are_not_known_are_refused(arguments: dict[str, str]) -> None:
-    with pytest.raises(InputError) as caught:
-        symobs.observer(TRIPLE, poles=[-1, -1, -1], **arguments)
+@pytest.mark.parametrize("arguments", [{}, {"zero": "(1, 1)"}, {"L": "[1 2; 3 4]"}])
+@pytest.mark.parametrize("member", ["nearest", "smallest"])
+def test_members_that_are_not_known_are_refused(member: str, arguments: dict[str, str]) -> None:
+    asked = arguments if "L" in arguments else {"poles": [-1, -1, -1], **arguments}
+    with pytest.raises(InputError, match=f"'{member}' is no member .*write one of simple, decoupled") as caught:
+        symobs.observer(TRIPLE, member=member, **asked)
+    assert caught.value.where == "specification.member"
+
+
+def test_a_member_is_not_asked_for_together_with_zeros() -> None:
+    with pytest.raises(InputError, match="both member and zero") as caught:
+        symobs.observer(TRIPLE, poles=[-1, -1, -1], member="decoupled", zero="(1, 1)")
     assert caught.value.where == "specification.member"
 
 

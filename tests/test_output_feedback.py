@@ -282,7 +282,7 @@ def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
     assert [(str(case.when[0].expression), case.result.verdict) for case in found.case_tree] == [("e", "no")]
 
 
-@pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "smallest"}])
+@pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "decoupled"}])
 def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
     with pytest.raises(InputError, match="both L and"):
         symobs.observer(StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]"), L="[1 2; 3 4]", **keywords)

@@ -18,7 +18,7 @@ WORDS = {
     "kind": ("controllable", "observable", "modal"),
     "of": ("observability", "controllability"),
     "meaning": ("asymptotic", "lyapunov"),
-    "member": ("simple", "decoupled", "smallest"),
+    "member": ("simple", "decoupled"),
     "observer": ("full", "minimal"),
     "sign": ("1", "-1"),
 }

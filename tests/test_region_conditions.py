@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 from symobs.exact import Scalar, from_coefficients
 from symobs.expression import parse_scalar
 from symobs.region.conditions import condition_lists, stability_conditions, stable_where
-from symobs.region.simplify import is_needed
 from tests.plain import coefficients_at, has_sign, is_hurwitz, is_schur, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:
@@ -226,7 +225,9 @@ def test_the_simplified_list_the_raw_lists_and_the_roots_agree(
         if stable is not None:
             assert [all_positive(list_, point) for list_ in (found.positive, *raws)] == [stable] * 3, point
     for value, point in found.witnesses:
-        assert is_needed(value, [other for other in found.positive if other != value], point, signs)
+        assert all(has_sign(number, signs.get(name, "real")) for name, number in point.items())
+        assert all_positive([other for other in found.positive if other != value], point)
+        assert not all_positive([value], point)
     if found.point is not None:
         filled = {**dict.fromkeys(["a", "b", "h1", "h2", "h3"], Fraction(1)), **found.point}
         assert roots_are_inside(coefficients_at(about, "s", filled), discrete=discrete) is not False

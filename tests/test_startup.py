@@ -9,7 +9,7 @@ import pytest
 
 from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
 
-HEAVY = {"control", "distributed", "lark", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+HEAVY = {"control", "lark", "matplotlib", "mpmath", "numpy", "scipy", "sympy", "z3"}
 KERNEL = {"flint", "jinja2"}
 _COMMAND = """
 import sys
@@ -89,7 +89,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
     found = after("--version")
     assert found & (HEAVY | KERNEL) == set()
     own = {name for name in found if name.startswith("symobs")}
-    assert own == {"symobs", "symobs.cli", "symobs.errors", "symobs.output"}
+    assert own == {"symobs", "symobs.cli", "symobs.cli.options", "symobs.errors", "symobs.output"}
 
 
 def test_importing_symobs_imports_nothing_else_of_it() -> None:

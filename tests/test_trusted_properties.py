@@ -95,7 +95,7 @@ def test_no_compensator_is_judged_in_discrete_time() -> None:
 def test_the_properties_are_these() -> None:
     assert set(PREDICATES) == {
         *("stable", "unstable", "strictly_proper", "polynomial", "not_polynomial"),
-        *("no_stable_compensator", "marginal", "beyond", "never_zero", "no_negative_coefficient"),
+        *("no_stable_compensator", "marginal", "beyond", "never_zero"),
     }
 
 
@@ -273,20 +273,6 @@ def test_members_are_numbers() -> None:
     known = replace(IN_S, values={"F": Matrix.of([[h]])})
     assert exactly(s + h, said(Letter("F"), ">", 0), known=known)
     assert exactly(s + h, said(0, "<", Letter("F")), known=known)
-
-
-def test_no_coefficient_is_negative() -> None:
-    b = Scalar.symbol("b")
-    known = Environment(signs={"a": "positive", "c": "nonnegative"})
-
-    def has_none(value: Scalar, *relations: Scalar) -> bool:
-        return PREDICATES["no_negative_coefficient"](value, known.under(relations), False)  # noqa: FBT003 - positional there
-
-    assert has_none(a * s**3 + c * s + 2) is True
-    for value in (s**2 - s, -s, s + b, a * s - c, s - 1 + a, 1 / (s + 1), 1 / (s**2 + 1)):
-        assert has_none(value) is False
-    assert has_none(s + b**2 - 2 + a) is False
-    assert has_none(s + b**2 - 2 + a, b**2 - 2) is True
 
 
 def test_roots_on_the_axis_may_not_meet() -> None:

@@ -106,12 +106,6 @@ def test_what_is_hidden_from_the_input_is_not_called_seen() -> None:
     assert "the part that the input moves has the freedom of Sylvester's equation" in text
 
 
-def test_the_smallest_feedback_speaks_of_a_controllable_pair() -> None:
-    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[1 0; 0 1; 1 1]")
-    text = text_of(symobs.state_feedback(plant, poles=[-1, -2, -3], member="smallest"))
-    assert "The pair is controllable and the polynomial asked for has no multiple root" in text
-
-
 # -- cautions ---------------------------------------------------------------------------------------------------------
 
 

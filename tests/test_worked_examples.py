@@ -240,8 +240,6 @@ def is_member(viewed: Viewed, place: str, expect: Mapping[str, Any]) -> bool:
         known = part.plant.C.rows
         whole = part.T * A * part.T.inv()
         A, moved = whole[known:, known:], gain * whole[:known, known:]
-    if getattr(part, "wish", "") == "smallest" and sum(x**2 for x in gain) > sum(x**2 for x in getattr(part, letter)):
-        return False
     found = (variable * sympy.eye(A.rows) - A + moved).det(method="berkowitz")
     return bool(sympy.expand(found - part.polynomial) == 0)
 

@@ -194,9 +194,6 @@ def _has_property(kind: str, place: int, changed: Derivation, original: Derivati
         for scale in (Fraction(2), Fraction(1, 2)):
             if _ratio(new, [reading[place][1] for reading in readings(original, scale=scale)]) is not None:
                 return True
-    if kind == "property no_negative_coefficient":
-        told = [_polynomial(changed, place, seed) for seed in range(POINTS)]
-        return all(polynomial is not None and min(polynomial) >= 0 for polynomial in told)
     if kind in _OF_ROOTS:
         found = [_polynomial(changed, place, seed) for seed in range(POINTS)]
         if found[0] is None or any(polynomial != found[0] for polynomial in found):

@@ -10,10 +10,11 @@ import sys
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from symobs.cli.options import OF_A_PAGE, options, quoted
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.output import binary, write, write_all
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from symobs.cli.work import Outcome, Tell
 
-Limited = TypeVar("Limited", bound="Callable[..., Any] | click.Command")
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 _MOST_LINES = 100
@@ -119,48 +119,10 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-FORMAT_HELP = "latex (default), html, markdown, text, json, pdf, …"
-TARGET_HELP = "Write to PATH; its suffix names the format where --format does not."
-DETAIL_HELP = "How much of the derivation is told: full (default), outline or answer."
-TEMPLATES_HELP = "Use your own LaTeX templates: see `symobs templates`."
-CONVENTION_HELP = "Write the page in this convention: standard, S0 to S4, or the path of a TOML file."
-PLOT_HELP = "Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex."
-TIMEOUT_HELP = "Stop after so many seconds: undecided, exit code 5."
-MEMORY_HELP = "Take no more than so many megabytes: undecided where that is not enough, exit code 5."
-_LEAST_MEMORY = 64  # megabytes; symobs and its libraries take half of that before they begin
-
-
-def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> float | None:
-    """Return the number an option gives; raises `UsageError` for what no budget can be, "nan" and "inf" included."""
-    if value is None:
-        return None
-    least = _LEAST_MEMORY if parameter.name == "memory" else 0
-    with suppress(ValueError):
-        number = float(value)
-        if 0 < number < float("inf") and number >= least:
-            return number
-    amount = f"a number of megabytes, {least} or more" if least else "a positive number of seconds"
-    example = f"write for example --{parameter.name} {2000 if least else 60}"
-    raise UsageError(f"{_quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
-
-
-def limits(command: Limited) -> Limited:
-    """Give a command the options `--timeout` and `--memory`."""
-    for name, unit, described in (("--memory", "MEGABYTES", MEMORY_HELP), ("--timeout", "SECONDS", TIMEOUT_HELP)):
-        command = click.option(name, metavar=unit, help=described, callback=_amount)(command)
-    return command
-
-
 @cli.command()
 @click.argument("file")
 @click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
-@click.option("--format", "format_name", metavar="NAME", help=FORMAT_HELP)
-@click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
-@click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
-@click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
-@click.option("--plot", metavar="PATH", help=PLOT_HELP)
-@click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
-@limits
+@options(*OF_A_PAGE)
 def solve(
     file: str,
     task_name: str | None,
@@ -180,7 +142,7 @@ def solve(
 
     chosen = _format_of(format_name, target)
     if task_name is not None and task_name not in tasks():
-        raise UsageError(f"{_quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
+        raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot)
     convention = convention_of(convention_name)
     page = page_of(detail, templates, chosen)
@@ -238,15 +200,9 @@ def _format_of(format_name: str | None, target: str | None) -> str:
         named = [name for name in known if known[name] == suffix]
         if not named:
             repair = f"give --format one of {', '.join(known)}"
-            raise UsageError(f"the suffix {_quoted(suffix)} names no output format", where="-o", repair=repair)
+            raise UsageError(f"the suffix {quoted(suffix)} names no output format", where="-o", repair=repair)
         format_name = "latex" if "latex" in named else named[0]
     return str(format_named(format_name or "latex").name)
-
-
-def _quoted(text: str) -> str:
-    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
-
-    return f'"{shown(text, 40)}"'
 
 
 def _place(file: str) -> str:

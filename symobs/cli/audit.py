@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.audit import REPORTS, audit, report
-from symobs.cli import EXIT_NO, _place, _read, _run, _say, limits
+from symobs.cli import EXIT_NO, _place, _read, _run, _say
+from symobs.cli.options import LIMITS, options
 from symobs.cli.work import Outcome
 from symobs.errors import ProblemErrors, SymobsError, UsageError
 from symobs.output import check_target
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown or json.")
 @click.option("-o", "target", metavar="PATH", help="Write to PATH.")
-@limits
+@options(*LIMITS)
 def audit_command(
     files: tuple[str, ...], format_name: str, target: str | None, timeout: float | None, memory: float | None
 ) -> None:

@@ -11,20 +11,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symobs.cli import (
-    CONVENTION_HELP,
-    DETAIL_HELP,
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
     NOT_ENOUGH_MEMORY,
-    TARGET_HELP,
-    TEMPLATES_HELP,
     _format_of,
     _place,
     _read,
     _say,
-    limits,
 )
+from symobs.cli.options import LIMITS, options
 from symobs.cli.work import convention_of, page_of
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
 from symobs.expect import mismatches
@@ -63,15 +59,11 @@ class _Wanted:
 
 @click.command()
 @click.argument("files", nargs=-1, metavar="FILE...")
-@click.option("-o", "target", metavar="PATH", help=TARGET_HELP)
-@click.option("--format", "format_name", metavar="NAME", help="latex (default), pdf, html, text, json, …")
+@options("format", "target")
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@click.option("--detail", default="full", metavar="NAME", help=DETAIL_HELP)
-@click.option("--templates", metavar="FOLDER", help=TEMPLATES_HELP)
-@click.option("--convention", "convention_name", metavar="NAME", help=CONVENTION_HELP)
-@limits
+@options("detail", "templates", "convention", *LIMITS)
 def sheet(
     files: tuple[str, ...],
     target: str | None,

@@ -8,17 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli import (
-    CONVENTION_HELP,
-    DETAIL_HELP,
-    FORMAT_HELP,
-    PLOT_HELP,
-    TARGET_HELP,
-    TEMPLATES_HELP,
-    _format_of,
-    _run,
-    limits,
-)
+from symobs.cli import _format_of, _run
+from symobs.cli.options import OF_A_PAGE, options
 from symobs.cli.work import check_targets, convention_of, page_of, solved
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.problem import OPEN, validate
@@ -48,48 +39,40 @@ def task_command(task: Any) -> click.Command:
     parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
     parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
     signs = "For example omega=positive; repeat it. With it, no other names exist."
-    parameters += [
-        click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs),
-        click.Option(["--format", "format_name"], metavar="NAME", help=FORMAT_HELP),
-        click.Option(["-o", "target"], metavar="PATH", help=TARGET_HELP),
-        click.Option(["--detail"], default="full", metavar="NAME", help=DETAIL_HELP),
-        click.Option(["--templates"], metavar="FOLDER", help=TEMPLATES_HELP),
-        click.Option(["--plot"], metavar="PATH", help=PLOT_HELP),
-        click.Option(["--convention", "convention_name"], metavar="NAME", help=CONVENTION_HELP),
-    ]
+    parameters.append(click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs))
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
     command = click.Command(
         task.name,
         params=parameters,
-        callback=lambda **options: _run_task(task, options),
+        callback=lambda **given: _run_task(task, given),
         help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
         short_help=task.summary,
     )
-    return limits(command)
+    return options(*OF_A_PAGE)(command)
 
 
-def _run_task(task: Any, options: dict[str, Any]) -> None:
+def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     """Put the options into a problem's tables and run it; undeclared names are real symbols."""
 
     def given(group: str) -> dict[str, Any]:
-        chosen = {name: value for name, value in options.items() if name.startswith(group) and value is not None}
+        chosen = {name: value for name, value in options_given.items() if name.startswith(group) and value is not None}
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
-    chosen = _format_of(options["format_name"], options["target"])
-    check_targets(options["target"], options["plot"])
-    page = page_of(options["detail"], options["templates"], chosen)
+    chosen = _format_of(options_given["format_name"], options_given["target"])
+    check_targets(options_given["target"], options_given["plot"])
+    page = page_of(options_given["detail"], options_given["templates"], chosen)
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
-    symbols = dict(_declaration(entry) for entry in options["symbols"]) if options["symbols"] else OPEN
+    symbols = dict(_declaration(entry) for entry in options_given["symbols"]) if options_given["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
-    convention = convention_of(options["convention_name"])
+    convention = convention_of(options_given["convention_name"])
 
     def work(tell: Tell) -> Outcome:
-        return solved(validate(data), chosen, options["target"], options["plot"], convention, tell, **page)
+        return solved(validate(data), chosen, options_given["target"], options_given["plot"], convention, tell, **page)
 
     try:
-        _run(work, options["timeout"], options["memory"], task.name)
+        _run(work, options_given["timeout"], options_given["memory"], task.name)
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)

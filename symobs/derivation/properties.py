@@ -107,15 +107,6 @@ def is_criterion(
     return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
 
 
-def _has_no_negative_coefficient(value: Scalar, environment: Environment) -> bool:
-    """Tell whether a polynomial has only coefficients that are surely not negative, reduced by what is known to vanish."""
-    ideal = Ideal.of(environment.relations)
-    found = (ideal.simplified(c) for c in value.coefficients(environment.variable))
-    return value.is_polynomial_in(environment.variable) and all(
-        sign_of(c, environment.signs) in {"positive", "nonnegative", "zero"} for c in found
-    )
-
-
 #: What each property asks of a scalar, of the environment, and of discrete time.
 PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
@@ -136,6 +127,5 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete
     ),
-    "no_negative_coefficient": lambda value, environment, _: _has_no_negative_coefficient(value, environment),
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }

@@ -10,10 +10,10 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs.certificate import Claim, Statement
+from symobs.design.decoupled import decoupled_claim, decoupled_gain
 from symobs.design.family import Family
 from symobs.design.names import fresh_names
 from symobs.design.several import SeveralOutputs
-from symobs.design.slices import member, member_claims
 from symobs.design.zero_claims import excluded_claims, in_root_claims, in_root_report
 from symobs.design.zeros import RootGain, contradict, equations_for, obstacles, unknown_gain, with_zeros
 from symobs.errors import CertificateRejected, InputError
@@ -48,8 +48,8 @@ class GainDesign(Result):
     desired: DesiredPolynomial | None
     working: Pair | None = field(default=None, compare=False)
     zero: Places = ()
-    #: Which member of the family is asked for: `decoupled`, `smallest`, or none in particular.
-    wish: str = ""
+    #: Whether the member of the family is asked for whose output errors (whose inputs' parts) are decoupled.
+    decoupled: bool = False
     #: A gain with zeros as asked for whose entries no square roots write: it stands beside the answer None.
     in_root: RootGain | None = None
 
@@ -85,15 +85,24 @@ class GainDesign(Result):
 
     @classmethod
     def of(
-        cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str, zero: Places = (), wish: str = ""
+        cls,
+        plant: StateSpace,
+        desired: DesiredPolynomial,
+        method_name: str,
+        zero: Places = (),
+        *,
+        decoupled: bool = False,
     ) -> Self:
-        """Return the design that assigns φ, with zeros or the member of the family asked for, or the negative result."""
+        """Return the design that assigns φ, with zeros or decoupled as asked for, or the negative result."""
         pair = working_pair(cls.pair(plant), desired)
-        found = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
-        found = member(pair, desired, wish, plant.symbols.signs) if wish else found
+        found: Matrix | RootGain | None
+        if decoupled:
+            found = decoupled_gain(pair, desired)
+        else:
+            found = with_zeros(pair, desired, cls.places(zero)) if zero else pair.gain(desired)
         gain, in_root = (None, found) if isinstance(found, RootGain) else (found, None)
         answer = {cls.letter: None if gain is None else cls.oriented(gain), "polynomial": desired.polynomial}
-        return cls(plant, method_name, answer, desired, pair, zero, wish, in_root)
+        return cls(plant, method_name, answer, desired, pair, zero, decoupled, in_root)
 
     @classmethod
     def places(cls, zero: Places) -> Places:
@@ -160,8 +169,8 @@ class GainDesign(Result):
                 yield from excluded_claims(self)
             return
         yield self.assigned(gain)
-        if self.wish and self.desired is not None:
-            yield from member_claims(self._pair, self.desired, self.oriented(gain), self.wish, self.plant.symbols.signs)
+        if self.decoupled:
+            yield decoupled_claim(self._pair, self.oriented(gain))
         if self.zero:
             e = Environment(variable=self.plant.variable)
             entries = Matrix.row([gain[i, j] for i, j in self.zero])

@@ -20,7 +20,9 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
     plant, letter = design.plant, design.letter
 
     def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-        found = type(design).of(there, desired.substitute(values), design.method, design.zero, design.wish)
+        found = type(design).of(
+            there, desired.substitute(values), design.method, design.zero, decoupled=design.decoupled
+        )
         own = design.answer[letter]
         if own is None or found.answer[letter] is None:
             return found

@@ -38,10 +38,13 @@ def write_sylvester(page: Page, design: GainDesign, side: Side, desired: Desired
     own = chart.own_G
     if own is None:
         page.define(
-            side.gain, design.answer[side.gain], say=f"alone_{design.wish}" if design.wish else "no_member", answer=True
+            side.gain,
+            design.answer[side.gain],
+            say=f"alone_decoupled_{side.kind}" if design.decoupled else "no_member",
+            answer=True,
         )
         return
-    words = f"{design.wish}_{side.kind}" if design.wish else "zero" if design.zero else "several"
+    words = f"decoupled_{side.kind}" if design.decoupled else "zero" if design.zero else "several"
     page.define(f"G_{side.index}1", own, say=f"member_{words}")
     solution = page.set(f"X_{side.index}1", equation.solution(own))
     determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))

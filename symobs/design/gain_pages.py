@@ -23,7 +23,7 @@ from symobs.design.gain_methods_page import readable, write_companion, write_mat
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
 from symobs.design.zero_page import another_gain, write_no_gain
-from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, rank, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.exact.functions import all_roots
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block, product
@@ -90,10 +90,6 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
             write_companion(page, side, desired)
         elif style == "row_reduced_echelon" and readable(design):
             write_row_reduction(page, design, side)
-        elif _has_multipliers(design):
-            from symobs.design.smallest_page import write_smallest  # noqa: PLC0415 - few gains are asked to be it
-
-            write_smallest(page, design, side)
         elif all_roots(design.answer[side.gain]):
             page.with_roots(design.answer[side.gain])
             page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
@@ -102,16 +98,10 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         else:
             _ackermann(page, desired, side)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
-    if not _has_multipliers(design):
-        page.in_decimals(side.gain)
+    page.in_decimals(side.gain)
     _verified(page, design, side)
     for case in design.case_tree:
         write_case(page, case, side)
-
-
-def _has_multipliers(design: GainDesign) -> bool:
-    """Whether the smallest gain is asked for, and multipliers prove it."""
-    return design.wish == "smallest" and rank(design._pair.c) > 1  # noqa: SLF001 - the witness
 
 
 def closed_loop_matrix(page: Page, side: Side) -> Term:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.errors import InputError
 from symobs.method import choose
 from symobs.specification import desired_polynomial, read_entries, read_gain, reject_both
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from symobs.method import Result
     from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
+
+#: The members of the family of gains that can be asked for by name.
+MEMBERS = ("simple", "decoupled")
 
 
 def designed(
@@ -26,6 +30,9 @@ def designed(
     method: Name,
 ) -> Result:
     """Return the design of a kind: with a given gain, with zeros, the member of the family asked for, or by a method."""
+    if member not in MEMBERS:
+        message = f"{member[:40]!r} is no member of the family that has a name"
+        raise InputError(message, where="specification.member", repair=f"write one of {', '.join(MEMBERS)}")
     gain, is_observer = kind.letter, kind.letter == "L"
     plant = plant.knowing(poles, polynomial, given)
     plant.require("C" if is_observer else "B", task=kind.task)
@@ -41,7 +48,7 @@ def designed(
     chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
     if member != "simple":
         reject_both("member", member, zero, None, other="zero")
-        return kind.of(plant, desired, chosen.name, wish=member).asked(method)
+        return kind.of(plant, desired, chosen.name, decoupled=True).asked(method)
     if zero is not None:
         return kind.of(plant, desired, chosen.name, read_entries(zero, "zero", shape)).asked(method)
     return chosen.solve(plant, desired).asked(method)

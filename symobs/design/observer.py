@@ -217,7 +217,7 @@ def observer(
     polynomial    φ, monic of degree n; or
     L             a given n×p gain, whose polynomial, poles and stability are reported
     zero          entries of L that are to vanish: "(1, 2), (3, 1)" or "[* 0; * *; 0 *]"
-    member        "simple" (short numbers), "decoupled" (each output obeys an equation of its own) or "smallest" (least squares)
+    member        "simple" (short numbers) or "decoupled" (each output obeys an equation of its own)
     Returns L (n×p), polynomial, A (A − LC), B_u (B − LD), B_y (L); where L is not unique, because there are several
     outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
     AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot

@@ -135,7 +135,7 @@ def state_feedback(
     polynomial    φ, monic of degree n; or
     K             a given m×n gain, whose polynomial, poles and stability are reported
     zero          entries of K that are to vanish: "(1, 2), (3, 1)" or "[* 0 *; * * 0]"
-    member        "simple" (short numbers), "decoupled" (each input drives a part of its own) or "smallest" (least squares)
+    member        "simple" (short numbers) or "decoupled" (each input drives a part of its own)
     Returns K (m×n), polynomial, closed_loop_matrix (A − BK); where K is not unique, because there are several inputs
     or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
     AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be

@@ -260,14 +260,6 @@ def count_roots(polynomial: fmpz_poly, low: Fraction | None, high: Fraction | No
     return _variations(chain, low, -1) - _variations(chain, high, 1)
 
 
-def roots_between(polynomial: Scalar, name: str, high: Fraction) -> int:
-    """Return how many distinct roots lie between 0 and a positive number, −1 where one of both is a root."""
-    whole = integer_factor(polynomial, name)
-    if whole[0] == 0 or whole(fmpq(high.numerator, high.denominator)) == 0:
-        return -1
-    return count_roots(whole, Fraction(0), high)
-
-
 def sturm_chain(polynomial: fmpz_poly) -> list[fmpz_poly]:
     """Return Sturm's chain, each member divided by its content."""
     chain = [polynomial, polynomial.derivative()]

@@ -192,12 +192,6 @@ LETTERS: dict[str, LetterForm] = {
     "u_t_": LetterForm("u", "u", "input"),
     "y_t_": LetterForm("y", "y", "output"),
     "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
-    "Delta_g": LetterForm(r"\Delta", "Δ", "change of the gain"),
-    "entries_g": LetterForm(r"\ell", "\N{SCRIPT SMALL L}", "entries of the gain"),
-    "entries_D": LetterForm(r"\delta", "δ", "entries of the change"),
-    "Q_g": LetterForm("Q", "Q", "half the second derivative of the Lagrangian"),
-    **{f"lambda_{k}": LetterForm(rf"\lambda_{k}", f"λ{'₀₁₂₃₄₅₆₇₈₉'[k]}", "multiplier") for k in range(1, 10)},
-    **{f"d_{k}": LetterForm(f"d_{k}", f"d{'₀₁₂₃₄₅₆₇₈₉'[k]}", "deviation of a coefficient") for k in range(1, 10)},
 }
 
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.

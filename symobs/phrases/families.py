@@ -38,43 +38,6 @@ PHRASES: dict[str, str] = {
         )
         for where, end in (("member", " that belongs to"), ("alone", ""))
     },
-    **{
-        f"{where}_smallest_{kind}": f"The smallest sum of squares of its entries has the gain{end}"
-        for kind in ("observer", "state_feedback")
-        for where, end in (("member", " that belongs to"), ("alone", ""))
-    },
-    "smallest_zero_observer": "Many gains place these poles; the one with the smallest sum of squares of its entries is wanted. They are the eigenvalues "
-    "of $A$ already, so that no gain is needed, and none has a smaller sum than",
-    "smallest_zero_state_feedback": "Many gains place these poles; the one with the smallest sum of squares of its entries is wanted. They are the "
-    "eigenvalues of $A$ already, so that no gain is needed, and none has a smaller sum than",
-    "smallest_wanted_observer": "Many gains place these poles; the one with the smallest sum of squares of its entries is wanted. Let $entries_g$ be the "
-    "entries of $L$, one column under the other. Lagrange's method adds to their squares the coefficients of the difference between the polynomial of "
-    "the error and the one asked for, each times a multiplier; where the sum is stationary and the coefficients vanish, the gain may be the smallest.",
-    "smallest_wanted_state_feedback": "Many gains place these poles; the one with the smallest sum of squares of its entries is wanted. Let $entries_g$ be "
-    "the entries of $K$, one row transposed under the other. Lagrange's method adds to their squares the coefficients of the difference between the "
-    "closed-loop polynomial and the one asked for, each times a multiplier; where the sum is stationary and the coefficients vanish, the gain may be the "
-    "smallest.",
-    **{
-        f"smallest_stationary_{kind}": f"The pair is {able} and the polynomial asked for has no multiple root: every matrix with this polynomial is "
-        "cyclic, the derivatives of the coefficients are independent, and Lagrange's equations hold for the smallest gain, which exists. They have "
-        "finitely many solutions. The sums of squares at all of them are eigenvalues of one matrix."
-        for kind, able in (("observer", "observable"), ("state_feedback", "controllable"))
-    },
-    "smallest_sum": "The least positive eigenvalue of that matrix is a root of",
-    "smallest_sum_of_gain": "No other gain is smaller, since the sum of the squares of the entries of this one is that least eigenvalue:",
-    "smallest_root": "The solution is made of a root of a polynomial,",
-    "smallest_long": "The entries of the gain are polynomials in this root, too long to be written out,",
-    "smallest_long_with_roots": "The entries of the gain are polynomials in this root and one square root, too long to be written out,",
-    "smallest_multipliers": "The multipliers are",
-    "smallest_deviation_observer": "No other gain is smaller. For any matrix $Delta_g$, $entries_D$ its entries, let $d_1$, $d_2$, … be what a change of the gain "
-    "by it adds to the coefficients:",
-    "smallest_deviation_state_feedback": "No other gain is smaller. For any matrix $Delta_g$, $entries_D$ its entries, let $d_1$, $d_2$, … be what a change of the "
-    "gain by it adds to the coefficients:",
-    "smallest_matrix": "With the matrix",
-    "smallest_identity": "it is true for every $Delta_g$ that",
-    "smallest_rising": "Here",
-    "smallest_identity_of_derivatives": "With the matrix $Q_g$ of half the second derivatives of the left side it is true for every $Delta_g$ that",
-    "smallest_proved": "The matrix $Q_g$ is symmetric, and no coefficient of the determinant of $s I + Q_g$ is negative, so $Q_g$ has no negative eigenvalue. Of a gain with the poles asked for all of $d_1$, $d_2$, … vanish; the sum of the squares of its entries is therefore that of the gain above and something that is not negative.",
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",
@@ -100,10 +63,6 @@ PHRASES: dict[str, str] = {
 }
 
 NAMING = ("impossible_zero_unless",)
-
-ASSERTS: dict[str, tuple[str, ...]] = {"smallest_proved": ("no_negative_coefficient",)}
-
-SPELLS_OUT = ("smallest_root", "smallest_sum")
 
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",

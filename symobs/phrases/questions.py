@@ -129,7 +129,6 @@ PHRASES: dict[str, str] = {
     "also member=simple": "Several gains do that; choose one with short entries.",
     "also observer member=decoupled": "Of the gains that do that, find one for which every output obeys an equation of its own.",
     "also state_feedback member=decoupled": "Of the gains that do that, find one for which every input moves a part of its own.",
-    "also member=smallest": "Of the gains that do that, find the one with the smallest norm.",
     "also method=canonical_form": "Use the canonical form.",
     "also method=ackermann": "Use Ackermann's formula.",
     "also method=sylvester": "Use Sylvester's equation.",

@@ -50,7 +50,7 @@ def _cases(case: SignCase, parameters: Sequence[str], depth: int, *, ask: bool) 
     if expression is None:
         return [case]
     inside = [_where(case, expression, operator, ask=ask) for operator in _possible(expression, case.signs)]
-    possible = [one for one in inside if decide_empty(one.assumed, one.signs, ask=False).verdict != "yes"]
+    possible = [one for one in inside if decide_empty(one.assumed, one.signs).verdict != "yes"]
     return [found for one in possible for found in _cases(one, parameters, depth - 1, ask=ask)]
 
 

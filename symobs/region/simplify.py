@@ -7,13 +7,12 @@ dropped.  Only where each that is left has a point at which it alone fails is th
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
 from symobs.record import dataclass
-from symobs.region.external import QUESTION, point_by_z3
+from symobs.region.external import Resources, point_by_z3
 from symobs.region.parts import State, cleared, in_parts, split_products
 from symobs.region.points import Point, find_point, holds_at, point_where_zero, respects, value_at
 from symobs.region.proof import (
@@ -33,8 +32,6 @@ if TYPE_CHECKING:
 
 Signs: TypeAlias = "Mapping[str, str]"
 
-#: Seconds that all questions to z3 about one list may take together.
-TOGETHER = 6.0
 #: Values of more terms keep their order; to write them out would take longer than it is worth.
 _TOLD_APART = 100
 _DOWN = {"negative", "nonpositive", "zero"}
@@ -86,12 +83,12 @@ def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = 
             return _nowhere(polynomials, (contradiction(value),))
         if value not in given:
             state = in_parts(state, value, signs)
-    until = monotonic() + TOGETHER if ask else 0.0
-    point, impossible = nonempty_or_not(state.current, signs, until)
+    resources = Resources() if ask else Resources(0)
+    point, impossible = nonempty_or_not(state.current, signs, resources)
     if impossible is not None:
         return _nowhere(polynomials, (*state.backward, *impossible))
     state = split_products(state, signs, given)
-    state, witnesses, dropped = _without_implied(state, signs, given, until)
+    state, witnesses, dropped = _without_implied(state, signs, given, resources)
     equivalence = Equivalence(polynomials, state.current, state.forward, state.backward)
     return Simplified(tuple(v for v in state.current if v not in given), equivalence, point, witnesses, dropped)
 
@@ -102,31 +99,27 @@ def _nowhere(raw: tuple[Scalar, ...], steps: Sequence[Step]) -> Simplified:
 
 
 def nonempty_or_not(
-    positive: Sequence[Scalar], signs: Signs, until: float
+    positive: Sequence[Scalar], signs: Signs, resources: Resources
 ) -> tuple[Point | None, tuple[Step, ...] | None]:
-    """Return a point where all are positive, or the steps to a contradiction, or neither; z3 is asked before `until`."""
+    """Return a point where all are positive, or the steps to a contradiction, or neither; z3 spends resources."""
     point = find_point(positive, signs)
     if point is not None:
         return point, None
     steps = refute(positive, signs)
-    if steps is not None or monotonic() >= until:
+    if steps is not None:
         return None, steps
-    answer, model = point_by_z3(positive, signs, milliseconds=_left(until))
+    answer, model = point_by_z3(positive, signs, resources=resources)
     if answer == "no":
         return None, (Asked(ZERO, tuple(positive)),)
     good = bool(model) and respects(model, signs) and holds_at(positive, model)
     return (dict(model) if good else None), None
 
 
-def _left(until: float) -> int:
-    return max(1, min(QUESTION, int(1000 * (until - monotonic()))))
-
-
 # -- what is implied ---------------------------------------------------------------------------------------------------
 
 
 def _without_implied(
-    state: State, signs: Signs, given: Sequence[Scalar], until: float
+    state: State, signs: Signs, given: Sequence[Scalar], resources: Resources
 ) -> tuple[State, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
     """Drop what the others imply, the longest first; return the points which show that the rest is needed too."""
     witnesses, dropped = list[tuple[Scalar, Point]](), list[tuple[Scalar, str]]()
@@ -135,8 +128,8 @@ def _without_implied(
         others = state.without(value)
         point = failing_alone(value, others, signs)
         steps = prove_value(value, others, signs) if point is None else None
-        if point is None and steps is None and monotonic() < until:
-            point, steps = asked(value, others, signs, until)
+        if point is None and steps is None:
+            point, steps = _asked(value, others, signs, resources)
         if steps is not None:
             state = state.replaced(value, (), steps)
             dropped.append((value, "z3" if any(isinstance(step, Asked) for step in steps) else "products"))
@@ -166,17 +159,12 @@ def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Poin
     return point_where_zero(root, others, signs)
 
 
-def asked(
-    value: Scalar, others: Sequence[Scalar], signs: Signs, until: float
+def _asked(
+    value: Scalar, others: Sequence[Scalar], signs: Signs, resources: Resources
 ) -> tuple[Point | None, tuple[Step, ...] | None]:
     """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
-    answer, model = point_by_z3(others, signs, not_above=value, milliseconds=_left(until))
+    answer, model = point_by_z3(others, signs, not_above=value, resources=resources)
     if answer == "no":
         return None, (Asked(value, tuple(others)),)
     fails = bool(model) and respects(model, signs) and holds_at(others, model) and value_at(value, model) <= 0
     return (dict(model) if fails else None), None
-
-
-def is_needed(value: Scalar, others: Sequence[Scalar], point: Point, signs: Signs) -> bool:
-    """Tell whether a point shows that a value does not follow from others (trusted)."""
-    return respects(point, signs) and holds_at(others, point) and value_at(value, point) <= 0

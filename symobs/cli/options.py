@@ -1,0 +1,96 @@
+"""The options that several commands share: what a page is to look like, where it goes, and what its work may cost."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from symobs.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Optioned = TypeVar("Optioned", bound="Callable[..., Any] | click.Command")
+
+_LEAST_MEMORY = 64  # megabytes; symobs and its libraries take half of that before they begin
+
+
+def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> float | None:
+    """Return the number an option gives; raises `UsageError` for what no budget can be, "nan" and "inf" included."""
+    if value is None:
+        return None
+    least = _LEAST_MEMORY if parameter.name == "memory" else 0
+    with suppress(ValueError):
+        number = float(value)
+        if 0 < number < float("inf") and number >= least:
+            return number
+    amount = f"a number of megabytes, {least} or more" if least else "a positive number of seconds"
+    example = f"write for example --{parameter.name} {2000 if least else 60}"
+    raise UsageError(f"{quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
+
+
+#: The options that several commands share, in the order in which their help lists them.
+OPTIONS: dict[str, Callable[[Any], Any]] = {
+    "format": click.option(
+        "--format", "format_name", metavar="NAME", help="latex (default), html, markdown, text, json, pdf, …"
+    ),
+    "target": click.option(
+        "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
+    ),
+    "detail": click.option(
+        "--detail",
+        default="full",
+        metavar="NAME",
+        help="How much of the derivation is told: full (default), outline or answer.",
+    ),
+    "templates": click.option(
+        "--templates", metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."
+    ),
+    "plot": click.option(
+        "--plot",
+        metavar="PATH",
+        help="Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex.",
+    ),
+    "convention": click.option(
+        "--convention",
+        "convention_name",
+        metavar="NAME",
+        help="Write the page in this convention: standard, S0 to S4, or the path of a TOML file.",
+    ),
+    "timeout": click.option(
+        "--timeout",
+        metavar="SECONDS",
+        help="Stop after so many seconds: undecided, exit code 5.",
+        callback=_amount,
+    ),
+    "memory": click.option(
+        "--memory",
+        metavar="MEGABYTES",
+        help="Take no more than so many megabytes: undecided where that is not enough, exit code 5.",
+        callback=_amount,
+    ),
+}
+#: Those of a command that writes the page of one problem, and those that bound its work.
+LIMITS = ("timeout", "memory")
+OF_A_PAGE = tuple(OPTIONS)
+
+
+def options(*names: str) -> Callable[[Optioned], Optioned]:
+    """Give a function, or a command, the shared options of these names."""
+
+    def give(command: Optioned) -> Optioned:
+        # click reads the options of a function from the last to the first, those of a command as they come
+        for name in names if isinstance(command, click.Command) else reversed(names):
+            command = OPTIONS[name](command)
+        return command
+
+    return give
+
+
+def quoted(text: str) -> str:
+    """Return what a user wrote, shortened, in quotation marks."""
+    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+
+    return f'"{shown(text, 40)}"'
