@@ -70,6 +70,7 @@ class StateSpace:
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         given = [part for part in parts.values() if part is not None]
+        known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
         given = [part for part in given if self.variable in part.field.position]
