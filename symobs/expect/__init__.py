@@ -39,7 +39,7 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
         expected = {key: (entry, f"expect.{key}") for key, entry in expect.items() if key in _available(result)}
         own = expect.get(result.task)
         if isinstance(own, Mapping):
-            expected |= {key: (entry, f"expect.{result.task}.{key}") for key, entry in own.items()}
+            expected |= {key: (entry, f"expect.{result.task}.{shown(key, 40)}") for key, entry in own.items()}
         lines += _held_against(result, expected, errors)
     known = sorted({name for result in results for name in _available(result)})
     found = applicable(results, expect)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError
+from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Matrix, Scalar, companion, product_of
 from symobs.expression import parse_scalar
 from symobs.expression.written import parse_fraction
@@ -15,6 +15,9 @@ from symobs.system.symbols import is_sympy
 
 if TYPE_CHECKING:
     from symobs.system.symbols import Symbols
+
+#: A realisation of more states is refused: designs and tests for it would not end.
+MOST_STATES = 200
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,9 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
         raise InputError(
             message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
         )
+    if order > MOST_STATES:
+        message = f"a transfer function of order {order}, more than {MOST_STATES}"
+        raise BudgetExceeded(message, where=where, repair="give one of lower order")
     if len(numerator) > order + 1:
         message = f"{value} is not proper: degree {len(numerator) - 1} over degree {order}"
         raise InputError(message, where=where, repair="the degree of the numerator may not exceed the denominator's")

@@ -6,10 +6,10 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
+from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismatch, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
-from symobs.system.fraction import Written, read_transfer_function, realise
+from symobs.system.fraction import MOST_STATES, Written, read_transfer_function, realise
 from symobs.system.reading import has_decimals, read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
@@ -70,6 +70,7 @@ class StateSpace:
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         given = [part for part in parts.values() if part is not None]
+        known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
         given = [part for part in given if self.variable in part.field.position]
@@ -115,6 +116,9 @@ class StateSpace:
         if not rest or not value.is_polynomial_in(variable):
             message = f"{value} is not a polynomial in {variable} of degree 1 or more"
             raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
+        if len(rest) > MOST_STATES:
+            message = f"a polynomial of degree {len(rest)}, more than {MOST_STATES}"
+            raise BudgetExceeded(message, where=where, repair="give one of lower degree")
         plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
         plant.polynomial = value
         return plant
