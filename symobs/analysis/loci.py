@@ -166,6 +166,8 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         return
     if news:
         yield from _branches((*news, *ideal.generators), region, budget)
+    elif ideal.is_finite and ideal.dimension is None:  # among so many points some may be others than the most
+        yield Locus(tuple(simple))
     else:
         yield Locus.of(ideal)
 

@@ -103,17 +103,28 @@ class Ideal:
         return above / below if above.size + below.size <= value.size else value
 
     @cached_property
+    def _bounds(self) -> tuple[int, ...] | None:
+        """The exponents at which each generator alone is a leading monomial; None where one never is."""
+        leading = [polynomial.monoms()[0] for polynomial in self.basis]
+        found = [_pure_power(leading, k) for k in range(len(self.home.names()))]
+        return tuple(bound for bound in found if bound is not None) if found and None not in found else None
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether there are finitely many complex zeros."""
+        return self._bounds is not None
+
+    @cached_property
     def dimension(self) -> int | None:
         """How many complex zeros there are, each counted with its multiplicity; None where they are too many to be counted.
 
         As many monomials are divisible by no leading monomial of the basis.
         """
-        leading = [polynomial.monoms()[0] for polynomial in self.basis]
-        bounds = [_pure_power(leading, k) for k in range(len(self.home.names()))]
-        if not bounds or None in bounds or prod(bound or 0 for bound in bounds) > _MONOMIALS:
+        if self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
-        steps = product(*(range(bound or 0) for bound in bounds))
-        return sum(not any(_divides(lead, powers) for lead in leading) for powers in steps)
+        leading = [polynomial.monoms()[0] for polynomial in self.basis]
+        monomials = product(*map(range, self._bounds))
+        return sum(not any(_divides(lead, powers) for lead in leading) for powers in monomials)
 
     def minimal_polynomial(self, name: str) -> Scalar:
         """Return the polynomial of least degree in one generator alone that lies in an ideal with finitely many zeros."""
