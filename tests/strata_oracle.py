@@ -64,7 +64,8 @@ def _shape(random: Random, task: str) -> Shape:
 
     def table(rows: int, columns: int) -> list[list[str]]:
         return [
-            [random.choice(forms if random.random() < density else _NUMBERS) for _ in range(columns)] for _ in range(rows)
+            [random.choice(forms if random.random() < density else _NUMBERS) for _ in range(columns)]
+            for _ in range(rows)
         ]
 
     A, B, C = table(order, order), table(order, inputs), table(outputs, order)

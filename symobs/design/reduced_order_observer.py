@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 
-
 class Partition(NamedTuple):
     """The plant in the coordinates x̄ = T x, the measured states first."""
 
