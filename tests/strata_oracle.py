@@ -83,7 +83,7 @@ class Found:
 
     def table(self) -> str:
         """Return the figures, a line for each task."""
-        kinds = ["answers", "given up", "points", "undecided", "refused there", "uncovered", "contradictions"]
+        kinds = ["answers", "given up", "points", "undecided", "refused there", "uncovered", "contradictions", "crashes"]
         tasks = sorted({task for task, _ in self.counted})
         lines = [f"{'':28}" + "".join(f"{kind:>15}" for kind in kinds)]
         lines += [f"{task:28}" + "".join(f"{self.counted[task, kind]:15}" for kind in kinds) for task in tasks]
@@ -95,7 +95,12 @@ def examine(seed: int, found: Found, tasks: Sequence[str] = (), seconds: float =
     """Draw a plant, solve it, and hold its answer to the plants at points of its strata."""
     problem = drawn(seed, tasks)
     task = problem["task"]
-    asked = solved("strata", seed, problem, seconds)
+    try:
+        asked = solved("strata", seed, problem, seconds)
+    except Exception as error:  # noqa: BLE001 - whatever it is, no caller may see it
+        found.counted[task, "crashes"] += 1
+        found.wrong.append(f"seed {seed}, {task}: {error!r}")
+        return
     if not isinstance(asked, Asked):
         found.counted[task, "given up"] += 1
         return

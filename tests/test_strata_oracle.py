@@ -76,10 +76,11 @@ def test_an_unstable_compensator_may_lose_its_pole() -> None:
 
 
 def test_zeros_that_a_whole_stratum_has_are_left_undecided() -> None:
-    found = Found()
-    examine(162, found, seconds=600, most=4)
-    assert found.counted["transfer_function", "points"]
-    assert not found.wrong
+    # P = [s − a², s − b³]/s² has the zero a² = b³ wherever these are the same, and no zero elsewhere.
+    found = symobs.transfer_function(symobs.StateSpace("[0 1; 0 0]", "[1 1; -a^2 -b^3]", "[1 0]"))
+    assert found.fields["zeros"] == ()
+    assert verdicts(found, a=8, b=4) == {"undecided"}
+    assert verdicts(found, a=8, b=5) == {"yes"}
 
 
 # -- finitely many points ------------------------------------------------------------------------------------------------
