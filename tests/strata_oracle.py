@@ -83,7 +83,16 @@ class Found:
 
     def table(self) -> str:
         """Return the figures, a line for each task."""
-        kinds = ["answers", "given up", "points", "undecided", "refused there", "uncovered", "contradictions", "crashes"]
+        kinds = [
+            "answers",
+            "given up",
+            "points",
+            "undecided",
+            "refused there",
+            "uncovered",
+            "contradictions",
+            "crashes",
+        ]
         tasks = sorted({task for task, _ in self.counted})
         lines = [f"{'':28}" + "".join(f"{kind:>15}" for kind in kinds)]
         lines += [f"{task:28}" + "".join(f"{self.counted[task, kind]:15}" for kind in kinds) for task in tasks]
