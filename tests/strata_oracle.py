@@ -166,12 +166,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for seed in range(options.seed, options.seed + options.plants):
         examine(seed, found, options.task, options.seconds, options.points)
         for line in found.wrong[shown:]:
-            print(line, flush=True)
+            sys.stdout.write(f"{line}\n")
         if options.show and found.wrong[shown:]:
-            print(to_toml(drawn(seed, options.task)), flush=True)
+            sys.stdout.write(to_toml(drawn(seed, options.task)))
+        sys.stdout.flush()
         shown = len(found.wrong)
-    print(found.table())
-    print(f"{time.perf_counter() - begun:.0f} s", file=sys.stderr)
+    sys.stdout.write(f"{found.table()}\n")
+    sys.stderr.write(f"{time.perf_counter() - begun:.0f} s\n")
     return 1 if found.wrong else 0
 
 
