@@ -83,6 +83,22 @@ def test_zeros_that_a_whole_stratum_has_are_left_undecided() -> None:
     assert verdicts(found, a=8, b=5) == {"yes"}
 
 
+def test_no_case_of_the_advice_is_where_a_positive_radius_would_be_0() -> None:
+    # The integrator is not moved, and no pole at distance r > 0 is at 0.
+    plant = symobs.StateSpace("[0 1 0; b 0 0; 0 0 0]", "[0; 1; 0]", "[1 0 0]", symbols={"r": "positive", "b": "real"})
+    found = symobs.pole_advice(plant, radius="r")
+    assert not [case for case in found.case_tree if any("r" in c.expression.names for c in case.when)]
+
+
+def test_a_given_gain_is_told_where_modes_are_fixed() -> None:
+    # At a = 0 the input moves nothing, and s² + 2 s + 3 stays what it is.
+    found = symobs.state_feedback(symobs.StateSpace("[-1 a^2-1; 2 -1]", "[a; 0]"), K="[-2 -1]")
+    (case,) = found.case_tree
+    assert [str(condition) for condition in case.when] == ["a == 0"]
+    assert case.result is not None
+    assert [str(mode) for mode in case.result.fields["fixed_modes"]] == ["-1 + sqrt(2)*I", "-1 - sqrt(2)*I"]
+
+
 # -- finitely many points ------------------------------------------------------------------------------------------------
 
 
