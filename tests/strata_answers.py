@@ -144,15 +144,13 @@ class Held:
     def same_roots(self, *names: str) -> None:
         """Demand that lists of roots are those of the same polynomial."""
         for name in names:
-            lists = [self.said.get(name), self.there.get(name)]
-            if None in lists:
-                continue
-            ours, theirs = (self._from_roots(each) for each in lists)
-            self._same_coefficients(name, ours, theirs)
+            ours, theirs = self.said.get(name), self.there.get(name)
+            if ours is not None and theirs is not None:
+                self._same_coefficients(name, self._from_roots(ours), self._from_roots(theirs))
 
     def _from_roots(self, texts: list[str]) -> list[Any]:
         """Return the polynomial of roots; roots without a closed form come in whole sets, whose product it is."""
-        whole = Counter(found.group(1) for text in texts if (found := CROOT.fullmatch(text)))
+        whole = Counter(match.group(1) for text in texts if (match := CROOT.fullmatch(text)))
         found = from_roots([value(text, self.point) for text in texts if not CROOT.fullmatch(text)])
         for text, count in whole.items():
             once = polynomial(text, self.point, self.variable, monic=True)
@@ -295,21 +293,36 @@ def _nothing(_held: Held) -> None:
     """Hold the verdict alone."""
 
 
+def _characteristic(held: Held) -> None:
+    held.same_polynomials("polynomial")
+    held.same_roots("roots")
+
+
+def _decomposition(held: Held) -> None:
+    held.same("sizes", "minimal_order")
+    held.same_matrices("transfer_function")
+
+
+def _gramian(held: Held) -> None:
+    held.same("rank")
+    held.same_matrices("matrix", "determinant", "finite_sum")
+
+
 _HELD: dict[str, Callable[[Held], None]] = {
     "observability": _rank_test,
     "controllability": _rank_test,
     "detectability": _modes,
     "stabilizability": _modes,
     "pbh": _modes,
-    "characteristic_polynomial": lambda held: (held.same_polynomials("polynomial"), held.same_roots("roots"))[0],
+    "characteristic_polynomial": _characteristic,
     "transfer_function": _transfer,
     "canonical_form": _canonical,
     "dual": lambda held: held.same(
         "observability_rank", "controllability_rank", "dual_observability_rank", "dual_controllability_rank"
     ),
-    "decomposition": lambda held: (held.same("sizes", "minimal_order"), held.same_matrices("transfer_function"))[0],
+    "decomposition": _decomposition,
     "matrix_exponential": lambda held: held.same_matrices("matrix"),
-    "gramian": lambda held: (held.same("rank"), held.same_matrices("matrix", "determinant", "finite_sum"))[0],
+    "gramian": _gramian,
     "state_feedback": _gain,
     "observer": _gain,
     "reduced_order_observer": _reduced,

@@ -41,7 +41,7 @@ def drawn(seed: int, tasks: Sequence[str] = ()) -> Tables:
     while True:
         task = random.choice(list(tasks) or _ASKED_TASKS)
         shape = _shape(random, task)
-        asked = {"radius": "2"} if task == "pole_advice" else specification(random, task, shape)
+        asked: dict[str, Any] | None = {"radius": "2"} if task == "pole_advice" else specification(random, task, shape)
         if not shape.signs or asked is None or (task == "pole_advice" and shape.discrete):
             continue
         signs = {**shape.signs, **asked.pop("symbols", {})}

@@ -146,7 +146,7 @@ class Ideal:
         forms = [{part: coefficient for coefficient, part in form.each_term()} for form in self.reduced_column(values)]
         parts = list(dict.fromkeys(part for form in forms for part in form))
         reduced, below, rank = fmpz_mat([[int(form.get(part, 0)) for form in forms] for part in parts]).rref()
-        last = next(k for k in range(len(forms)) if k >= rank or not reduced[k, k])
+        last = next(k for k in range(len(forms)) if k >= rank or reduced[k, k] == 0)
         rest = (Scalar.of(int(reduced[k, last])) * values[k] for k in range(last))
         found = sum((-term for term in rest), Scalar.of(int(below)) * values[last])
         return found / found.factors()[0]
