@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from symobs.analysis.detectability_page import write_page
-from symobs.analysis.meetings import distances, systems_of
+from symobs.analysis.meetings import distances, systems_of, too_long
 from symobs.analysis.modes import ModeResult, polynomial_of
 from symobs.conditions import Condition
 from symobs.errors import InputError
@@ -121,6 +121,7 @@ class HiddenStability(ModeResult):
         """The cases of the rank test, where eigenvalues meet, and the boundary where the weaker reading leaves it open."""
         strict = [c.expression for c in self.hidden.where if c.operator == ">"]
         found = (*self.rank_cases, *self.meeting_cases)
+        found += tuple(Case((Condition("existence", value, "=="),), {}, None) for value in self._left_open)
         if self.meaning == "asymptotic" or not strict:
             return found
         return (*found, Case((Condition("existence", product_of(strict), "=="),), {}, None))
@@ -132,11 +133,22 @@ class HiddenStability(ModeResult):
             return (*self.domain, *self._only_there)
         if self.hidden.verdict == "undecided":
             return self.domain
-        differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
-        lost = distances(systems_of(differing) or ())
+        left = [(value,) for value in self._left_open]
+        lost = distances([*(system for system in self._lost if not too_long([system])), *left])
         listed = {c.expression for c in self.domain}
         others = (Condition("existence", expression) for expression in lost if expression not in listed)
         return (*self.domain, *self.hidden.where, *others)
+
+    @cached_property
+    def _lost(self) -> tuple[tuple[Scalar, ...], ...]:
+        """The equations of the strata on which another verdict may hold."""
+        differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
+        return systems_of(differing) or ()
+
+    @cached_property
+    def _left_open(self) -> tuple[Scalar, ...]:
+        """What has to be kept from 0, and is left undecided where it is, since the strata in it take too long to tell."""
+        return too_long(self._lost) if self.hidden.verdict in {"yes", "conditional"} else ()
 
     @property
     def grows_where(self) -> tuple[Condition, ...]:

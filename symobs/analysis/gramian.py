@@ -8,7 +8,15 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, reject, time_environment
+from symobs.analysis.branches import (
+    Branched,
+    Signs,
+    from_zero,
+    rate_of,
+    reject,
+    time_environment,
+    vanishing_denominators,
+)
 from symobs.analysis.gramian_page import write_gramian
 from symobs.analysis.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous
@@ -136,6 +144,12 @@ class Gramian(Branched):
         found = self.answer["rank"]
         minor = found["matrix"].select(found["rows"], found["columns"])
         return (minor.determinant(),) if minor.shape[0] else ()
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Also those of what is seen: on a curve its coefficients may have poles, where it decays or not anew."""
+        divided = [*self.matrices, self.answer["seen"]] if "seen" in self.answer else self.matrices
+        return vanishing_denominators(divided, self.plant.symbols.signs)
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:

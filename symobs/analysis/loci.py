@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, real_consequences, vanishing_factors
-from symobs.exact import Ideal, Scalar, TooLarge
+from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
@@ -74,8 +74,14 @@ class Locus:
 
     @staticmethod
     def of(ideal: Ideal) -> Locus:
-        """Return the locus of an ideal, its equations the reduced basis, leading coefficients positive."""
-        positive = [g if g.factors()[0].fraction() > 0 else -g for g in ideal.generators]
+        """Return the locus of an ideal: its equations are the reduced basis, or shorter ones where it is a few points.
+
+        Leading coefficients are positive.
+        """
+        basis = ideal.generators
+        if EIGENVALUE not in ideal.field.position and ideal.triangular:
+            basis = min(basis, ideal.triangular, key=lambda equations: sum(e.size for e in equations))
+        positive = [g if g.factors()[0].fraction() > 0 else -g for g in basis]
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
     def lies_in(self, other: Locus) -> bool:
@@ -108,7 +114,8 @@ def _simplicity(value: Scalar) -> tuple[int, int, str]:
 def loci(equations: Iterable[Scalar], region: Region) -> tuple[Locus, ...]:
     """Return the common zeros of polynomials in a region as loci, none of which is seen to lie in another."""
     budget = iter(range(_BRANCHES))
-    return maximal(_branches((*equations, *region.whole.equations), region, budget))
+    numerators = (equation.numerator for equation in equations)
+    return maximal(_branches((*numerators, *region.whole.equations), region, budget))
 
 
 def maximal(found: Iterable[Locus]) -> tuple[Locus, ...]:
@@ -159,6 +166,8 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         return
     if news:
         yield from _branches((*news, *ideal.generators), region, budget)
+    elif ideal.is_finite and ideal.dimension is None:  # among so many points some may be others than the most
+        yield Locus(tuple(simple))
     else:
         yield Locus.of(ideal)
 
@@ -174,4 +183,19 @@ def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
         if len(factors) > 1 and not found:
             found = [stripped]
         news += found
-    return tuple(news)
+    return tuple(news) or _coordinates(ideal, region)
+
+
+def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
+    """Return, of finitely many points, polynomials in one parameter each that tell them apart or are simpler.
+
+    Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.
+    """
+    if EIGENVALUE in ideal.field.position or ideal.dimension is None:
+        return ()
+    for name in ideal.field.names:
+        found = ideal.minimal_polynomial(name)
+        stripped = math.prod(region.vanishing(found), start=Scalar.of(1))
+        if stripped not in ideal or len(region.vanishing(found)) > 1:
+            return (stripped,)
+    return ()

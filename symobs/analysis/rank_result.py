@@ -240,7 +240,8 @@ class RankResult(Result):
                 generic_claims(self.answer["matrix"], self._tree, self._region), self.plant.relations
             )
         except (CertificateRejected, TooLarge):
-            cases += [Case((Condition("existence", value, "=="),), {}, None) for value in self.existence]
+            unknown = (factor for value in self.existence for factor in self._region.vanishing(value))
+            cases += [Case((Condition("existence", factor, "=="),), {}, None) for factor in unknown]
         return (*found, *cases), tuple(certificates)
 
     def _case(self, stratum: Stratum) -> Case:

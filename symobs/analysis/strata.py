@@ -56,6 +56,11 @@ def common_zeros(plant: StateSpace, equations: Iterable[Scalar], solve: Solve) -
     return tuple(_below(equations, region_of(plant), plant, solve))
 
 
+def equations_of(case: Case) -> tuple[Scalar, ...]:
+    """Return what vanishes where a case holds."""
+    return tuple(condition.expression for condition in case.when if condition.operator == "==")
+
+
 def region_of(plant: StateSpace) -> Region:
     """Return the parameters of a plant: with their signs, on its stratum, where its denominators do not vanish."""
     m, signs = plant.matrices, plant.symbols.signs

@@ -9,6 +9,7 @@ from symobs.analysis.pages import factored_form, given, is_narrow
 from symobs.certificate import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.exact import Matrix, Scalar, independent_rows, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
+from symobs.exact.functions import NotWritten
 from symobs.formula import Environment, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block, identity, letter
 from symobs.method import Case, Result, choose, method, task
@@ -122,7 +123,12 @@ class TransferFunction(Result):
 
     @staticmethod
     def _there(plant: StateSpace, _: Mapping[str, Scalar]) -> TransferFunction:
-        return resolvent(plant)
+        """Return the function on a stratum; raises `NotWritten` where more has a root in common all over it."""
+        found, ideal = resolvent(plant), plant.ideal
+        if ideal is not None and any(all(value in ideal for value in system) for system in found.decisive):
+            message = "poles or zeros are others all over the stratum"
+            raise NotWritten(message)
+        return found
 
     def _is_as_ever(self, case: Case) -> bool:
         """Whether a case has the poles and zeros that hold in general, and no cases of its own."""

@@ -147,7 +147,7 @@ class FeedforwardDesign(Result):
         def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             return type(self).of(self.loop.on(plant, values), self.method)
 
-        there = carried(self.plant, self.loop.case_tree, on)
+        there = carried(self.plant, self.loop.gain_strata, on)
         own = strata(self.plant, [value.numerator for value in self.existence], on)
         return tuple({case.when: case for case in (*own, *there)}.values())
 

@@ -326,11 +326,9 @@ class GainDesign(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """What is true on the strata where modes, gain, or whether there is one are others than in general."""
-        if self.desired is None:
-            return ()
-        from symobs.design.gain_cases import cases_of  # noqa: PLC0415 - a gain in a loop of many is not asked for them
+        from symobs.design.gain_cases import cases_of, cases_of_given  # noqa: PLC0415 - of many in a loop none is asked
 
-        return cases_of(self, self.desired)
+        return cases_of(self, self.desired) if self.desired is not None else cases_of_given(self)
 
     @cached_property
     def stability(self) -> Stability:

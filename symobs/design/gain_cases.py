@@ -40,6 +40,15 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
     return (*found, *common_zeros(plant, design.existence, solve)) if design.existence else found
 
 
+def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
+    """Return what a given gain does on the strata where other modes than in general are beyond any gain."""
+
+    def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
+        return type(design).of_given(there, design.answer[design.letter].substitute(values))
+
+    return carried(design.plant, design.test.case_tree, solve) if design.plant.field.names else ()
+
+
 def chosen(design: GainDesign) -> tuple[Scalar, ...]:
     """Return what the gain divides by because it is this one of many: where it vanishes another one serves."""
     pair = design._pair  # noqa: SLF001 - the witness

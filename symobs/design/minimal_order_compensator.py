@@ -114,9 +114,9 @@ class MinimalOrderCompensator(OutputFeedback):
         return (*own, *(Condition("existence", factor) for factor in factors if factor not in known))
 
     @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
+    def gain_strata(self) -> tuple[Case, ...]:
         """The strata of both gains, and those where the control law cannot be solved for u."""
-        return (*super().case_tree, *self.ill_posed)
+        return (*super().gain_strata, *self.ill_posed)
 
     @cached_property
     def ill_posed(self) -> tuple[Case, ...]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from symobs.analysis.strata import carried
+from symobs.analysis.strata import carried, strata
 from symobs.certificate import Certificate, Claim, check
-from symobs.conditions import sign_of
+from symobs.conditions import sign_of, vanishing_factors
 from symobs.design.gain import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, product_of, transfer, transfer_matrix
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer, transfer_matrix
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.method import Case, Result
@@ -164,9 +164,28 @@ class OutputFeedback(Result):
         return tuple({c.expression: c for c in both}.values())
 
     @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
+    def gain_strata(self) -> tuple[Case, ...]:
         """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
         return carried(self.plant, (*self.feedback.case_tree, *self.estimator.case_tree), self.on)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, and those where an unstable F may lose poles."""
+        cancelled = strata(self.plant, self._cancelling, self.on) if self._may_lose_poles else ()
+        return tuple({frozenset(case.when): case for case in (*self.gain_strata, *cancelled)}.values())
+
+    @property
+    def _may_lose_poles(self) -> bool:
+        """Whether F is said to be unstable, and is so only where none of its poles cancels."""
+        return self.exists and self._own_stability == "no" and not self._is_unavoidably_unstable
+
+    @cached_property
+    def _cancelling(self) -> tuple[Scalar, ...]:
+        """What vanishes where poles of F cancel against its zeros; of a matrix that is not asked."""
+        F, variable = self.answer["F"], self.plant.variable
+        if not self.is_single or self.plant.equations or not F:
+            return ()
+        return vanishing_factors([resultant(F.numerator, F.denominator, variable)], self.plant.symbols.signs)
 
     def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
         """Return the compensator on a stratum."""
@@ -252,9 +271,19 @@ class OutputFeedback(Result):
                 factors[factor] = factors.get(factor, 0) + power
         return Factored(Scalar.of(1), tuple(factors.items()))
 
-    @cached_property
+    @property
     def own_stability(self) -> str:
-        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`."""
+        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`.
+
+        An unstable pole may cancel: where that is no case of its own, nothing is said.
+        """
+        F, found = self.answer["F"], self._own_stability
+        untold = self.plant.equations or (not self.is_single and F.names != {self.plant.variable})
+        return "undecided" if untold and self._may_lose_poles else found
+
+    @cached_property
+    def _own_stability(self) -> str:
+        """Whether F in general is stable."""
         plant, F = self.plant, self.answer["F"]
         variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
         if self._is_unavoidably_unstable:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from symobs.analysis.loci import loci
 from symobs.analysis.observability import Controllability, Observability
-from symobs.analysis.strata import carried, strata
+from symobs.analysis.rank_cases import undecided_conditions
+from symobs.analysis.strata import carried, region_of, strata
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.pole_places import OPEN, needed_of
 from symobs.errors import InputError
@@ -86,4 +88,5 @@ def _of_kept_modes(advice: PoleAdvice) -> Iterator[Case]:
     rest = advice.pair.divided(advice.answer["polynomial"].value)[1]
     left = [c.numerator for c in rest.coefficients(advice.plant.variable) if not c.is_zero]
     if not any(c.is_constant for c in left) and not any(known(name) for c in left for name in c.names):
-        yield Case(tuple(Condition("existence", c, "==") for c in left), {}, None)
+        for locus in loci(left, region_of(advice.plant)):
+            yield Case(undecided_conditions(locus), {}, None)

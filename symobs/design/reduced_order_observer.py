@@ -5,16 +5,18 @@ In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  Wi
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from symobs.analysis.strata import carried, strata
+from symobs.analysis.strata import carried, equations_of, strata
 from symobs.certificate import Certificate, Claim
+from symobs.conditions import Condition
 from symobs.design.gain import letters_of
 from symobs.design.gain_cases import chosen
 from symobs.design.observer import ObserverDesign
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Matrix, Root, Scalar, echelon, unit_rows
+from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, unit_rows
 from symobs.exact.functions import NotWritten
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
@@ -34,8 +36,6 @@ from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-
-    from symobs.conditions import Condition
 
 
 class Partition(NamedTuple):
@@ -229,7 +229,20 @@ class ReducedOrderObserver(Result):
         own = strata(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)), solve)
         if self.plant.outputs == 1 and not self.unmoved_modes:
             return own
-        return tuple({case.when: case for case in (*carried(self.plant, self.inner.case_tree, solve), *own)}.values())
+        found = {frozenset(equations_of(case)): case for case in own}
+        for case in carried(self.plant, self._inner_cases, solve):
+            found.setdefault(frozenset(equations_of(case)), case)
+        return tuple(found.values())
+
+    @property
+    def _inner_cases(self) -> tuple[Case, ...]:
+        """The cases of the inner gain, apart from where there is no pair (A₁₂, A₂₂) that they speak of."""
+        known = {condition.expression for condition in self.domain}
+        apart = [Condition("domain", c.expression) for c in self.inner.domain if c.expression not in known]
+        return tuple(
+            replace(case, when=(*case.when, *(c for c in apart if _meets(case, c.expression))))
+            for case in self.inner.case_tree
+        )
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -247,6 +260,14 @@ class ReducedOrderObserver(Result):
         from symobs.design.reduced_order_page import write_reduced_order  # noqa: PLC0415 - the page stands on this type
 
         write_reduced_order(page, self)
+
+
+def _meets(case: Case, value: Scalar) -> bool:
+    """Tell whether a value may vanish where the equations of a case hold."""
+    try:
+        return not Ideal.of((*equations_of(case), value)).is_whole
+    except TooLarge:
+        return True
 
 
 def require_rank(plant: StateSpace) -> None:

@@ -164,7 +164,7 @@ class TrackingDesign(Result):
             start = None if self.start is None else self.start.substitute(values)
             return type(self).of(self.loop.on(plant, values), self.reference.substitute(values), start, self.method)
 
-        cases = carried(self.plant, self.loop.case_tree, on)
+        cases = carried(self.plant, self.loop.gain_strata, on)
         if self.answer["w"] is None:
             known = {condition.expression for condition in self.loop.holds_where}
             own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]

@@ -9,9 +9,11 @@ computation cannot be interrupted.
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
+from itertools import product
+from math import prod
 from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpz_mpoly_vec
+from flint import Ordering, fmpz_mat, fmpz_mpoly_vec
 
 from symobs.exact.field import EIGENVALUE, Field, context_of
 from symobs.exact.scalar import Scalar
@@ -25,6 +27,10 @@ if TYPE_CHECKING:
 LIMITS = (120, 600, 4_000)
 #: The most terms that the generators may have together.
 TERMS = 1_000
+#: The most monomials among which a basis of the functions on finitely many points is looked for.
+_MONOMIALS = 60
+#: The most points that are written by the polynomial of one coordinate: beyond, its coefficients are long.
+_FEW = 6
 
 
 #: What the names of the coordinates of a vector begin with; no parameter's name begins so.
@@ -96,12 +102,70 @@ class Ideal:
             return value
         return above / below if above.size + below.size <= value.size else value
 
+    @cached_property
+    def _bounds(self) -> tuple[int, ...] | None:
+        """The exponents at which each generator alone is a leading monomial; None where one never is."""
+        leading = [polynomial.monoms()[0] for polynomial in self.basis]
+        found = [_pure_power(leading, k) for k in range(len(self.home.names()))]
+        return tuple(bound for bound in found if bound is not None) if found and None not in found else None
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether there are finitely many complex zeros."""
+        return self._bounds is not None
+
+    @cached_property
+    def dimension(self) -> int | None:
+        """How many complex zeros there are, each counted with its multiplicity; None where they are too many to be counted.
+
+        As many monomials are divisible by no leading monomial of the basis.
+        """
+        if self._bounds is None or prod(self._bounds) > _MONOMIALS:
+            return None
+        leading = [polynomial.monoms()[0] for polynomial in self.basis]
+        monomials = product(*map(range, self._bounds))
+        return sum(not any(_divides(lead, powers) for lead in leading) for powers in monomials)
+
+    def minimal_polynomial(self, name: str) -> Scalar:
+        """Return the polynomial of least degree in one generator alone that lies in an ideal with finitely many zeros."""
+        return self._dependence([Scalar.symbol(name) ** k for k in range((self.dimension or 0) + 1)])
+
+    @cached_property
+    def triangular(self) -> tuple[Scalar, ...] | None:
+        """Other generators: a polynomial in one name, and every other name as a polynomial in it; None where there are none."""
+        for name in reversed(self.field.names) if 0 < (self.dimension or 0) <= _FEW else ():
+            powers = [Scalar.symbol(name) ** k for k in range(self.dimension or 0)]
+            below = self.minimal_polynomial(name)
+            if below.degree(name) == self.dimension:
+                others = (Scalar.symbol(other) for other in self.field.names if other != name)
+                return (below, *(self._dependence([*powers, other]) for other in others))
+        return None
+
+    def _dependence(self, values: Sequence[Scalar]) -> Scalar:
+        """Return the combination of the first values, with rational coefficients, that lies in the ideal."""
+        forms = [{part: coefficient for coefficient, part in form.each_term()} for form in self.reduced_column(values)]
+        parts = list(dict.fromkeys(part for form in forms for part in form))
+        reduced, below, rank = fmpz_mat([[int(form.get(part, 0)) for form in forms] for part in parts]).rref()
+        last = next(k for k in range(len(forms)) if k >= rank or reduced[k, k] == 0)
+        rest = (Scalar.of(int(reduced[k, last])) * values[k] for k in range(last))
+        found = sum((-term for term in rest), Scalar.of(int(below)) * values[last])
+        return found / found.factors()[0]
+
     def having(self, *others: Scalar) -> Ideal:
         """Return the ideal with further generators; raises `TooLarge`."""
         return Ideal.of((*self.generators, *others))
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
         return Scalar(self.field, polynomial.project_to_context(self.field.context), self.field.one)
+
+
+def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:
+    """Return the exponent of the one generator whose power is a leading monomial, None where none is."""
+    return next((powers[place] for powers in leading if sum(powers) == powers[place]), None)
+
+
+def _divides(lead: tuple[int, ...], powers: tuple[int, ...]) -> bool:
+    return all(here <= there for here, there in zip(lead, powers, strict=True))
 
 
 def apart_from_zero(value: Scalar) -> Scalar:

@@ -184,7 +184,7 @@ def _roots_of(coefficients: tuple[Any, ...]) -> tuple[Any, ...]:
     for extra in (50, 200, 800):
         try:
             found = mpmath.polyroots(coefficients, maxsteps=200, extraprec=extra)
-        except mpmath.NoConvergence:
+        except mpmath.mp.NoConvergence:
             continue
         return tuple(mpmath.mpc(root) for root in found)
     raise UnreadableError("no roots were found")
