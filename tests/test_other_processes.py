@@ -18,9 +18,10 @@ import symobs
 from symobs.exact import Field, Matrix, Scalar
 from symobs.exact.functions import function
 from symobs.exact.precision import Precision
-from symobs.method import Result, tasks
+from symobs.method import tasks
 from tests.another_process import Account, account_of, read_in_another_process
 from tests.asking import specification
+from tests.benchmarks.fresh_symbols import design
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -115,15 +116,6 @@ def quick_switches() -> Iterator[None]:
     sys.setswitchinterval(before)
 
 
-def _design(number: int) -> Result:
-    """Design an observer for symbols that no plant had before, and solve its equation in time."""
-    a, b, p = (f"{letter}{number}" for letter in "abp")
-    plant = symobs.StateSpace([["0", a], ["1", b]], [["1"], ["0"]], [["1", b]])
-    observer: Result = symobs.observer(plant, poles=[f"-{p}", "-1"])
-    symobs.matrix_exponential(symobs.StateSpace([[f"-{p}", "1"], ["0", f"-2*{p}"]], [["0"], ["1"]], [["1", "0"]]))
-    return observer
-
-
 def test_fresh_symbols_leave_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every cache has a bound, and no other table of the process holds a symbol of a design that is gone."""
     caches = [each for each in gc.get_objects() if isinstance(each, functools._lru_cache_wrapper)]
@@ -132,7 +124,7 @@ def test_fresh_symbols_leave_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> 
     assert unbounded <= {"of_file", "_parser", "GainDesign.assignment"}
     monkeypatch.setattr("symobs.exact.field._ROUTES", 8)
     for number in range(30):
-        _design(number)
+        design(number)
         fresh = Scalar.symbol(f"p{number}")
         assert (Scalar.symbol("s") + fresh - fresh).within(Field.of(["s"])) == Scalar.symbol("s")
     for each in caches:
