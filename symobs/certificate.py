@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import sign_where, vanishing_factors
 from symobs.error_bounds import Bound, Bounds
-from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar, is_rounding
+from symobs.errors import CertificateRejected, NotShown, WrongKind
+from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
 from symobs.exact.functions import symbols_named
 from symobs.exact.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
@@ -53,8 +53,11 @@ EXACT_UP_TO = 60
 #: The error bound every certificate at random points stays below.
 ERROR_GOAL = 2.0**-50
 _DRAWS = 20
-#: What evaluation raises where a formula makes no sense: shapes that do not fit, division by zero, a missing letter.
-SENSELESS = (ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError, ValueError)
+#: What evaluation raises where a formula makes no sense: shapes or kinds that do not fit, division by zero, a missing
+#: letter.  An AttributeError, a TypeError of Python's own or a failed assertion is a bug, and stays one.
+EVALUATION_ERRORS = (ArithmeticError, LookupError, RecursionError, ValueError)
+#: What reading an answer or a step of any kind whatever may raise: it is refused, with this as the cause.
+UNREADABLE = (*EVALUATION_ERRORS, AssertionError, AttributeError, TypeError)
 #: What a random point can decide: equal, and not identically equal.  `!=` is more: different at every point.
 _AT_POINTS = {"=", "!=="}
 
@@ -116,8 +119,19 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
     """
     try:
         return _verified(relation, environment)
-    except SENSELESS:
+    except EVALUATION_ERRORS:
         return "", 0.0
+
+
+def can_be_shown(relation: Relation, environment: Environment) -> bool:
+    """Tell whether a relation is within the reach of `verify`: not where a rank or a basis is too large to be seen."""
+    try:
+        _verified(relation, environment)
+    except (NotShown, TooLarge):
+        return False
+    except EVALUATION_ERRORS:
+        return True
+    return True
 
 
 def _verified(relation: Relation, environment: Environment) -> tuple[str, float]:
@@ -191,18 +205,18 @@ def _is_rounding(exact: Any, shown: Any) -> bool:
     """Tell whether every entry is rounded to the decimals shown."""
     if not isinstance(exact, Matrix):
         return is_rounding(exact, as_scalar(shown))
-    if exact.shape != shown.shape:
+    if not isinstance(shown, Matrix) or exact.shape != shown.shape:
         return False
     return all(is_rounding(entry, near) for entry, near in zip(exact.entries, shown.entries, strict=True))
 
 
 def as_scalar(value: Any) -> Scalar:
-    """Read a 1×1 matrix as its entry; raises TypeError for what is not a scalar."""
+    """Read a 1×1 matrix as its entry; raises `WrongKind` for what is not a scalar."""
     if isinstance(value, Matrix) and value.shape == (1, 1):
         (value,) = value.entries
     if not isinstance(value, Scalar):
         message = f"{type(value).__name__} is not a scalar"
-        raise TypeError(message)
+        raise WrongKind(message)
     return value
 
 

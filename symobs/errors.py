@@ -134,3 +134,15 @@ class DerivationRejected(SymobsError):
     """A line of a derivation is not true: always a bug of symobs, never of the input."""
 
     exit_code = 1
+
+
+class WrongKind(TypeError, ValueError):
+    """A formula has no value since an operand is of another kind, such as a matrix where a number belongs."""
+
+
+class NotShown(ArithmeticError):
+    """What is true of a formula at every point is beyond what is looked at; it says nothing about its truth."""
+
+
+class SymobsWarning(UserWarning):
+    """A page lacks a line or a picture whose check failed; what is printed is checked all the same."""

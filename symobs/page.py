@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs.certificate import can_be_shown, verify
 from symobs.derivation import (
     Conclude,
     Define,
@@ -21,6 +23,7 @@ from symobs.derivation import (
     Tabulate,
     set_apart,
 )
+from symobs.errors import SymobsWarning
 from symobs.exact import Matrix, Scalar, rounded
 from symobs.exact.functions import identities, known, roots_in
 from symobs.formula import (
@@ -40,6 +43,7 @@ from symobs.formula import (
     Shown,
     Together,
 )
+from symobs.formula.plain import plain_relation
 from symobs.formula.term import Term
 from symobs.notation import LETTERS, printed_alike
 
@@ -55,6 +59,23 @@ FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
+
+
+def left_out(what: str) -> None:
+    """Warn that a page lacks something since its check failed, which is a bug."""
+    message = f"{what} is left out: its check failed; please report this: it is a bug of symobs"
+    warnings.warn(message, SymobsWarning, stacklevel=3)
+
+
+def shows(facts: Iterable[Relation], environment: Environment) -> bool:
+    """Tell whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
+    for fact in facts:
+        if verify(fact, environment)[0]:
+            continue
+        if can_be_shown(fact, environment):
+            left_out(f"the line {plain_relation(fact, environment.variable)}")
+        return False
+    return True
 
 
 def formula_of(member: Member) -> Formula:
@@ -323,12 +344,13 @@ class Page:
     def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
         """Show where a polynomial is stable, or how its roots move: the picture is held against it.
 
-        One that numbers of a window's resolution cannot show faithfully is left out.
+        One that is not faithful is left out with a `SymobsWarning`.
         """
         from symobs.derivation.pictures import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
 
         discrete = self.plant.is_discrete
         if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):
+            left_out(f"a picture of kind {type(picture).__name__}")
             return
         self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
+from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
 from symobs.exact.functions import all_roots
 from symobs.formula import Restricted
@@ -104,7 +105,7 @@ class Pointwise(Restricted):
             (sent_to_zero and self._has_minor(kernel, len(vectors))) or self._has_none(value, len(columns) + 1)
         ):
             message = "the rank is not seen to be the same everywhere"
-            raise TypeError(message)
+            raise NotShown(message)
         return Scalar.of(len(columns))
 
     def _has_minor(

@@ -15,7 +15,7 @@ from symobs.derivation.strata import on_stratum
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
 from symobs.formula import Roots, Together
 from symobs.formula.term import block
-from symobs.page import Page, relation, sentence
+from symobs.page import Page, relation, sentence, shows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -68,7 +68,7 @@ def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int, conditions
     at = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
     ranks = relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank)
     when = Together((at, *map(as_written, conditions))) if conditions else at
-    if part.matrix.names - {EIGENVALUE} and not verify(ranks, on_stratum(when, {}, page.environment))[0]:
+    if part.matrix.names - {EIGENVALUE} and not shows([ranks], on_stratum(when, {}, page.environment)):
         return []  # it is shown by the minors of X − λI, and too long to be shown by those of the whole matrix
     steps: list[Step] = [Equal((ranks,))]
     singular = (page["A"] - unknown @ page.identity(page.plant.order)).apply("det")

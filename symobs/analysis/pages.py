@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, cast
 
 from symobs.analysis.missing import in_words
-from symobs.certificate import verify
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Note, Step
@@ -14,7 +13,7 @@ from symobs.derivation.words import fits
 from symobs.exact import Factored, Matrix, Scalar, factored, places, root_of_pole, roots_of, unit_rows
 from symobs.formula import Decimals, Exactly, Literal, Negative, Power, Product, Quotient, Roots, Together
 from symobs.formula.term import block
-from symobs.page import Page, predicate, relation, sentence
+from symobs.page import Page, predicate, relation, sentence, shows
 from symobs.stability import as_inequality, stability
 
 if TYPE_CHECKING:
@@ -257,7 +256,7 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
         relations = result.piece.relations(c.expression for c in result.domain)
         values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
         e = page.environment.having(values=values | {"A": result.plant.matrices.A}).under(relations)
-        if not all(verify(fact, e)[0] for fact in facts):
+        if not shows(facts, e):
             return []
     words = "one" if len(sets[0]) == 1 else "several"
     return [Conclude(sentence(f"repair_{words}_{kind}", {"states": in_words(sets)}), tuple(facts))]

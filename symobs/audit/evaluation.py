@@ -19,7 +19,7 @@ from symobs.audit.functions import (
 )
 from symobs.audit.grammar import Node
 from symobs.audit.letters import INSTANTS
-from symobs.certificate import SENSELESS, verify
+from symobs.certificate import EVALUATION_ERRORS, verify
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.functions import identities
@@ -223,7 +223,7 @@ def _primed(base: Node, environment: Environment) -> Printed:
     rate = value.derivative
     try:
         rate.value  # noqa: B018 - whether there is one
-    except SENSELESS:
+    except EVALUATION_ERRORS:
         raise Misfit(f"the derivative of {base} is not known here") from None
     return rate
 
@@ -366,5 +366,5 @@ def holds(left: Node, right: Node, environment: Environment) -> bool:
     """Tell whether an equation is true; one whose sizes do not fit is not."""
     try:
         return equal(*common(value_of(left, environment), value_of(right, environment), environment))
-    except (Misfit, Unknown, *SENSELESS):  # InputError is a ValueError
+    except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
         return False

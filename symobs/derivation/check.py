@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs.certificate import SENSELESS, as_scalar, verify
+from symobs.certificate import UNREADABLE, as_scalar, verify
 from symobs.conditions import vanishing_factors
 from symobs.derivation.properties import PREDICATES, are_roots, polynomial_of, subjects
 from symobs.derivation.region_claims import is_exactly
@@ -103,7 +103,7 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
     for step in steps:
         try:
             environment = _after(step, environment, discrete)
-        except SENSELESS as error:
+        except UNREADABLE as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
             raise DerivationRejected(message, repair=BUG, line=str(step)) from error
     return environment

@@ -9,7 +9,7 @@ from collections import deque
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.certificate import SENSELESS, as_scalar
+from symobs.certificate import EVALUATION_ERRORS, as_scalar
 from symobs.derivation.places import ALLOWS, Stability
 from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.properties import polynomial_of
@@ -83,7 +83,7 @@ def is_faithful(picture: Picture, subject: Formula, environment: Environment, *,
     """Tell whether nothing that a picture shows is false."""
     try:
         return next(faults(picture, subject, environment, discrete=discrete), None) is None
-    except SENSELESS:
+    except EVALUATION_ERRORS:
         return False
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate import as_scalar
 from symobs.conditions import never_zero, sign_of
+from symobs.errors import WrongKind
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, remainder
 from symobs.exact.roots import polynomial_of_roots
 from symobs.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
@@ -80,7 +81,7 @@ def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
     denominator = value.common_denominator()
     if name not in {"stable", "unstable"} or denominator.degree(variable) < 1:
         message = f"{name} is no property of this matrix"
-        raise TypeError(message)
+        raise WrongKind(message)
     return (denominator,)
 
 

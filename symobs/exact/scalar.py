@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
+from symobs.errors import WrongKind
 from symobs.exact.field import RATIONALS, Field
 from symobs.exact.powers import by_powers
 from symobs.exact.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
@@ -59,7 +60,7 @@ class Scalar:
         if isinstance(value, (int, fmpz)):
             return Scalar(RATIONALS, RATIONALS.context.constant(value), RATIONALS.one)
         message = f"{type(value).__name__} is not an exact number"
-        raise TypeError(message)
+        raise WrongKind(message)
 
     @staticmethod
     def rational(numerator: int, denominator: int = 1) -> Scalar:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs.errors import WrongKind
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import derivative, substitute, symbols_in
 from symobs.formula.nodes import Integral
@@ -27,7 +28,7 @@ def rate(value: Any, name: str, *, constant: bool) -> Any:
     """Return d/d(name) of a value, entry by entry; only where time is the variable may it be a constant's."""
     if not constant and name not in symbols_in(exact(value)):
         message = "a constant of a plant that does not vary has no derivative"
-        raise TypeError(message)
+        raise WrongKind(message)
     return derivative(exact(value), name)
 
 
@@ -51,5 +52,5 @@ def exact(value: Any) -> Any:
     """Return an exact value; anything else, such as a residue, has no derivative."""
     if not isinstance(value, (Scalar, Matrix)):
         message = f"{type(value).__name__} is not an exact value"
-        raise TypeError(message)
+        raise WrongKind(message)
     return value

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from symobs.errors import WrongKind
 from symobs.exact import Matrix, Scalar, rank
 from symobs.exact.modular import block, scaled
 from symobs.formula import calculus
@@ -295,7 +296,9 @@ def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Sign
         size = environment.sizes[name]
         return Signal(size, {name: arithmetic.leaf(Matrix.identity(size))})
     value = evaluate(formula, environment, arithmetic)
-    assert isinstance(value, Signal)  # noqa: S101 - an invariant: signals are defined by signals
+    if not isinstance(value, Signal):
+        message = f"{name} is defined as {type(value).__name__}, not as a signal"
+        raise WrongKind(message)
     return value
 
 
@@ -349,7 +352,9 @@ def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
 def _polynomial_at(polynomial: object, value: Any, environment: Environment, arithmetic: Arithmetic) -> Any:
     """Return the polynomial of the variable at a square matrix or a scalar, by Horner's rule."""
     polynomial = polynomial[0, 0] if isinstance(polynomial, Matrix) else polynomial
-    assert isinstance(polynomial, Scalar)  # noqa: S101 - an invariant of the letters φ
+    if not isinstance(polynomial, Scalar):
+        message = f"{type(polynomial).__name__} is not a polynomial"
+        raise WrongKind(message)
     shape = arithmetic.shape(value)
     if shape is None:
         number = arithmetic.leaf(Scalar.of(0))

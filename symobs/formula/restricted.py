@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar
 from symobs.formula.evaluate import Exact
 
@@ -49,7 +50,7 @@ class Restricted(Exact):
         factors = generators[0].factors()[1] if len(generators) == 1 else ()
         if len(factors) != 1 or factors[0][1] != 1:
             message = "a rank on a stratum is shown by minors and kernels"
-            raise TypeError(message)
+            raise NotShown(message)
         field = Extension(generators[0], max(factors[0][0].names, key=lambda name: (name == EIGENVALUE, name)))
         return Scalar.of(len(field.echelon(value)[0]))
 

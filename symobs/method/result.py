@@ -11,7 +11,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
+from symobs.certificate import UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
 from symobs.convention import STANDARD, Convention, convention_named
 from symobs.derivation import translated
@@ -66,7 +66,7 @@ class Result(Faces):
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
         try:
             object.__setattr__(self, "certificates", check_all(self.claims(), self.plant.relations))
-        except SENSELESS as error:
+        except UNREADABLE as error:
             message = f"the answer of {self.task} is no answer: {error}"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
 
