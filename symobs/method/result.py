@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 from dataclasses import fields as parts_of
-from functools import cached_property
+from functools import cache, cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Self
 
 from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
@@ -55,9 +55,10 @@ class Result(Faces):
     method: str
     answer: Mapping[str, Any]
     certificates: tuple[Certificate, ...] = field(init=False)
+    #: The method whose page is asked for; `auto` leaves the page free to be the most readable one.
+    page_method: str = field(default="auto", kw_only=True)
 
     task: ClassVar[str]
-    page_method = "auto"
     #: Whether the answers are functions of time, or of a horizon.
     in_time: ClassVar[bool] = False
 
@@ -72,8 +73,21 @@ class Result(Faces):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle what the result was made of: whoever reads it back checks the claims again."""
-        made = [dict(self.answer) if f.name == "answer" else getattr(self, f.name) for f in parts_of(self) if f.init]
-        return (type(self), tuple(made), {"page_method": self.page_method})
+        made = {name: getattr(self, name) for name in _made_of(type(self))}
+        return (partial(type(self), **made | {"answer": dict(self.answer)}), ())
+
+    def __eq__(self, other: object) -> bool:
+        """Compare what two results were made of: plant, method, answers, and what is asked of the page."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.plant, self.method, self.page_method, tuple(self.answer)))
+
+    def __bool__(self) -> NoReturn:
+        message = f"a result is neither true nor false; ask for its verdict: {self.task}(...).verdict == 'yes'"
+        raise TypeError(message)
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
@@ -152,9 +166,11 @@ class Result(Faces):
         return replace(self, answer={**self.answer, name: value})
 
     def asked(self, method_name: str) -> Self:
-        """Keep the method name that was asked for; `auto` leaves the page free to be the most readable one."""
-        object.__setattr__(self, "page_method", method_name)
-        return self
+        """Return the same result with the page of a method; its claims do not speak of the page."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, page_method=method_name)
+        other.__dict__.pop("derivation", None)
+        return other
 
     # -- faces ---------------------------------------------------------------------------------------------------------
 
@@ -207,6 +223,12 @@ class Result(Faces):
     def __repr__(self) -> str:
         shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
         return f"{type(self).__name__}({', '.join(shown)[:200]}, verdict={self.verdict!r})"
+
+
+@cache
+def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
+    """Return what the constructor of a result takes; where results are compared, without what only speeds it up."""
+    return tuple(part.name for part in parts_of(kind) if part.init and (part.compare or not compared))
 
 
 def _denominators(values: Iterable[Any]) -> list[Scalar]:
