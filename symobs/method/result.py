@@ -208,7 +208,14 @@ class Result(Faces):
         if name.startswith("_") or name not in self.fields:
             message = f"{type(self).__name__} has no attribute {name!r}"
             raise AttributeError(message)
-        return to_sympy(self.fields[name], objects)
+        if name not in self._objects:
+            self._objects[name] = to_sympy(self.fields[name], objects)
+        return self._objects[name]
+
+    @cached_property
+    def _objects(self) -> dict[str, Any]:
+        """The answers as SymPy objects, as far as they were asked for: large ones take seconds to make."""
+        return {}
 
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), "conditions", "cases", *self.fields]
@@ -221,8 +228,16 @@ class Result(Faces):
         return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
 
     def __repr__(self) -> str:
-        shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
-        return f"{type(self).__name__}({', '.join(shown)[:200]}, verdict={self.verdict!r})"
+        """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
+        parts = {name: value for name, value in self.answer.items() if value is not None}
+        long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
+        shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
+        verdict = "" if long else f", verdict={self.verdict!r}"
+        return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
+
+
+#: Answers of more terms than this are not written out by `repr`.
+_TERMS_SHOWN = 500
 
 
 @cache
