@@ -9,7 +9,7 @@ from dataclasses import field, replace
 from dataclasses import fields as parts_of
 from functools import cache, cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, overload
 
 from symobs.certificate import SENSELESS, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix, Scalar
     from symobs.picture import Picture
     from symobs.system import StateSpace
+
+
+#: The formats that are texts.
+Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text"]
 
 
 @dataclass(frozen=True)
@@ -73,14 +77,14 @@ class Result(Faces):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle what the result was made of: whoever reads it back checks the claims again."""
-        made = {name: getattr(self, name) for name in _made_of(type(self))}
+        made = {name: getattr(self, name) for name in _made_of(type(self))}  # type: ignore[arg-type]
         return (partial(type(self), **made | {"answer": dict(self.answer)}), ())
 
     def __eq__(self, other: object) -> bool:
         """Compare what two results were made of: plant, method, answers, and what is asked of the page."""
         if type(other) is not type(self):
             return NotImplemented
-        return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))
+        return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))  # type: ignore[arg-type]
 
     def __hash__(self) -> int:
         return hash((type(self), self.plant, self.method, self.page_method, tuple(self.answer)))
@@ -218,7 +222,17 @@ class Result(Faces):
         return {}
 
     def __dir__(self) -> Iterable[str]:
-        return [*super().__dir__(), "conditions", "cases", *self.fields]
+        own = (name for name in super().__dir__() if not name.startswith("_"))
+        return sorted({*own, "conditions", "cases", *self.fields})
+
+    @overload
+    def to(self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full") -> bytes: ...
+
+    @overload
+    def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
+
+    @overload
+    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
 
     def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
