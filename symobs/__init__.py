@@ -1,7 +1,7 @@
 """symobs: exact design of observers and observer-based compensators, with the derivation a textbook would print.
 
 One function a task (`symobs.observer`, `symobs.compensator`, …), found in the registry when first used; nothing
-heavy is imported before.
+heavy is imported before.  Type checkers and editors read the same from `__init__.pyi`.
 """
 
 from __future__ import annotations
@@ -22,9 +22,8 @@ def __getattr__(name: str) -> Any:
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name[:1].isupper():
-        found = getattr(importlib.import_module("symobs.errors"), name, None)
-        if found is not None:
-            return found
+        if name in _errors():
+            return _errors()[name]
     elif not name.startswith("_"):
         task = importlib.import_module("symobs.method").task_named(name)
         if task is not None:
@@ -36,4 +35,11 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     from symobs.method import tasks  # noqa: PLC0415
 
-    return sorted([*globals(), "StateSpace", *tasks()])
+    return sorted(["StateSpace", "__version__", *_errors(), *tasks()])
+
+
+def _errors() -> dict[str, type[Exception]]:
+    """Return the error classes by name."""
+    from symobs import errors  # noqa: PLC0415
+
+    return {name: kind for name, kind in vars(errors).items() if isinstance(kind, type) and issubclass(kind, Exception)}

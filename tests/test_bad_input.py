@@ -343,7 +343,11 @@ FLOATS: dict[str, tuple[Callable[[], object], str, str]] = {
     "array of integers as floats": (lambda: symobs.StateSpace(np.eye(2)), "plant.A", "1/10"),
     "SymPy": (lambda: symobs.StateSpace(sympy.Matrix([[0.5]])), "plant.A[0][0]", "Rational"),
     "poles": (lambda: symobs.observer(servo(), poles=[-1, -0.1]), "specification.poles[1]", "-1/10"),
-    "array of poles": (lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])), "specification.poles[0]", "-1/2"),
+    "array of poles": (
+        lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])),  # type: ignore[arg-type]
+        "specification.poles[0]",
+        "-1/2",
+    ),
     "complex poles": (lambda: symobs.observer(servo(), poles=[-1 + 2j, -1 - 2j]), "specification.poles[0]", "-1+2j"),
     "gain": (lambda: symobs.observer(servo(), L=[[0.25], [1]]), "specification.L[0][0]", "1/4"),
 }

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs import cli
+from symobs.cli import budget as budget_module
 from symobs.cli.budget import Budget, within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
+from symobs.render.pdf import compiled
 from tests.command_line import ROOT, SAFETY, SERVO, environment, inside
 from tests.test_pdf import ends, program
 
@@ -380,6 +382,21 @@ def test_an_end_while_tex_runs_ends_tex(number: int, code: int, said: str, budge
     assert ends(int(started.read_text(encoding="utf-8")))
     assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
     assert not any(temporary.iterdir())
+
+
+def test_tex_of_a_child_that_cannot_leave_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A child that hears nothing, or comes to nothing on a busy machine, is killed: what it has started goes with it."""
+    started = hanging_tex(tmp_path)
+    monkeypatch.setattr(budget_module, "GRACE", 0.0)
+
+    def work(_: object) -> None:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM, signal.SIGINT})
+        monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+        compiled(r"\documentclass{article}", time_limit=LONG)
+
+    with pytest.raises(OutOfBudget):
+        within(Budget(5.0), work)
+    assert ends(int(started.read_text(encoding="utf-8")))
 
 
 def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:

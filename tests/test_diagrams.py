@@ -44,7 +44,7 @@ s = sympy.Symbol("s")
 A, B, C = sympy.Matrix([[0, 1], [0, -1]]), sympy.Matrix([0, 1]), sympy.Matrix([[1, 0]])
 K, L = sympy.Matrix([[4, 3]]), sympy.Matrix([19, 81])
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-POLES = {"control_poles": [-2, -2], "observer_poles": [-10, -10]}
+POLES: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10, -10]}
 LOOP = (s + 2) ** 2 * (s + 10) ** 2
 
 

@@ -21,6 +21,7 @@ LONGEST = 400
 # A module imports from strictly lower floors; the modules of one package folder may import one another.
 FLOORS = {
     "errors": 0,
+    "processes": 0,
     "contents": 0,
     "record": 0,
     "bounds": 1,

@@ -371,7 +371,7 @@ def test_a_page_cannot_give_a_wrong_rank_at_an_eigenvalue() -> None:
     from symobs.derivation import Case  # noqa: PLC0415
     from symobs.page import relation  # noqa: PLC0415
 
-    derivation = symobs.pbh(symobs.StateSpace("[0 -1 0; 1 0 1; 0 0 0]", None, "[1 0 0]")).derivation
+    derivation: Any = symobs.pbh(symobs.StateSpace("[0 -1 0; 1 0 1; 0 0 0]", None, "[1 0 0]")).derivation
     *before, section = derivation.steps
     at = [k for k, step in enumerate(section.steps) if isinstance(step, Case)]
     assert len(at) == 2

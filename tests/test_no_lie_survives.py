@@ -184,7 +184,7 @@ def test_a_compensator_cannot_be_made_of_gains_for_another_plant(observer: str, 
     for name, part in (("feedback", other.feedback), ("estimator", other.estimator)):
         gain = {part.letter: part.answer[part.letter]}
         with pytest.raises(CertificateRejected, match="another plant"):
-            replace(asked, answer={**asked.answer, **gain}, **{name: part})
+            replace(asked, answer={**asked.answer, **gain}, **{name: part})  # type: ignore[arg-type]
 
 
 def test_a_kernel_is_no_basis_when_a_column_is_zero() -> None:

@@ -163,7 +163,7 @@ ASKED: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10], "ob
 def test_of_many_gains_one_that_leaves_the_law_unsolved_rules_out_no_other() -> None:
     """The law with the gains chosen cannot be solved for u; with another K of the same poles it can."""
     plant = StateSpace("[-2 -1 0; 1 1 -1; 1 2 -2]", "[0 0; 0 0; -2 -2]", "[1 1 1]", "[1 -1]")
-    asked = {"control_poles": [-1, -2, -3], "observer_poles": [-4, -5], "observer": "minimal"}
+    asked: dict[str, Any] = {"control_poles": [-1, -2, -3], "observer_poles": [-4, -5], "observer": "minimal"}
     found = symobs.compensator(plant, **asked)
     assert (found.verdict, found.answer["F"]) == ("undecided", None)
     assert "Other gains with the same poles were not tried" in " ".join(found.to("text").split())
@@ -221,7 +221,7 @@ def test_the_method_alone_asks_for_the_minimal_observer() -> None:
 def test_what_uses_the_estimate_needs_a_law_that_can_be_solved() -> None:
     """With D = 1/31 the control law of S0, Example 4.4 cannot be solved for u, whatever is added to it."""
     ill_posed = ("[0 1; 0 -1]", "[0; 1]", "[1 0]", "1/31")
-    asked = {"control_poles": [-2, -2], "observer_poles": [-10]}
+    asked: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10]}
     for task in (symobs.feedforward, symobs.tracking):
         found = task(StateSpace(*ill_posed), observer="minimal", **asked)
         assert found.verdict == "no"
@@ -273,13 +273,16 @@ def test_where_an_impossible_reference_can_be_followed_is_said() -> None:
     assert found.verdict == "no"
     (followed,) = [case for case in found.case_tree if case.result is not None and case.result.verdict == "yes"]
     assert [str(condition.expression) for condition in followed.when] == ["b"]
+    assert followed.result is not None
     assert str(followed.result.answer["K_d"]) == "[1 -1]"
 
 
 def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
     plant = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 e]")
     found = symobs.reduced_order_observer(plant, poles=[-5])
-    assert [(str(case.when[0].expression), case.result.verdict) for case in found.case_tree] == [("e", "no")]
+    assert [
+        (str(case.when[0].expression), case.result.verdict) for case in found.case_tree if case.result is not None
+    ] == [("e", "no")]
 
 
 @pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "decoupled"}])

@@ -9,6 +9,7 @@ import stat
 import subprocess
 import tempfile
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -18,11 +19,11 @@ from symobs.phrases import PHRASES
 from symobs.render import pdf
 from symobs.render.pdf import Pdf, compiled
 from tests import render_examples as example
+from tests.command_line import SAFETY
 from tests.render_examples import document
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     RequireTool = Callable[[str], str]
 
@@ -231,11 +232,15 @@ def program(path: Path, script: str) -> None:
 
 
 def ends(process: int) -> bool:
-    """Whether a process ends within a few seconds."""
-    for _ in range(50):
+    """Whether a process has ended, or does so before a test is given up; one that nobody has waited for yet has."""
+    end = time.monotonic() + SAFETY
+    while time.monotonic() < end:
         try:
             os.kill(process, 0)
-        except ProcessLookupError:
+            state = Path(f"/proc/{process}/stat")
+            if state.exists() and state.read_text(encoding="utf-8").rpartition(")")[2].split()[0] == "Z":
+                return True
+        except (ProcessLookupError, FileNotFoundError):
             return True
-        time.sleep(0.1)
+        time.sleep(0.05)
     return False

@@ -128,6 +128,24 @@ def test_a_method_is_one_new_file(copy: Copy) -> None:
     assert option.out.startswith("\\documentclass")
 
 
+def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
+    """Without one the gain and the check of its claim are printed; no other method's story is borrowed."""
+    page = 'page=lambda page, design, side, desired: page.define("L", design.answer["L"], say="gain_with_roots")'
+    copy.add("symobs/design/dummy.py", METHOD)
+    copy.add("symobs/design/second.py", METHOD.replace("dummy", "second").replace('0"', f'0", {page}'))
+    told = {
+        name: copy.run("solve", "-", "--format", "text", stdin=f'{PROBLEM}method = "{name}"\n').out
+        for name in ("ackermann", "dummy", "second")
+    }
+    assert "Ackermann" in told["ackermann"]
+    assert "Ackermann" not in told["dummy"] + told["second"]
+    for text in told.values():
+        assert "✓ det(sI - A + L C) = s² + 20s + 100" in text
+    assert "A gain that assigns it is" in told["dummy"]
+    assert "With zeros in the places" in told["second"]
+    assert "A gain that assigns it is" not in told["second"] + told["ackermann"]
+
+
 def test_a_method_that_lies_cannot_answer(copy: Copy) -> None:
     copy.add("symobs/design/dummy.py", LIAR)
     run = copy.run("solve", "-", stdin=f'{PROBLEM}method = "dummy"\n')
@@ -151,6 +169,10 @@ def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
     assert (solved.code, solved.err) == (0, "")
     option = copy.run("dummy-task", "--A", "[0 1; 0 -1]", "--C", "[0 1]", "--dummy-poles", "-1", "--format", "json")
     assert option.code == 4
+    sheet = copy.run("sheet", "-", "--format", "text", stdin=file)
+    assert (sheet.code, sheet.err) == (0, "")
+    assert "Decide what nobody asked." in sheet.out
+    assert "Is the pair (C, A) observable?" in sheet.out
     unknown = copy.run("solve", "-", stdin=f"{file}[specification]\ndummy_pole = 1\n")
     assert unknown.err == "specification.dummy_pole: unknown key; did you mean dummy_poles?\n"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 BESIDE = "side_by_side"
 SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-POLES = {"control_poles": [-2, -2], "observer_poles": [-10, -10]}
+POLES: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10, -10]}
 
 
 def document() -> Document:

@@ -13,6 +13,7 @@ import pytest
 import sympy
 
 import symobs
+from symobs.exact import ideal
 from symobs.render.json import result_object
 
 s = sympy.Symbol("s")
@@ -223,3 +224,36 @@ def test_without_an_output_there_is_no_reduced_order_observer_to_ask_for() -> No
     found: Any = symobs.reduced_order_observer(symobs.StateSpace("[0 1; -2 -3]", None, "[a 0]"), poles="-1")
     assert [case.result for case in found.cases] == [None]
     assert found.to("text")
+
+
+#: Where the basis of one of the strata is longer than the limits of the kernel.
+BEYOND = symobs.StateSpace("[2 0 -1 0; 2 3 1 0; c 0 3 -3; 0 a 1 1]", C="[d 0 -1 b]")
+SMALL = [
+    symobs.StateSpace("[2 0; c c]", "[b; -1]", "[c 0]"),
+    symobs.StateSpace("[0 a; 1 2]", "[a-1; -1]", "[0 a-1; 1 b]"),
+    symobs.StateSpace("[a b 0; 0 1 c; 0 0 a+b]", "[1; 0; b]", "[a-1 b 1]"),
+]
+
+
+def test_what_is_too_long_for_the_kernel_is_undecided() -> None:
+    found = symobs.observability(BEYOND)
+    assert found.verdict == "conditional"  # det O is not 0 in general, and where it is not the pair is observable
+    O = sympy.Matrix.vstack(*(BEYOND.C * BEYOND.A**k for k in range(4)))
+    determinant = sympy.factor_list(O.det(method="berkowitz"))[1]
+    assert {sympy.expand(c.lhs) for c in found.conditions} == {sympy.expand(factor) for factor, _ in determinant}
+    assert None in [case.result for case in found.cases]
+
+
+@pytest.mark.parametrize("limit", [2, 12])
+@pytest.mark.parametrize("plant", SMALL)
+def test_no_exception_of_the_kernel_reaches_a_caller(
+    plant: symobs.StateSpace, limit: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With limits that almost everything exceeds every task still answers; what it cannot decide it says."""
+    monkeypatch.setattr(ideal, "TERMS", limit)
+    monkeypatch.setattr(ideal, "LIMITS", (limit, 3 * limit, 200))
+    for task in ("observability", "controllability", "detectability", "stabilizability", "pbh", "transfer_function"):
+        ideal._ideal.cache_clear()  # what was found with other limits
+        found = getattr(symobs, task)(plant)
+        assert found.verdict in {"yes", "no", "conditional", "undecided"}
+        assert len(result_object(found)["cases"]) == len(found.case_tree)

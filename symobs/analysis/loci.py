@@ -85,10 +85,13 @@ class Locus:
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
     def lies_in(self, other: Locus) -> bool:
-        """Tell whether the equations of another locus follow from those of this one."""
+        """Tell whether the equations of another locus are seen to follow from those of this one."""
         if self.ideal is None:
             return set(other.equations) <= set(self.equations)
-        return all(equation in self.ideal for equation in other.equations)
+        try:
+            return all(equation in self.ideal for equation in other.equations)
+        except TooLarge:
+            return False
 
     @cached_property
     def distance(self) -> Scalar:
@@ -96,12 +99,15 @@ class Locus:
 
         Raises `TooLarge` where that is too long.
         """
-        if len(self.equations) == 1:
-            return self.equations[0]
-        if sum(equation.size**2 for equation in self.equations) > _SQUARED:
+        if len(self.equations) > 1 and sum(equation.size**2 for equation in self.equations) > _SQUARED:
             message = "the squares of the equations are too long"
             raise TooLarge(message)
-        return sum((equation**2 for equation in self.equations), Scalar.of(0))
+        return distance_from(self.equations)
+
+
+def distance_from(equations: tuple[Scalar, ...]) -> Scalar:
+    """Return a polynomial that is 0 exactly where some equations hold: the only one, or the sum of their squares."""
+    return equations[0] if len(equations) == 1 else sum((equation**2 for equation in equations), Scalar.of(0))
 
 
 EVERYWHERE = Locus((), Ideal.of(()))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.analysis.loci import Locus, Region, maximal
+from symobs.analysis.loci import Locus, Region, distance_from, maximal
 from symobs.analysis.rank_cases import minors_claim, outside
 from symobs.analysis.rank_tree import node_of
 from symobs.analysis.strata import region_of
@@ -44,7 +44,15 @@ class Constancy:
 
 def distances(systems: Iterable[System]) -> tuple[Scalar, ...]:
     """Return for each stratum, of those that lie in no other, a polynomial that is 0 exactly there."""
-    return tuple(locus.distance for locus in maximal(Locus.of(Ideal.of(system)) for system in systems))
+    return tuple(distance_from(locus.equations) for locus in maximal(map(_locus_of, systems)))
+
+
+def _locus_of(system: System) -> Locus:
+    """Return the locus of a system, as it stands where its basis is too long."""
+    try:
+        return Locus.of(Ideal.of(system))
+    except TooLarge:
+        return Locus(system)
 
 
 def too_long(systems: Iterable[System]) -> tuple[Scalar, ...]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.analysis.loci import Region, maximal
+from symobs.analysis.loci import Region, distance_from, maximal
 from symobs.analysis.missing import repair_claims, smallest_sets
 from symobs.analysis.rank_cases import (
     Piece,
@@ -218,13 +218,17 @@ class RankResult(Result):
             return None
         answer, (A, _) = self.answer, self.pair(self.plant)
         kernel = Kernel(answer["kernel"], answer["restricted"], answer["free"])
-        return rank_tree(matrix, A, self._region, (answer["rows"], answer["columns"]), kernel)
+        try:
+            return rank_tree(matrix, A, self._region, (answer["rows"], answer["columns"]), kernel)
+        except TooLarge:  # on which part of the parameters it is not even known
+            return None
 
     @cached_property
     def _checked_cases(self) -> tuple[tuple[Case, ...], tuple[Certificate, ...]]:
         """The cases, and the certificates that outside them nothing else is true."""
         if self._tree is None:
-            return ((Case((), {}, None),) if self.is_too_long else ()), ()
+            is_open = self.is_too_long or (self.piece is None and bool(self.answer["matrix"].names))
+            return ((Case((), {}, None),) if is_open else ()), ()
         certificates: list[Certificate] = []
         cases = [Case(undecided_conditions(locus), {}, None) for locus in self._tree.undecided]
         found = []
@@ -278,7 +282,7 @@ class RankResult(Result):
         N, X = self.answer["kernel"], self.answer["restricted"]
         excluded = [c.expression for c in self.domain]
         if self.piece is None and N.shape[1] and self._tree is not None:
-            excluded += [locus.distance for locus in self._tree.generic.covers]
+            excluded += [distance_from(locus.equations) for locus in self._tree.generic.covers]
         e = Environment(signs=self.plant.symbols.signs, relations=(self.piece or Piece()).relations(excluded))
         e = e.under(self.plant.relations)
         sets = smallest_sets(N, X, e)

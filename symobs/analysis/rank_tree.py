@@ -154,7 +154,10 @@ class _Search:
         """Return the node of a locus, with the loci of smaller rank below it."""
         if locus.ideal is None:
             raise _Exhausted
-        rank, minors, found = self.drops(locus)
+        try:
+            rank, minors, found = self.drops(locus)
+        except TooLarge as error:
+            raise _Exhausted from error
         return Node(locus, rank, tuple(minors), below=maximal(found))
 
     def _sharpened(self, locus: Locus, minor: Minor) -> Locus | None:
@@ -180,7 +183,7 @@ def node_of(matrix: Matrix, region: Region, minor: Minor) -> Node | None:
     """
     try:
         return _Search(matrix, region, minor).node(region.whole)
-    except (_Exhausted, TooLarge):
+    except _Exhausted:
         return None
 
 
@@ -222,7 +225,11 @@ def _with_kernels(search: _Search, A: Matrix, nodes: list[Node], undecided: list
         found = node.kernel
         failing: tuple[Locus, ...] = ()
         if found is None:
-            found, failing = _best_kernel(search.matrix, A, node, below, search.region)
+            try:
+                found, failing = _best_kernel(search.matrix, A, node, below, search.region)
+            except TooLarge:  # the rank is known there, a basis of the kernel is not
+                undecided.append(Locus(node.locus.equations))
+                continue
         elif found.basis.shape[1]:
             failing = _failing(found, node.locus, below, search.region)
         for each in failing:

@@ -15,12 +15,14 @@ import select
 import signal
 import sys
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
 
 from symobs.errors import OutOfBudget, SymobsError, TypesettingError, UsageError
+from symobs.processes import listeners
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
     from symobs.cli.work import Tell
@@ -94,6 +96,7 @@ def _work(budget: Budget, work: Callable[[Tell], Any], writing: int) -> NoReturn
                 _say(stream, "reached", reached)
 
             try:
+                listeners.append(lambda group: _say(stream, "group", group))
                 _set_up(budget)
                 kind, outcome = "value", work(tell)
             except SymobsError as error:
@@ -214,15 +217,16 @@ def _heard(stream: io.FileIO, child: int, seconds: float | None) -> tuple[bytes,
         while True:
             left = None if end is None else max(0.0, end - time.monotonic())
             if not select.select([stream], [], [], left)[0]:
-                os.kill(child, signal.SIGKILL)
-                os.waitpid(child, 0)
+                _kill(child, stream, said)
                 return bytes(said), None
             chunk = stream.read(1 << 20)
             if not chunk:
-                return bytes(said), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+                status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+                _end_group(said)
+                return bytes(said), status
             said += chunk
     except BaseException:
-        _end(child)
+        _end(child, stream, said)
         raise
     finally:
         signal.signal(signal.SIGTERM, usual)
@@ -232,7 +236,24 @@ def _leave(number: int, _: FrameType | None) -> None:
     raise SystemExit(128 + number)
 
 
-def _end(child: int) -> None:
+def _kill(child: int, stream: io.FileIO, said: bytearray) -> None:
+    """End a child that does not leave, and the group of processes that it has started and waits for."""
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    while chunk := stream.read(1 << 20):  # up to its end: nobody else holds the pipe
+        said += chunk
+    _end_group(said)
+
+
+def _end_group(said: bytearray) -> None:
+    """End the group of processes that a child, which has ended, waited for to the last."""
+    groups = [content for kind, content in _records(said) if kind == "group"]
+    if groups and groups[-1] is not None:
+        with suppress(ProcessLookupError):
+            os.killpg(groups[-1], signal.SIGKILL)
+
+
+def _end(child: int, stream: io.FileIO, said: bytearray) -> None:
     """Ask a child to leave in order, and end it where it does not."""
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
@@ -240,8 +261,7 @@ def _end(child: int) -> None:
         end = time.monotonic() + GRACE
         while os.waitpid(child, os.WNOHANG)[0] == 0:
             if time.monotonic() > end:
-                os.kill(child, signal.SIGKILL)
-                os.waitpid(child, 0)
+                _kill(child, stream, said)
                 return
             time.sleep(_LOOK_EVERY)
     except (ProcessLookupError, ChildProcessError):
@@ -253,16 +273,13 @@ def _end(child: int) -> None:
 def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
     """Return the child's value, or raise what ended it."""
     left, at_work = None, ""
-    records = io.BytesIO(said)
-    while True:
-        try:
-            kind, content = pickle.load(records)  # noqa: S301 - our own child's
-        except (EOFError, pickle.UnpicklingError):
-            break
+    for kind, content in _records(said):
         if kind == "value":
             return content
         if kind == "error":
             raise content
+        if kind == "group":
+            continue
         if isinstance(content, str):
             at_work = f", at work on {content}"
         else:
@@ -279,6 +296,14 @@ def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
         raise KeyboardInterrupt
     name = signal.Signals(-status).name if status < 0 else f"exit code {status}"
     raise RuntimeError(f"the computation ended with {name}{at_work}")
+
+
+def _records(said: bytes | bytearray) -> Iterator[tuple[str, Any]]:
+    """Yield what a child said, as far as it is whole."""
+    records = io.BytesIO(said)
+    with suppress(EOFError, pickle.UnpicklingError):
+        while True:
+            yield pickle.load(records)  # noqa: S301 - our own child's
 
 
 def _memory_is_bounded(budget: Budget) -> bool:

@@ -1,4 +1,4 @@
-"""The pages of further ways to a gain: matching coefficients, companion form (S1), the row-reduced echelon method (S3)."""
+"""The pages of ways to a gain: Ackermann's formula, matching coefficients, companion form (S1), row-reduced echelon (S3)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from symobs.design.names import fresh_names, taken_names
 from symobs.design.row_reduction import Reduction, gain_of, row_reduction
 from symobs.exact import Matrix, Scalar, companion, roots_of
 from symobs.formula import Literal, Roots, Shown
-from symobs.formula.term import Term, block
+from symobs.formula.term import Term, block, product
 from symobs.page import Page, relation
 
 if TYPE_CHECKING:
@@ -24,6 +24,40 @@ if TYPE_CHECKING:
 _READABLE, _VECTORS = 150, 9
 #: A gain that rounding changes by more than this share of an entry is worth a warning.
 _HARM = Fraction(1, 100)
+
+
+def write_ackermann_formula(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
+    order = page.plant.order
+    unit = page.value(Matrix.unit(order, order - 1))
+    if side.gain == "L":
+        last = page.define("q_o", page["O"].inverse @ unit, say="last_column")
+    else:
+        last = page.define("q_c", unit.T @ page["Ctr"].inverse, say="last_row")
+    polynomial = page["A"].apply(f"{side.phi}_at")
+    factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
+    at = product(factors)
+    if side.gain == "L":
+        page.define("L", polynomial @ last, at @ last, say="ackermann_observer", answer=True)
+    else:
+        page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
+
+
+def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
+    """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
+    lead, *rest = factor.coefficients(page.plant.variable)
+    A, degree, order = page["A"], len(rest), page.plant.order
+    total = A**degree if lead.is_one else page.value(lead) @ A**degree
+    for index, coefficient in enumerate(rest):
+        if coefficient.is_zero:
+            continue
+        exponent = degree - 1 - index
+        body = A**exponent if exponent else page.identity(order)
+        negative = coefficient.is_constant and coefficient.fraction() < 0
+        size = -coefficient if negative else coefficient
+        term = body if size.is_one else page.value(size) @ body
+        total = total - term if negative else total + term
+    return total**power
 
 
 def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
@@ -47,7 +81,7 @@ def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredP
     page.set(side.gain, solution)
 
 
-def write_companion(page: Page, side: Side, desired: DesiredPolynomial) -> None:
+def write_companion(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
     """T = [q; qAᵀ; …] carries the dual pair to companion form, where the gain is the row of differences."""
     order, variable = page.plant.order, page.plant.variable
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
@@ -81,7 +115,7 @@ def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
     return row_reduction(design.pair(design.plant), design.desired)
 
 
-def write_row_reduction(page: Page, design: GainDesign, side: Side) -> None:
+def write_row_reduction(page: Page, design: GainDesign, side: Side, _: DesiredPolynomial) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so

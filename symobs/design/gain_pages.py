@@ -19,14 +19,15 @@ from symobs.analysis.pages import (
 from symobs.derivation import Case as CaseStep
 from symobs.design.gain import GainDesign
 from symobs.design.gain_family_page import of_the_others, write_hidden_family, write_sylvester
-from symobs.design.gain_methods_page import readable, write_companion, write_matching, write_row_reduction
+from symobs.design.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
 from symobs.design.names import fresh_names, taken_names
 from symobs.design.pole_cautions import caution_poles
 from symobs.design.zero_page import another_gain, write_no_gain
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.exact.functions import all_roots
 from symobs.formula import Literal, Roots, Shown
-from symobs.formula.term import Term, block, product
+from symobs.formula.term import Term, block
+from symobs.method import choose
 from symobs.page import Page, predicate, relation
 from symobs.record import dataclass
 from symobs.specification import DesiredPolynomial
@@ -82,26 +83,37 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         _with_fixed_modes(page, design, side)
     else:
         desired = name_coefficients(page, design, side)
-        if style == "canonical_form":
-            _canonical(page, desired, side)
-        elif style == "coefficient_matching":
-            write_matching(page, design, side, desired)
-        elif style == "companion_form":
-            write_companion(page, side, desired)
-        elif style == "row_reduced_echelon" and readable(design):
-            write_row_reduction(page, design, side)
-        elif all_roots(design.answer[side.gain]):
-            page.with_roots(design.answer[side.gain])
-            page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
-        elif style == "sylvester" or design.chart is not None:
-            write_sylvester(page, design, side, desired)
-        else:
-            _ackermann(page, desired, side)
+        (choose(design.task, style, style).page or _write_gain_alone)(page, design, side, desired)
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
     for case in design.case_tree:
         write_case(page, case, side)
+
+
+def _write_gain_alone(page: Page, design: GainDesign, side: Side, _: DesiredPolynomial) -> None:
+    """State the gain of a method without a page of its own; the check below is what shows it."""
+    page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+
+
+def write_reduction(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write the row-reduced echelon method where its matrices can be read, else Ackermann's formula."""
+    (write_row_reduction if readable(design) else write_ackermann)(page, design, side, desired)
+
+
+def write_ackermann(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
+    is_of_family = design.chart is not None or all_roots(design.answer[side.gain])
+    (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
+
+
+def write_member(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
+    if all_roots(design.answer[side.gain]):
+        page.with_roots(design.answer[side.gain])
+        page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
+    else:
+        write_sylvester(page, design, side, desired)
 
 
 def closed_loop_matrix(page: Page, side: Side) -> Term:
@@ -192,7 +204,7 @@ def name_entries(page: Page, gain: str) -> None:
     page.set(gain, named)
 
 
-def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
+def write_canonical(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
     """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
@@ -221,40 +233,6 @@ def _canonical(page: Page, desired: DesiredPolynomial, side: Side) -> None:
 def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
     entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
     return block([entries])
-
-
-def _ackermann(page: Page, desired: DesiredPolynomial, side: Side) -> None:
-    """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
-    order = page.plant.order
-    unit = page.value(Matrix.unit(order, order - 1))
-    if side.gain == "L":
-        last = page.define("q_o", page["O"].inverse @ unit, say="last_column")
-    else:
-        last = page.define("q_c", unit.T @ page["Ctr"].inverse, say="last_row")
-    polynomial = page["A"].apply(f"{side.phi}_at")
-    factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
-    at = product(factors)
-    if side.gain == "L":
-        page.define("L", polynomial @ last, at @ last, say="ackermann_observer", answer=True)
-    else:
-        page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
-
-
-def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
-    """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
-    lead, *rest = factor.coefficients(page.plant.variable)
-    A, degree, order = page["A"], len(rest), page.plant.order
-    total = A**degree if lead.is_one else page.value(lead) @ A**degree
-    for index, coefficient in enumerate(rest):
-        if coefficient.is_zero:
-            continue
-        exponent = degree - 1 - index
-        body = A**exponent if exponent else page.identity(order)
-        negative = coefficient.is_constant and coefficient.fraction() < 0
-        size = -coefficient if negative else coefficient
-        term = body if size.is_one else page.value(size) @ body
-        total = total - term if negative else total + term
-    return total**power
 
 
 def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:

@@ -11,7 +11,15 @@ from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.components import write_components
 from symobs.design.drawings import draw_collected, draw_copy
 from symobs.design.gain import GainDesign, require_one
-from symobs.design.gain_pages import OBSERVER, write_gain
+from symobs.design.gain_methods_page import write_companion, write_matching
+from symobs.design.gain_pages import (
+    OBSERVER,
+    write_ackermann,
+    write_canonical,
+    write_gain,
+    write_member,
+    write_reduction,
+)
 from symobs.design.gain_task import designed
 from symobs.design.matching import matched_gain
 from symobs.design.observer_existence_page import write_ansatz, write_found
@@ -156,13 +164,17 @@ def _say_deadbeat(page: Page, closed: Term) -> None:
         page.conclude("deadbeat_error", gone=relation(gone, zero))
 
 
-@method("observer/canonical_form", source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)")
+@method(
+    "observer/canonical_form",
+    source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)",
+    page=write_canonical,
+)
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
     return ObserverDesign.by_column(plant, desired, "canonical_form", canonical_gain)
 
 
-@method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form")
+@method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form", page=write_ackermann)
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = φ(A) 𝒪⁻¹ eₙ."""
     require_one(plant.outputs, "output", "ackermann")
@@ -175,25 +187,29 @@ def existence(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     return ObserverDesign.of(plant, desired, "existence")
 
 
-@method("observer/sylvester", source=SYLVESTER)
+@method("observer/sylvester", source=SYLVESTER, page=write_member)
 def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """L = (G X⁻¹)ᵀ with AᵀX − XF = CᵀG, F the companion matrix of φ: every G for which X is regular."""
     return ObserverDesign.of(plant, desired, "sylvester")
 
 
-@method("observer/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+@method(
+    "observer/coefficient_matching",
+    source="S2, the exact route to its gains; S3 (other ways to the gain)",
+    page=write_matching,
+)
 def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system."""
     return ObserverDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
 
 
-@method("observer/row_reduced_echelon", source="S3, (7)-(10)")
+@method("observer/row_reduced_echelon", source="S3, (7)-(10)", page=write_reduction)
 def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form."""
     return ObserverDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
 
 
-@method("observer/companion_form", source="S1, the double integrator at 16:01")
+@method("observer/companion_form", source="S1, the double integrator at 16:01", page=write_companion)
 def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
     """Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
     return ObserverDesign.by_column(plant, desired, "companion_form", companion_gain)

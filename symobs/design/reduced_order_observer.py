@@ -137,7 +137,9 @@ class ReducedOrderObserver(Result):
         if name != "L":
             return super().with_answer(name, value)
         inner = self.inner.with_answer("L", value)
-        return type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
+        return (
+            type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method).asked(self.page_method)
+        )
 
     @property
     def has_reduced_observer(self) -> bool:

@@ -9,7 +9,15 @@ from symobs.analysis.observability import Controllability
 from symobs.analysis.pages import given
 from symobs.design.canonical import canonical_gain, companion_gain
 from symobs.design.gain import GainDesign, require_one
-from symobs.design.gain_pages import FEEDBACK, write_gain
+from symobs.design.gain_methods_page import write_companion, write_matching
+from symobs.design.gain_pages import (
+    FEEDBACK,
+    write_ackermann,
+    write_canonical,
+    write_gain,
+    write_member,
+    write_reduction,
+)
 from symobs.design.gain_task import designed
 from symobs.design.matching import matched_gain
 from symobs.design.observer import page_style
@@ -80,38 +88,46 @@ class StateFeedbackDesign(GainDesign):
             write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant, several=self.plant.inputs > 1))
 
 
-@method("state_feedback/canonical_form", source="S0, Examples 4.1 and 4.2 (controllable canonical form)")
+@method(
+    "state_feedback/canonical_form",
+    source="S0, Examples 4.1 and 4.2 (controllable canonical form)",
+    page=write_canonical,
+)
 def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
     return StateFeedbackDesign.by_column(plant, desired, "canonical_form", canonical_gain)
 
 
-@method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300")
+@method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300", page=write_ackermann)
 def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = eₙᵀ 𝒞⁻¹ φ(A)."""
     require_one(plant.inputs, "input", "ackermann")
     return StateFeedbackDesign.of(plant, desired, "ackermann")
 
 
-@method("state_feedback/sylvester", source=SYLVESTER)
+@method("state_feedback/sylvester", source=SYLVESTER, page=write_member)
 def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = G X⁻¹ with AX − XF = BG, F the companion matrix of φ: every G for which X is regular."""
     return StateFeedbackDesign.of(plant, desired, "sylvester")
 
 
-@method("state_feedback/coefficient_matching", source="S2, the exact route to its gains; S3 (other ways to the gain)")
+@method(
+    "state_feedback/coefficient_matching",
+    source="S2, the exact route to its gains; S3 (other ways to the gain)",
+    page=write_matching,
+)
 def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system."""
     return StateFeedbackDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
 
 
-@method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)")
+@method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)", page=write_reduction)
 def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form."""
     return StateFeedbackDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
 
 
-@method("state_feedback/companion_form", source="S1, the double integrator at 16:01")
+@method("state_feedback/companion_form", source="S1, the double integrator at 16:01", page=write_companion)
 def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
     """K = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
     return StateFeedbackDesign.by_column(plant, desired, "companion_form", companion_gain)

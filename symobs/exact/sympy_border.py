@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+from contextlib import contextmanager
 from fractions import Fraction
+from functools import cmp_to_key
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InexactInput, InputError
@@ -16,41 +20,107 @@ from symobs.exact.scalar import Scalar
 from symobs.exact.whole_sympy import sympy
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from symobs.exact.roots import Factored, Root
 
 
-def scalar_to_sympy(value: Scalar, objects: Mapping[str, Any] | None = None) -> sympy.Expr:
-    """Return the SymPy expression of a scalar; `objects` gives the Symbol a name stands for."""
-    known = dict(objects or {})
+def scalar_to_sympy(
+    value: Scalar, objects: Mapping[str, Any] | None = None, made: dict[Scalar, Any] | None = None
+) -> sympy.Expr:
+    """Return the SymPy expression of a scalar; `objects` gives the Symbol a name stands for.
 
-    def polynomial(part: Scalar) -> sympy.Expr:
-        if part.size > _LONG and all(functions.known(name) is None for name in part.names):
-            return _long_polynomial(part, known)
-        terms = []
-        for coefficient, powers in part.terms():
-            factors = [_generator(name, known) ** power for name, power in powers]
-            terms.append(sympy.Mul(sympy.Integer(coefficient), *factors))
-        return sympy.Add(*terms)
-
+    `made` keeps the denominators that several entries share.
+    """
+    known, made = dict(objects or {}), {} if made is None else made
     below = value.denominator
-    if below.is_one:
-        return polynomial(value.numerator)
-    return polynomial(value.numerator) / polynomial(below)
+    if below.is_constant:
+        return _polynomial(value.numerator, known, int(below.fraction()))
+    if below not in made:
+        made[below] = _polynomial(below, known)
+    above, under = _polynomial(value.numerator, known), made[below]
+    if not (above.is_Add and under.is_Add):
+        return above / under
+    # What SymPy makes of it too; but long sums it asks for their signs first, for minutes.
+    factors = sorted([above, sympy.Pow(under, -1, evaluate=False)], key=_SYMPYS_ORDER)
+    return sympy.Mul._from_args(factors, is_commutative=True)  # noqa: SLF001 - as every SymPy module does
 
 
-#: Polynomials with more terms are put together by SymPy's own polynomials, which takes a fifth of the time.
+#: Sums with more terms are sorted here: SymPy compares expressions one with another.
 _LONG = 50
+_SYMPYS_ORDER = cmp_to_key(sympy.Basic.compare)
 
 
-def _long_polynomial(part: Scalar, known: dict[str, Any]) -> sympy.Expr:
-    names = sorted(part.names)
-    monomials = {}
+def _polynomial(part: Scalar, known: dict[str, Any], divisor: int = 1) -> sympy.Expr:
+    """Return a polynomial with integer coefficients, divided by an integer, multiplied out."""
+    if part.size > _LONG and all(name.isidentifier() and functions.known(name) is None for name in part.field.names):
+        generators = {name: _generator(name, known) for name in part.names}
+        if all(generator.is_commutative for generator in generators.values()):
+            return _long_polynomial(str(part), generators, divisor)
+    terms = []
     for coefficient, powers in part.terms():
-        exponents = dict(powers)
-        monomials[tuple(exponents.get(name, 0) for name in names)] = sympy.Integer(coefficient)
-    return sympy.Poly.from_dict(monomials, *(_generator(name, known) for name in names)).as_expr()
+        factors = [_generator(name, known) ** power for name, power in powers]
+        terms.append(sympy.Mul(sympy.Rational(coefficient, divisor), *factors))
+    return sympy.Add(*terms)
+
+
+def _long_polynomial(text: str, generators: dict[str, Any], divisor: int) -> sympy.Expr:
+    """Return a sum of many terms from its canonical text."""
+    with _without_collection():
+        return _put_together(text, generators, divisor)
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Let no garbage be looked for meanwhile: among a million new parts there is none, and the search doubles the time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+def _put_together(text: str, generators: dict[str, Any], divisor: int) -> sympy.Expr:
+    """Return a sum of many terms, its parts where SymPy sorts them to.
+
+    SymPy's order is by class, number of parts, and part by part; so each distinct factor is compared once, and a term
+    stands where the places of its factors say.
+    """
+    read = [_term(term) for term in text.replace(" - ", " + -").split(" + ")]
+    atoms: dict[object, Any] = {n: sympy.Rational(n, divisor) for n in {number for number, _ in read}}
+    for factor in {factor for _, factors in read for factor in factors}:
+        name, _, power = factor.partition("^")
+        atoms[factor] = generators[name] ** int(power or 1)
+    kinds = {type(atom): atom for atom in atoms.values()} | {sympy.Mul: 2 * sympy.Symbol("x")}
+    rank = {kind: place for place, kind in enumerate(sorted(kinds, key=lambda kind: _SYMPYS_ORDER(kinds[kind])))}
+    place = {atom: place for place, atom in enumerate(sorted(atoms.values(), key=_SYMPYS_ORDER))}
+    places = {name: place[atom] for name, atom in atoms.items()}
+    in_order = {place[atom]: atom for atom in atoms.values()}
+    constants, terms = [], []
+    for number, factors in read:
+        own = sorted([places[factor] for factor in factors])
+        if atoms[number] is not sympy.S.One:
+            own.insert(0, places[number])
+        if not factors:
+            constants.append(atoms[number])
+        elif len(own) == 1:
+            terms.append((rank[type(in_order[own[0]])], 0, own, in_order[own[0]]))
+        else:
+            product = sympy.Mul._from_args([in_order[each] for each in own], is_commutative=True)  # noqa: SLF001
+            terms.append((rank[sympy.Mul], len(own), own, product))
+    terms.sort(key=itemgetter(0, 1, 2))
+    return sympy.Add._from_args([*constants, *(term[3] for term in terms)], is_commutative=True)  # noqa: SLF001
+
+
+def _term(text: str) -> tuple[int, list[str]]:
+    """Return coefficient and powers of a term: −3 and a**2, b of `-3*a**2*b`."""
+    sign, body = (-1, text[1:]) if text[0] == "-" else (1, text)
+    number, *factors = body.replace("**", "^").split("*")
+    if number.isdigit():
+        return sign * int(number), factors
+    return sign, [number, *factors]
 
 
 def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
@@ -72,7 +142,8 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
 
 def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:
     """Return the `ImmutableMatrix` of a matrix."""
-    return sympy.ImmutableMatrix(*value.shape, [scalar_to_sympy(entry, objects) for entry in value.entries])
+    made: dict[Scalar, Any] = {}
+    return sympy.ImmutableMatrix(*value.shape, [scalar_to_sympy(entry, objects, made) for entry in value.entries])
 
 
 def factored_to_sympy(value: Factored, objects: Mapping[str, Any]) -> sympy.Expr:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import gcd
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ def _monomial(coefficient: int, divisor: int, powers: tuple[tuple[str, int], ...
 
 
 def _sum(value: Scalar, divisor: int) -> str:
+    if divisor == 1 and all(map(str.isidentifier, value.field.names)):  # the kernel's own text, but for its powers
+        return str(value.numerator_part.str()).replace("^", "**")
     pieces: list[str] = []
     for coefficient, powers in value.terms():
         text = _monomial(coefficient, divisor, powers)
@@ -31,12 +34,18 @@ def _sum(value: Scalar, divisor: int) -> str:
     return "".join(pieces) or "0"
 
 
+@lru_cache(maxsize=16)
+def _denominator(value: Scalar) -> str:
+    """Return the text of a denominator: the entries of a matrix share theirs."""
+    return _sum(value, 1)
+
+
 def scalar_text(value: Scalar) -> str:
     """Return the canonical text of a scalar."""
     below = value.denominator
     if below.is_constant:
         return _sum(value.numerator, int(below.fraction()))
-    top, bottom = _sum(value.numerator, 1), _sum(below, 1)
+    top, bottom = _sum(value.numerator, 1), _denominator(below)
     if len(value.numerator_part) > 1:
         top = f"({top})"
     is_single_name = len(value.denominator_part) == 1 and "*" not in bottom

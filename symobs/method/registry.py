@@ -23,13 +23,17 @@ Callback = TypeVar("Callback", bound=Callable[..., Any])
 
 @dataclass(frozen=True)
 class Method:
-    """One way to meet a result type's claim: `solve` returns the result, `write` its page."""
+    """One way to meet a result type's claim: `solve` returns the result, `page` writes how it was found.
+
+    Where a method has no page of its own, the result and the check of its claim are all that is printed.
+    """
 
     task: str
     name: str
     source: str
     solve: Callable[..., Result]
     summary: str
+    page: Callable[..., None] | None = None
 
 
 @dataclass(frozen=True)
@@ -112,12 +116,12 @@ def _kind(annotation: Any) -> str:
     return kinds[0] if kinds else _kind(get_args(annotation)[0])
 
 
-def method(name: str, *, source: str) -> Callable[[Callback], Callback]:
-    """Register a method under `task/name`."""
+def method(name: str, *, source: str, page: Callable[..., None] | None = None) -> Callable[[Callback], Callback]:
+    """Register a method under `task/name`, with what writes its page."""
 
     def register(function: Callback) -> Callback:
         of, _, short = name.partition("/")
-        _METHODS[name] = Method(of, short, source, function, _summary(function))
+        _METHODS[name] = Method(of, short, source, function, _summary(function), page)
         return function
 
     return register

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 from dataclasses import fields as parts_of
-from functools import cached_property
+from functools import cache, cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, overload
 
 from symobs.certificate import UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix, Scalar
     from symobs.picture import Picture
     from symobs.system import StateSpace
+
+
+#: The formats that are texts.
+Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text"]
 
 
 @dataclass(frozen=True)
@@ -55,9 +59,10 @@ class Result(Faces):
     method: str
     answer: Mapping[str, Any]
     certificates: tuple[Certificate, ...] = field(init=False)
+    #: The method whose page is asked for; `auto` leaves the page free to be the most readable one.
+    page_method: str = field(default="auto", kw_only=True)
 
     task: ClassVar[str]
-    page_method = "auto"
     #: Whether the answers are functions of time, or of a horizon.
     in_time: ClassVar[bool] = False
 
@@ -72,8 +77,21 @@ class Result(Faces):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle what the result was made of: whoever reads it back checks the claims again."""
-        made = [dict(self.answer) if f.name == "answer" else getattr(self, f.name) for f in parts_of(self) if f.init]
-        return (type(self), tuple(made), {"page_method": self.page_method})
+        made = {name: getattr(self, name) for name in _made_of(type(self))}  # type: ignore[arg-type]
+        return (partial(type(self), **made | {"answer": dict(self.answer)}), ())
+
+    def __eq__(self, other: object) -> bool:
+        """Compare what two results were made of: plant, method, answers, and what is asked of the page."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))  # type: ignore[arg-type]
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.plant, self.method, self.page_method, tuple(self.answer)))
+
+    def __bool__(self) -> NoReturn:
+        message = f"a result is neither true nor false; ask for its verdict: {self.task}(...).verdict == 'yes'"
+        raise TypeError(message)
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
@@ -153,9 +171,11 @@ class Result(Faces):
         return replace(self, answer={**self.answer, name: value})
 
     def asked(self, method_name: str) -> Self:
-        """Keep the method name that was asked for; `auto` leaves the page free to be the most readable one."""
-        object.__setattr__(self, "page_method", method_name)
-        return self
+        """Return the same result with the page of a method; its claims do not speak of the page."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, page_method=method_name)
+        other.__dict__.pop("derivation", None)
+        return other
 
     # -- faces ---------------------------------------------------------------------------------------------------------
 
@@ -193,10 +213,27 @@ class Result(Faces):
         if name.startswith("_") or name not in self.fields:
             message = f"{type(self).__name__} has no attribute {name!r}"
             raise AttributeError(message)
-        return to_sympy(self.fields[name], objects)
+        if name not in self._objects:
+            self._objects[name] = to_sympy(self.fields[name], objects)
+        return self._objects[name]
+
+    @cached_property
+    def _objects(self) -> dict[str, Any]:
+        """The answers as SymPy objects, as far as they were asked for: large ones take seconds to make."""
+        return {}
 
     def __dir__(self) -> Iterable[str]:
-        return [*super().__dir__(), "conditions", "cases", *self.fields]
+        own = (name for name in super().__dir__() if not name.startswith("_"))
+        return sorted({*own, "conditions", "cases", *self.fields})
+
+    @overload
+    def to(self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full") -> bytes: ...
+
+    @overload
+    def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
+
+    @overload
+    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
 
     def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
@@ -206,8 +243,22 @@ class Result(Faces):
         return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
 
     def __repr__(self) -> str:
-        shown = [f"{name}={value}" for name, value in self.answer.items() if value is not None]
-        return f"{type(self).__name__}({', '.join(shown)[:200]}, verdict={self.verdict!r})"
+        """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
+        parts = {name: value for name, value in self.answer.items() if value is not None}
+        long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
+        shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
+        verdict = "" if long else f", verdict={self.verdict!r}"
+        return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
+
+
+#: Answers of more terms than this are not written out by `repr`.
+_TERMS_SHOWN = 500
+
+
+@cache
+def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
+    """Return what the constructor of a result takes; where results are compared, without what only speeds it up."""
+    return tuple(part.name for part in parts_of(kind) if part.init and (part.compare or not compared))
 
 
 def _denominators(values: Iterable[Any]) -> list[Scalar]:

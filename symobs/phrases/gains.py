@@ -51,6 +51,7 @@ PHRASES: dict[str, str] = {
     "rounded_too_early": "The fractions are kept to the end with reason. Had the columns been rounded first, the product of $f_psi$ with the inverse would have been",
     "last_column": "Ackermann's formula§ takes the last column of the inverse of the observability matrix,",
     "last_row": "Ackermann's formula§ takes the last row of the inverse of the controllability matrix,",
+    "gain_stated": "A gain that assigns it is",
     "ackermann_observer": "and puts $A$ into the polynomial asked for:",
     "ackermann_state_feedback": "and puts $A$ into the polynomial asked for:",
     "as_required": "{check}, as required.",

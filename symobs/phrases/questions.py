@@ -18,6 +18,8 @@ PHRASES: dict[str, str] = {
     "task": "Task.",
     "tasks": "Tasks.",
     "part": "({letter})",
+    # What is said of a task without a sentence of its own: the first line of its description.
+    "asked": "{summary}",
     # -- what the plant is ----------------------------------------------------------------------------------------
     "ask characteristic_polynomial": "Find the characteristic polynomial of $A$ and its roots.",
     "ask transfer_function": "Find the transfer function of the plant in lowest terms, its poles and its zeros.",

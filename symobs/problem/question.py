@@ -133,6 +133,8 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     asks = [
         words for words in map(str.split, PHRASES) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
     ]
+    if not asks:
+        return ["asked"]
     best = max(asks, key=lambda words: sum(1 + ("=" in word) for word in words[2:]))
     left = {name: word for word in sorted(tokens - set(best[2:])) for name in [word.partition("=")[0]]}
     said = {word.partition("=")[0] for word in best[2:]}
@@ -143,6 +145,8 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
 
 def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
     """Return a sentence with what its slots ask for."""
+    if key == "asked":
+        return sentence(key, {"summary": task.summary})
     slots: dict[str, Slot] = {}
     for _, name, _, _ in string.Formatter().parse(PHRASES[key]):
         if name is None:

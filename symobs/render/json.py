@@ -11,7 +11,7 @@ from symobs.method import Case, Result, output_format
 from symobs.viewed import Viewed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.method import Document
     from symobs.sheet import Sheet
@@ -61,13 +61,34 @@ def given_up(title: str, tasks: Sequence[str], method: str, signs: Mapping[str, 
 
 
 def _written(whole: Mapping[str, object]) -> str:
-    return json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
+    """Return indented JSON."""
+    return "".join(_pieces(whole, "\n")) + "\n"
+
+
+def _pieces(value: object, line: str) -> Iterator[str]:
+    """Yield indented JSON as `json.dumps(indent=2)` writes it; that one leaves the fast encoder where it indents."""
+    if not isinstance(value, (dict, list, tuple)) or not value:
+        yield _encoded(value)
+        return
+    is_object, inner = isinstance(value, dict), line + "  "
+    entries = value.items() if isinstance(value, dict) else ((None, entry) for entry in value)
+    for place, (key, entry) in enumerate(entries):
+        yield (("{" if is_object else "[") if place == 0 else ",") + inner
+        if is_object:
+            yield f"{_encoded(key)}: "
+        yield from _pieces(entry, inner)
+    yield line + ("}" if is_object else "]")
+
+
+_encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
-    """Return the object of one result: what every task has, the task's own fields, and these in a convention."""
-    in_convention = {name: to_json(value) for name, value in Viewed(result, convention).own.items()}
+    """Return the object of one result: what every task has, its own fields, and what a convention writes in another way."""
+    own = Viewed(result, convention).own
     answers = {name: to_json(value) for name, value in result.fields.items()}
+    differing = {name: to_json(value) for name, value in own.items() if value is not result.fields.get(name)}
+    in_convention = {name: value for name, value in differing.items() if name not in answers or answers[name] != value}
     return {
         "task": result.task,
         "method": result.method,

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.errors import TypesettingError
 from symobs.method import output_format
+from symobs.processes import running
 from symobs.render.latex import typeset, typeset_sheet, values_of
 
 if TYPE_CHECKING:
@@ -120,13 +121,14 @@ def _run(command: Sequence[str], folder: Path, time_limit: float) -> int:
     except OSError as error:
         reason = f"this program cannot be started: {error.strerror or error}"
         raise TypesettingError(reason, where=command[0], repair=_INSTALL) from None
-    try:
-        return _waited(process, folder, time_limit)
-    except BaseException as interruption:
-        interruption.add_note(TEX_AT_WORK)
-        raise
-    finally:
-        _end(process)
+    with running(process.pid):
+        try:
+            return _waited(process, folder, time_limit)
+        except BaseException as interruption:
+            interruption.add_note(TEX_AT_WORK)
+            raise
+        finally:
+            _end(process)
 
 
 def _waited(process: subprocess.Popen[bytes], folder: Path, time_limit: float) -> int:

@@ -2,7 +2,8 @@
 
 from symobs.system.foreign import as_plant
 from symobs.system.fraction import realise
-from symobs.system.plant import Matrices, StateSpace
+from symobs.system.matrices import Matrices
+from symobs.system.plant import StateSpace
 from symobs.system.reading import read_complex, read_matrix, read_scalar
 from symobs.system.symbols import Symbols, is_sympy
 from symobs.system.time import Continuous, Discrete, TimeDomain

@@ -10,6 +10,7 @@ from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismat
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
 from symobs.system.fraction import MOST_STATES, Written, read_transfer_function, realise
+from symobs.system.matrices import Matrices
 from symobs.system.reading import has_decimals, read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
@@ -304,28 +305,23 @@ class StateSpace:
             return 0
         return True if self.time.period is None else self.time.period.fraction()
 
+    def __eq__(self, other: object) -> bool:
+        """Compare entries, time, the symbols with their signs and printed forms, and how the plant was given."""
+        return self._value == other._value if isinstance(other, StateSpace) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.matrices)
+
+    @property
+    def _value(self) -> tuple[object, ...]:
+        signs = {name: sign for name, sign in self.symbols.signs.items() if sign != "real"}
+        given = self.origin, self.polynomial, self.is_from_floats, self.is_in_decimals
+        return (self.matrices, self.time, signs, self.symbols.latex, given, self.equations, self.nonzero)
+
     def __repr__(self) -> str:
         m = self.matrices
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
         return f"StateSpace({', '.join(shown)}, dt={self.dt})"
-
-
-class Matrices:
-    """The four exact matrices of a plant; a missing one has no columns (B) or no rows (C)."""
-
-    def __init__(self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None) -> None:
-        """Fill in what is missing: D is zero."""
-        order = A.shape[0]
-        self.A = A
-        self.B = Matrix.zeros(order, 0) if B is None else B
-        self.C = Matrix.zeros(0, order) if C is None else C
-        self.D = Matrix.zeros(self.C.shape[0], self.B.shape[1]) if D is None else D
-        self.has_input, self.has_output = B is not None, C is not None
-
-    @property
-    def has_feedthrough(self) -> bool:
-        """Whether D is not zero."""
-        return not self.D.is_zero
 
 
 def _as_rows(name: str, value: Any) -> Any:

@@ -1,0 +1,661 @@
+"""What type checkers and editors know of `symobs`; written by `python -m tests.typed_face`, held to it by a test."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from sympy import Expr, ImmutableMatrix
+from sympy.matrices import MatrixBase
+
+from symobs.analysis.canonical_form import CanonicalForm as _CanonicalForm
+from symobs.analysis.characteristic_polynomial import CharacteristicPolynomial as _CharacteristicPolynomial
+from symobs.analysis.decomposition import Decomposition as _Decomposition
+from symobs.analysis.detectability import Detectability as _Detectability
+from symobs.analysis.detectability import Stabilizability as _Stabilizability
+from symobs.analysis.dual import Dual as _Dual
+from symobs.analysis.gramian import Gramian as _Gramian
+from symobs.analysis.initial_state import InitialState as _InitialState
+from symobs.analysis.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
+from symobs.analysis.matrix_exponential import MatrixExponential as _MatrixExponential
+from symobs.analysis.observability import Controllability as _Controllability
+from symobs.analysis.observability import Observability as _Observability
+from symobs.analysis.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
+from symobs.analysis.stability_region import StabilityRegion as _StabilityRegion
+from symobs.analysis.time_varying import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.analysis.transfer_function import TransferFunction as _TransferFunction
+from symobs.design.feedforward import FeedforwardDesign as _FeedforwardDesign
+from symobs.design.observer import ObserverDesign as _ObserverDesign
+from symobs.design.output_feedback import OutputFeedback as _OutputFeedback
+from symobs.design.pole_advice import PoleAdvice as _PoleAdvice
+from symobs.design.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
+from symobs.design.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
+from symobs.design.tracking import TrackingDesign as _TrackingDesign
+from symobs.errors import BudgetExceeded as BudgetExceeded
+from symobs.errors import CertificateRejected as CertificateRejected
+from symobs.errors import DerivationRejected as DerivationRejected
+from symobs.errors import ExpressionError as ExpressionError
+from symobs.errors import InexactInput as InexactInput
+from symobs.errors import InputError as InputError
+from symobs.errors import OutOfBudget as OutOfBudget
+from symobs.errors import ProblemErrors as ProblemErrors
+from symobs.errors import ShapeMismatch as ShapeMismatch
+from symobs.errors import SymobsError as SymobsError
+from symobs.errors import TypesettingError as TypesettingError
+from symobs.errors import UnknownName as UnknownName
+from symobs.errors import UsageError as UsageError
+from symobs.system import StateSpace as StateSpace
+
+_Number: TypeAlias = str | int | Fraction | Expr
+_Matrix: TypeAlias = str | Sequence[object] | MatrixBase
+
+TASK_PACKAGES: tuple[str, ...]
+FORMAT_PACKAGE: str
+__version__: str
+
+class _CanonicalFormResult(_CanonicalForm):
+    """What `canonical_form` returns."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def T(self) -> ImmutableMatrix: ...
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B(self) -> ImmutableMatrix: ...
+    @property
+    def C(self) -> ImmutableMatrix: ...
+    @property
+    def D(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+
+def canonical_form(
+    plant: StateSpace,
+    *,
+    kind: str = "controllable",
+    method: str = "auto",
+) -> _CanonicalFormResult:
+    """Return the controllable, observable or modal canonical form, x̄ = T x."""
+
+class _CharacteristicPolynomialResult(_CharacteristicPolynomial):
+    """What `characteristic_polynomial` returns."""
+
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def factors(self) -> tuple[Any, ...]: ...
+    @property
+    def roots(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+
+def characteristic_polynomial(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _CharacteristicPolynomialResult:
+    """Return χ(s) = det(sI − A), its factors and its roots with multiplicity."""
+
+class _CompensatorResult(_OutputFeedback):
+    """What `compensator` returns."""
+
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def F(self) -> Expr | ImmutableMatrix: ...
+    @property
+    def F_stable(self) -> str: ...
+    @property
+    def compensator_stable(self) -> str: ...
+    @property
+    def compensator_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def closed_loop_polynomial(self) -> Expr: ...
+    @property
+    def closed_loop(self) -> Expr | ImmutableMatrix: ...
+    @property
+    def closed_loop_unity(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def closed_loop_matrix_estimate(self) -> ImmutableMatrix: ...
+    @property
+    def family(self) -> Mapping[str, Any]: ...
+    @property
+    def T(self) -> ImmutableMatrix: ...
+    @property
+    def direct_term(self) -> ImmutableMatrix: ...
+
+def compensator(
+    plant: StateSpace,
+    *,
+    control_poles: str | Sequence[_Number] | None = None,
+    control_polynomial: str | Expr | None = None,
+    observer_poles: str | Sequence[_Number] | None = None,
+    observer_polynomial: str | Expr | None = None,
+    observer: str = "full",
+    method: str = "auto",
+) -> _CompensatorResult:
+    """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p."""
+
+class _ControllabilityResult(_Controllability):
+    """What `controllability` returns."""
+
+    @property
+    def matrix(self) -> ImmutableMatrix: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def kernel(self) -> tuple[Any, ...]: ...
+    @property
+    def uncontrollable_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def missing_inputs(self) -> tuple[Any, ...]: ...
+
+def controllability(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _ControllabilityResult:
+    """Decide whether (A, B) is controllable: rank [B, AB, …, Aⁿ⁻¹B] = n."""
+
+class _DecompositionResult(_Decomposition):
+    """What `decomposition` returns."""
+
+    @property
+    def T(self) -> ImmutableMatrix: ...
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B(self) -> ImmutableMatrix: ...
+    @property
+    def C(self) -> ImmutableMatrix: ...
+    @property
+    def D(self) -> ImmutableMatrix: ...
+    @property
+    def sizes(self) -> Mapping[str, Any]: ...
+    @property
+    def minimal_order(self) -> int: ...
+    @property
+    def transfer_function(self) -> Expr: ...
+
+def decomposition(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _DecompositionResult:
+    """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither."""
+
+class _DetectabilityResult(_Detectability):
+    """What `detectability` returns."""
+
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def modes(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_polynomial(self) -> Expr: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def rank(self) -> int: ...
+
+def detectability(
+    plant: StateSpace,
+    *,
+    meaning: str = "asymptotic",
+    method: str = "auto",
+) -> _DetectabilityResult:
+    """Decide whether some L makes A − LC stable: whether all unobservable modes are stable."""
+
+class _DualResult(_Dual):
+    """What `dual` returns."""
+
+    @property
+    def sign(self) -> int: ...
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B(self) -> ImmutableMatrix: ...
+    @property
+    def C(self) -> ImmutableMatrix: ...
+    @property
+    def D(self) -> ImmutableMatrix: ...
+    @property
+    def observability_rank(self) -> int: ...
+    @property
+    def dual_controllability_rank(self) -> int: ...
+    @property
+    def controllability_rank(self) -> int: ...
+    @property
+    def dual_observability_rank(self) -> int: ...
+
+def dual(
+    plant: StateSpace,
+    *,
+    sign: int = 1,
+    method: str = "auto",
+) -> _DualResult:
+    """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
+
+class _FeedforwardResult(_FeedforwardDesign):
+    """What `feedforward` returns."""
+
+    @property
+    def F(self) -> Expr: ...
+    @property
+    def transfer_function(self) -> Expr: ...
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+
+def feedforward(
+    plant: StateSpace,
+    *,
+    control_poles: str | Sequence[_Number] | None = None,
+    control_polynomial: str | Expr | None = None,
+    observer_poles: str | Sequence[_Number] | None = None,
+    observer_polynomial: str | Expr | None = None,
+    observer: str = "full",
+    method: str = "auto",
+) -> _FeedforwardResult:
+    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
+
+class _GramianResult(_Gramian):
+    """What `gramian` returns."""
+
+    @property
+    def matrix(self) -> ImmutableMatrix: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def finite_sum(self) -> ImmutableMatrix: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def kernel(self) -> tuple[Any, ...]: ...
+
+def gramian(
+    plant: StateSpace,
+    *,
+    horizon: _Number | None = None,
+    of: str = "observability",
+    method: str = "auto",
+) -> _GramianResult:
+    """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt)."""
+
+class _InitialStateResult(_InitialState):
+    """What `initial_state` returns."""
+
+    @property
+    def x0(self) -> tuple[Any, ...]: ...
+    @property
+    def kernel(self) -> tuple[Any, ...]: ...
+
+def initial_state(
+    plant: StateSpace,
+    *,
+    output: _Number | _Matrix | None = None,
+    input: _Number | _Matrix | None = None,
+    horizon: _Number | None = None,
+    method: str = "auto",
+) -> _InitialStateResult:
+    """Return the initial state x₀ that explains the output y(t) under the input u(t), exactly, or say that none does."""
+
+class _InitialStateCovarianceResult(_InitialStateCovariance):
+    """What `initial_state_covariance` returns."""
+
+    @property
+    def covariance(self) -> ImmutableMatrix: ...
+    @property
+    def input_part(self) -> ImmutableMatrix: ...
+    @property
+    def output_part(self) -> ImmutableMatrix: ...
+
+def initial_state_covariance(
+    plant: StateSpace,
+    *,
+    Q: _Number | _Matrix | None = None,
+    R: _Number | _Matrix | None = None,
+    horizon: _Number | None = None,
+    method: str = "auto",
+) -> _InitialStateCovarianceResult:
+    """Return the covariance of the reconstructed initial state under white input noise Q and output noise R."""
+
+class _MatrixExponentialResult(_MatrixExponential):
+    """What `matrix_exponential` returns."""
+
+    @property
+    def matrix(self) -> ImmutableMatrix: ...
+
+def matrix_exponential(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _MatrixExponentialResult:
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
+
+class _ObservabilityResult(_Observability):
+    """What `observability` returns."""
+
+    @property
+    def matrix(self) -> ImmutableMatrix: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def kernel(self) -> tuple[Any, ...]: ...
+    @property
+    def unobservable_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def missing_measurements(self) -> tuple[Any, ...]: ...
+
+def observability(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _ObservabilityResult:
+    """Decide whether (C, A) is observable: rank [C; CA; …; CAⁿ⁻¹] = n."""
+
+class _ObserverResult(_ObserverDesign):
+    """What `observer` returns."""
+
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B_u(self) -> ImmutableMatrix: ...
+    @property
+    def B_y(self) -> ImmutableMatrix: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Mapping[str, Any]: ...
+
+def observer(
+    plant: StateSpace,
+    *,
+    poles: str | Sequence[_Number] | None = None,
+    polynomial: str | Expr | None = None,
+    L: _Matrix | None = None,
+    zero: str | Sequence[object] | None = None,
+    member: str = "simple",
+    method: str = "auto",
+) -> _ObserverResult:
+    """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
+
+class _PbhResult(_PopovBelevitchHautus):
+    """What `pbh` returns."""
+
+    @property
+    def of(self) -> str: ...
+    @property
+    def modes(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_polynomial(self) -> Expr: ...
+    @property
+    def polynomial(self) -> Expr: ...
+
+def pbh(
+    plant: StateSpace,
+    *,
+    of: str = "observability",
+    method: str = "auto",
+) -> _PbhResult:
+    """Test observability (or controllability) eigenvalue by eigenvalue: rank [A − λI; C] = n for all λ."""
+
+class _PoleAdviceResult(_PoleAdvice):
+    """What `pole_advice` returns."""
+
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def zeros_used(self) -> tuple[Any, ...]: ...
+    @property
+    def warnings(self) -> tuple[Any, ...]: ...
+    @property
+    def sigma(self) -> Expr: ...
+    @property
+    def omega_d(self) -> Expr: ...
+
+def pole_advice(
+    plant: StateSpace,
+    *,
+    radius: _Number | None = None,
+    settling_time: _Number | None = None,
+    overshoot: _Number | None = None,
+    method: str = "auto",
+) -> _PoleAdviceResult:
+    """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair."""
+
+class _ReducedOrderObserverResult(_ReducedOrderObserver):
+    """What `reduced_order_observer` returns."""
+
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def T(self) -> ImmutableMatrix: ...
+    @property
+    def F(self) -> ImmutableMatrix: ...
+    @property
+    def G(self) -> ImmutableMatrix: ...
+    @property
+    def H(self) -> ImmutableMatrix: ...
+    @property
+    def M(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Any: ...
+
+def reduced_order_observer(
+    plant: StateSpace,
+    *,
+    poles: str | Sequence[_Number] | None = None,
+    polynomial: str | Expr | None = None,
+    T: _Matrix | None = None,
+    method: str = "auto",
+) -> _ReducedOrderObserverResult:
+    """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
+
+class _StabilityRegionResult(_StabilityRegion):
+    """What `stability_region` returns."""
+
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def parameters(self) -> tuple[Any, ...]: ...
+    @property
+    def routh_table(self) -> tuple[Any, ...]: ...
+    @property
+    def irredundant(self) -> bool: ...
+    @property
+    def bounded(self) -> bool: ...
+    @property
+    def components(self) -> tuple[Any, ...]: ...
+    @property
+    def sample_points(self) -> tuple[Any, ...]: ...
+    @property
+    def cells(self) -> tuple[Any, ...]: ...
+    @property
+    def excluded_points(self) -> tuple[Any, ...]: ...
+    @property
+    def excluded_curves(self) -> tuple[Any, ...]: ...
+    @property
+    def intervals(self) -> tuple[Any, ...]: ...
+    @property
+    def intervals_decimal(self) -> tuple[Any, ...]: ...
+
+def stability_region(
+    plant: StateSpace | object = None,
+    symbols: Mapping[str, Any] | None = None,
+    dt: object = 0,
+    *,
+    polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    L: _Matrix | None = None,
+    parameters: str | Sequence[str] | None = None,
+    margin: _Number | None = None,
+    radius: _Number | None = None,
+    method: str = "auto",
+) -> _StabilityRegionResult:
+    """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components."""
+
+class _StabilizabilityResult(_Stabilizability):
+    """What `stabilizability` returns."""
+
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def modes(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_polynomial(self) -> Expr: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def rank(self) -> int: ...
+
+def stabilizability(
+    plant: StateSpace,
+    *,
+    meaning: str = "asymptotic",
+    method: str = "auto",
+) -> _StabilizabilityResult:
+    """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable."""
+
+class _StateFeedbackResult(_StateFeedbackDesign):
+    """What `state_feedback` returns."""
+
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Mapping[str, Any]: ...
+
+def state_feedback(
+    plant: StateSpace,
+    *,
+    poles: str | Sequence[_Number] | None = None,
+    polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    zero: str | Sequence[object] | None = None,
+    member: str = "simple",
+    method: str = "auto",
+) -> _StateFeedbackResult:
+    """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s)."""
+
+class _TimeVaryingObservabilityResult(_TimeVaryingObservability):
+    """What `time_varying_observability` returns."""
+
+    @property
+    def stack(self) -> tuple[Any, ...]: ...
+    @property
+    def matrix(self) -> ImmutableMatrix: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def kernel(self) -> tuple[Any, ...]: ...
+    @property
+    def transition_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def gramian(self) -> ImmutableMatrix: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def x0(self) -> tuple[Any, ...]: ...
+
+def time_varying_observability(
+    plant: StateSpace,
+    *,
+    interval: str | Sequence[_Number] | None = None,
+    output: _Number | _Matrix | None = None,
+    input: _Number | _Matrix | None = None,
+    method: str = "auto",
+) -> _TimeVaryingObservabilityResult:
+    """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'."""
+
+class _TrackingResult(_TrackingDesign):
+    """What `tracking` returns."""
+
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def K_d(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> bool: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def error_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+
+def tracking(
+    plant: StateSpace,
+    *,
+    control_poles: str | Sequence[_Number] | None = None,
+    control_polynomial: str | Expr | None = None,
+    observer_poles: str | Sequence[_Number] | None = None,
+    observer_polynomial: str | Expr | None = None,
+    reference_matrix: _Matrix | None = None,
+    reference_start: _Matrix | None = None,
+    observer: str = "minimal",
+    method: str = "auto",
+) -> _TrackingResult:
+    """Let x follow ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
+
+class _TransferFunctionResult(_TransferFunction):
+    """What `transfer_function` returns."""
+
+    @property
+    def transfer_function(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def zeros(self) -> tuple[Any, ...]: ...
+
+def transfer_function(
+    plant: StateSpace,
+    *,
+    method: str = "auto",
+) -> _TransferFunctionResult:
+    """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros."""
