@@ -340,7 +340,12 @@ def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool
 
 def _text(entry: object) -> object:
     """Return a SymPy expression as text: the grammar reads its functions."""
-    return str(entry) if is_sympy(entry) else entry
+    if not is_sympy(entry):
+        return entry
+    from sympy import Symbol
+
+    symbols = getattr(entry, "free_symbols", ())
+    return str(entry.xreplace({symbol: Symbol(symbol.name) for symbol in symbols}))  # type: ignore[attr-defined]
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:

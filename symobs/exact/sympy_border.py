@@ -125,7 +125,7 @@ def complex_from_sympy(expression: Any, where: str) -> Complex:
     if expression is sympy.I:
         return Complex(Scalar.of(0), Scalar.of(1))
     if expression.is_Symbol:
-        return Complex.of(Scalar.symbol(str(expression)))
+        return Complex.of(Scalar.symbol(expression.name))
     arguments = expression.args
     if expression.is_Add or expression.is_Mul:
         total = complex_from_sympy(arguments[0], where)

@@ -15,6 +15,7 @@ from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.functions import PI
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
+from symobs.expression.readings import OPERAND_ENDS, division_before, two_readings
 from symobs.expression.source import Source, shown
 
 if TYPE_CHECKING:
@@ -37,7 +38,6 @@ _TOKEN = re.compile(
 _CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
-_OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 
 
 def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
@@ -146,7 +146,7 @@ class Tokeniser:
 
     def _imply(self, kind: str, at: int) -> None:
         """Write out what stands unsaid between the last operand and the token `kind` that begins here."""
-        if not self._after(_OPERAND_ENDS):
+        if not self._after(OPERAND_ENDS):
             return
         apart = self.spaced and self._in_brackets()
         signs_entry = kind == "ADD" and bool(self.text[at + 1 : at + 2].strip())  # [1 -2] is two entries, [1 - 2] one
@@ -155,7 +155,19 @@ class Tokeniser:
         elif kind == "NUMBER" and self.tokens[-1][0] in ".0123456789":
             raise self.source.error("a number follows a number", at, "write an operator between them")
         elif kind in _OPERAND_STARTS:
+            division = division_before(self.tokens)
+            if division is not None and not self._is_imaginary_part(division, at):
+                readings = two_readings(self.tokens, division, self.text, at, self.pattern.finditer(self.text, at))
+                message = "a product without its sign follows a division, which can be read in two ways"
+                raise self.source.error(message, at, f"write {readings}")
             self._add("MULTIPLY", "*", at)
+
+    def _is_imaginary_part(self, division: int, at: int) -> bool:
+        """Whether the imaginary unit follows a number that something is divided by: 3/2 i, which all read alike."""
+        name = NAME.match(self.text, at)
+        divisor = self.tokens[division + 1 :]
+        is_number = len(divisor) == 1 and isinstance(divisor[0].value, Scalar) and divisor[0].value.is_constant
+        return is_number and name is not None and self.scope.is_imaginary_unit(name[0])
 
     def _in_brackets(self) -> bool:
         """Whether spaces count here: inside brackets, but not inside parentheses within them."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
 from symobs.expression import declared_name
+from symobs.expression.source import shown
 from symobs.notation import GREEK
 from symobs.record import dataclass
 
@@ -45,17 +46,20 @@ class Symbols:
         latex: dict[str, str] = {}
         objects: dict[str, Any] = {}
         for key, entry in declared.items():
-            name = key if isinstance(key, str) else str(key)
-            if not isinstance(key, str):
-                objects[name] = key
-            place = f"{where}.{name if len(name) <= 40 else name[:40] + '…'}"
+            name = key if isinstance(key, str) else _name_of(key)
+            place = f"{where}.{shown(name, 40)}"
             name = declared_name(name, place)
+            if name in signs:
+                raise _alike(name, place)
             details = entry if isinstance(entry, Mapping) else {"sign": entry}
             unknown = [str(k) for k in details if k not in {"sign", "latex"}]
             if unknown:
                 message = f"unknown key {unknown[0]!r}"
                 raise InputError(message, where=place, repair="use sign and latex")
             signs[name] = _sign(details.get("sign", "real"), place)
+            if not isinstance(key, str):
+                objects[name] = key
+                _require_parameter(key, name, signs.get(name), place)
             if "latex" in details:
                 latex[name] = _latex(details["latex"], f"{place}.latex")
         return Symbols(signs, latex, objects, closed=True)
@@ -75,15 +79,45 @@ class Symbols:
     def seen(self, values: object, variable: str = "") -> Symbols:
         """Return these symbols with those of SymPy objects in `values` added, the variable of polynomials left out.
 
-        Their assumptions are read as signs.
+        Their assumptions are read as signs.  Raises `InputError` where two of one name are different symbols, and where
+        one is no real parameter or cannot have the sign that is declared.
         """
         found = {name: symbol for name, symbol in sympy_symbols(values).items() if name != variable}
         if not found:
             return self
         from symobs.exact.sympy_border import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in
 
+        for name, symbol in found.items():
+            declared_name(name, "symbols")
+            _require_parameter(symbol, name, self.signs.get(name), f"symbols.{name}")
+            if self.objects.get(name, symbol) != symbol:
+                raise _alike(name, f"symbols.{name}")
+
         signs = {**{name: sign_from_assumptions(symbol) for name, symbol in found.items()}, **self.signs}
         return Symbols(signs, self.latex, {**found, **self.objects}, self.closed)
+
+
+def _name_of(symbol: Any) -> str:
+    """Return the name of a SymPy symbol; that of a Dummy is the one it was given, without what SymPy prints before it."""
+    return str(getattr(symbol, "name", symbol))
+
+
+def _alike(name: str, place: str) -> InputError:
+    """Return the error for two SymPy symbols that nobody could tell apart on paper."""
+    message = f"two different symbols are both called {name}"
+    repair = "give each a name of its own, or use one symbol everywhere (symbols with other assumptions are others)"
+    return InputError(message, where=place, repair=repair)
+
+
+def _require_parameter(symbol: Any, name: str, sign: str | None, place: str) -> None:
+    """Raise `InputError` where what is known of a SymPy symbol keeps it from being a real parameter of this sign."""
+    if symbol.is_commutative is False:
+        raise InputError(f"{name} does not commute", where=place, repair="parameters are real numbers: declare it anew")
+    if symbol.is_real is False:
+        raise InputError(f"{name} is not real by its assumptions", where=place, repair="a parameter is a real number")
+    if sign is not None and getattr(symbol, f"is_{sign}") is False:
+        message = f"{name} is declared {sign}, which the assumptions of the SymPy symbol contradict"
+        raise InputError(message, where=place, repair="declare the sign in one place")
 
 
 def _sign(entry: object, place: str) -> str:
@@ -127,16 +161,26 @@ def _is_plain_latex(text: str) -> bool:
 
 
 def sympy_symbols(values: object) -> dict[str, Any]:
-    """Return the free SymPy symbols in a value, or in lists of values."""
-    if "sympy" not in sys.modules:
-        return {}
-    if isinstance(values, (list, tuple)):
-        found: dict[str, Any] = {}
+    """Return the free SymPy symbols in a value, or in lists or arrays of values, by name.
+
+    Raises `InputError` where two different ones have one name.
+    """
+    found: dict[str, Any] = {}
+    for symbol in _symbols_in(values) if "sympy" in sys.modules else ():
+        name = _name_of(symbol)
+        if found.setdefault(name, symbol) != symbol:
+            raise _alike(name, f"symbols.{shown(name, 40)}")
+    return found
+
+
+def _symbols_in(values: object) -> Iterator[Any]:
+    if is_sympy(values):
+        yield from sorted(getattr(values, "free_symbols", ()), key=str)
+    elif isinstance(values, (list, tuple)):
         for value in values:
-            found |= sympy_symbols(value)
-        return found
-    symbols = getattr(values, "free_symbols", None) if is_sympy(values) else None
-    return {str(symbol): symbol for symbol in sorted(symbols, key=str)} if symbols else {}
+            yield from _symbols_in(value)
+    elif getattr(getattr(values, "dtype", None), "kind", "") == "O":
+        yield from _symbols_in(values.tolist())  # type: ignore[attr-defined]  # an array of objects has it
 
 
 def is_sympy(value: object) -> bool:
