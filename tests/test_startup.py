@@ -9,7 +9,7 @@ import pytest
 
 from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
 
-HEAVY = {"control", "distributed", "lark", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
+HEAVY = {"control", "distributed", "matplotlib", "mpmath", "numpy", "pebble", "scipy", "sympy", "z3"}
 KERNEL = {"flint", "jinja2"}
 _COMMAND = """
 import sys

@@ -13,15 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, ctx
 
+from symobs.exact.complex import Complex
 from symobs.exact.enclosure import is_number, polynomial_ball, sign_of_number
 from symobs.exact.functions import partial
-from symobs.exact.matrix import Matrix
+from symobs.exact.polynomial import coefficients_over
 from symobs.exact.real import integer_factor, real_roots
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from symobs.exact.matrix import Matrix
 
 _DECIMAL = re.compile(r"(?P<whole>[0-9]*)(?:\.(?P<places>[0-9]*))?(?:[eE](?P<power>[+-]?[0-9]+))?")
 #: With more decimals in one number only the printed values themselves are compared.
@@ -111,20 +114,28 @@ def rounds_to(printed: Scalar, exact: Scalar) -> bool:
     )
 
 
+def polynomial_of(roots: Iterable[Complex], variable: str) -> Scalar:
+    """Return the polynomial with printed roots; of a complex pair both have the same decimals.
+
+    Raises ValueError where a root lacks its complex conjugate.
+    """
+    s, value, waiting = Scalar.symbol(variable), Scalar.of(1), list(roots)
+    while waiting:
+        first = waiting.pop(0)
+        if first.is_real:
+            value = value * (s - first.real)
+            continue
+        opposite = Complex(written_out(first.real), -written_out(first.imaginary))
+        plain = [Complex(written_out(each.real), written_out(each.imaginary)) for each in waiting]
+        del waiting[plain.index(opposite)]
+        value = value * ((s - first.real) ** 2 + first.imaginary**2)
+    return value
+
+
 def _equations(difference: Scalar, decimals: Mapping[str, Decimal]) -> list[Scalar]:
     """Return the coefficients that have to vanish: polynomials in the decimals, over numbers."""
     numbers = {name for name in difference.names if name in decimals or is_number(Scalar.symbol(name))}
-    found: dict[tuple[tuple[str, int], ...], Scalar] = {}
-    for coefficient, powers in difference.numerator.terms():
-        monomial, value = [], Scalar.of(coefficient)
-        for name, power in powers:
-            if name in numbers:
-                value = value * Scalar.symbol(name) ** power
-            else:
-                monomial.append((name, power))
-        key = tuple(monomial)
-        found[key] = found.get(key, Scalar.of(0)) + value
-    return [equation for equation in found.values() if not equation.is_zero]
+    return [equation for equation in coefficients_over(difference, numbers) if not equation.is_zero]
 
 
 class _Box:
@@ -139,7 +150,9 @@ class _Box:
         left = self._solved([each for each in equations if not each.is_zero])
         if left is None:
             return False
-        open_names = sorted({name for value in (*left, *self.meanings.values()) for name in value.names} & {*self.decimals})
+        open_names = sorted(
+            {name for value in (*left, *self.meanings.values()) for name in value.names} & {*self.decimals}
+        )
         involved = [name for name in open_names if any(name in each.names for each in left)]
         if not left:
             return self._free(open_names)
@@ -213,7 +226,9 @@ class _Box:
         before, ctx.prec = ctx.prec, _BITS
         try:
             slopes = [[partial(equation, name) for name in names] for equation in equations]
-            point = [arb(number.numerator) / number.denominator for number in (self._printed(n).fraction() for n in names)]
+            point = [
+                arb(number.numerator) / number.denominator for number in (self._printed(n).fraction() for n in names)
+            ]
             for _ in range(_STEPS):
                 point = [value.mid() for value in _step(names, equations, slopes, point, point)]
             around = [value + arb(0, arb(2) ** -_RADIUS) for value in point]
@@ -221,7 +236,10 @@ class _Box:
             if not all(large.contains_interior(small) for large, small in zip(around, found, strict=True)):
                 return False
             balls = dict(zip(names, found, strict=True))
-            values = {name: polynomial_ball(value.numerator, balls) / polynomial_ball(value.denominator, balls) for name, value in self.meanings.items()}
+            values = {
+                name: polynomial_ball(value.numerator, balls) / polynomial_ball(value.denominator, balls)
+                for name, value in self.meanings.items()
+            }
             return all(_holds(self.decimals[name].ends, value) for name, value in values.items())
         except ZeroDivisionError:  # the slopes are singular there
             return False

@@ -9,7 +9,7 @@ from typing import Any
 from symobs.errors import InputError, SymobsError
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.exact.functions import symbols_in
-from symobs.expect.functions import functions_agree
+from symobs.expect.functions import agrees, functions_agree
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.source import shown
 
@@ -28,13 +28,16 @@ def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
         return all(agree(entry, wanted, names, f"{where}[{i}]") for i, (entry, wanted) in pairs)
     if found is None or isinstance(found, bool) or expected is None or isinstance(expected, (bool, list, Mapping)):
         if isinstance(found, Matrix) and isinstance(expected, list):
-            return parse_matrix(expected, _knowing(names, found), where=where) == found
+            return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
         return type(found) is type(expected) and bool(found == expected)
     if isinstance(found, Matrix):
-        return isinstance(expected, str) and parse_matrix(expected, _knowing(names, found), where=where) == found
+        if not isinstance(expected, str):
+            return False
+        return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
     if isinstance(found, (Scalar, Factored, int)):
         value = found.value if isinstance(found, Factored) else Scalar.of(found) if isinstance(found, int) else found
-        return functions_agree(parse_scalar(expected, _knowing(names, value), where=where, functions=True), value)
+        known = _knowing(names, value)
+        return functions_agree(parse_scalar(expected, known, where=where, functions=True, rounding=True), value)
     return str(found) == str(expected) or _agree_as_mathematics(str(found), str(expected), names, where)
 
 
@@ -66,8 +69,10 @@ def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: A
         known = names
         for factor, _ in found:
             known = _knowing(known, factor)
-        read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]"), pair[1]))
-    return len(read) == len(found) and all(pair in read for pair in found)
+        read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]", rounding=True), pair[1]))
+    return len(read) == len(found) and all(
+        any(power == other and agrees(value, factor) for value, other in read) for factor, power in found
+    )
 
 
 def factored_table(found: Any) -> Matrix | None:
