@@ -23,7 +23,7 @@ from tests.printed import finding, findings, problem
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.audit.grammar import Node
+    from symobs.expression.tree import Node
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 # O = [c 0; 0 c], so det O = c^2.
-CHAIN = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
+CHAIN: dict[str, Any] = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
 DEADBEAT = {
     "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]", "dt": True},
     "specification": {"poles": [0, 0]},
@@ -66,7 +67,7 @@ def test_what_fails_at_some_values_is_said_to_hold_in_general_only(relation: str
 
 
 def test_two_polynomials_that_vanish_together_are_one_exception() -> None:
-    pair = {"symbols": {"c": "real", "d": "real"}, "plant": {**CHAIN["plant"], "A": "[0 1; d 0]"}}
+    pair: dict[str, Any] = {"symbols": {"c": "real", "d": "real"}, "plant": {**CHAIN["plant"], "A": "[0 1; d 0]"}}
     found = finding("rank([c d]) = 1", **pair)
     assert found.right == "rank([c d]) = 1 where c != 0 or d != 0"
     assert "rank([c d]) is less where c = 0 and d = 0" in found.reason
@@ -151,13 +152,17 @@ def test_eigenvalues_may_be_roots_and_decimals(relation: str, plant: dict[str, o
         ("eigenvalues(A) = [1.415, -1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
         ("eigenvalues(A) = [sqrt(2), -1]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
         ("eigenvalues(A) = [1.414, 1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
-        ("eigenvalues(A) = [-0.5+0.867i, -0.5-0.867i]", TURNING, ""),
+        (
+            "eigenvalues(A) = [-0.5+0.867i, -0.5-0.867i]",
+            TURNING,
+            "eigenvalues(A) = [-1/2+sqrt(3)*I/2, -1/2-sqrt(3)*I/2]",
+        ),
         ("eigenvalues(A - L C) = [0, 1/2]", DEADBEAT, "eigenvalues(A - L C) = [0, 0]"),
     ],
 )
 def test_eigenvalues_that_are_others_are_told(relation: str, plant: dict[str, object], right: str) -> None:
     found = finding(relation, **plant)
-    assert found.right in {right, found.right if not right else right}
+    assert found.right == right
     assert "the eigenvalues are others" in found.reason
 
 
@@ -216,13 +221,15 @@ CUBE = {"plant": {"A": "[0 1 0; 0 0 1; 2 0 0]", "C": "[1 0 0]"}, "specification"
         ("eigenvalues(A) = [1.26, -0.63+1.092i, -0.63-1.092i]", CUBE, False),
     ],
 )
-def test_factors_with_decimals_are_compared_by_their_roots(relation: str, plant: dict[str, object], true: bool) -> None:
+def test_factors_with_decimals_are_compared_by_their_roots(
+    relation: str, plant: dict[str, object], *, true: bool
+) -> None:
     assert (findings(relation, **plant) == []) is true
 
 
 # Ogata, Modern Control Engineering, 5th edition, section 10-6 (page 777): A = [0 1; 20.6 0], C = [1 0], K = [29.6 3.6],
 # L = [16; 84.6]; the controller is (778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2).
-OGATA = {
+OGATA: dict[str, Any] = {
     "plant": {"A": "[0 1; 20.6 0]", "B": "[0; 1]", "C": "[1 0]"},
     "tasks": ["compensator"],
     "specification": {"control_poles": "-1.8+2.4i, -1.8-2.4i", "observer_poles": [-8, -8]},
@@ -274,8 +281,11 @@ def test_a_transfer_function_at_a_pole_has_no_value() -> None:
 
 
 @pytest.mark.parametrize("symbol", ["L", "x", "tau"])
-def test_a_symbol_that_shadows_a_letter_is_said(symbol: str, tmp_path: Path) -> None:
-    own = {"plant": {"A": f"[0 1; 0 -{symbol}]", "B": "[0; 1]", "C": "[1 0]"}, "symbols": {symbol: "real"}}
+def test_a_symbol_that_shadows_a_letter_is_said(symbol: str) -> None:
+    own: dict[str, Any] = {
+        "plant": {"A": f"[0 1; 0 -{symbol}]", "B": "[0; 1]", "C": "[1 0]"},
+        "symbols": {symbol: "real"},
+    }
     audited = audit(read(problem(f"A = [0 1; 0 -{symbol}]", **own)))
     assert audited.findings == ()
     (note,) = audited.notes
@@ -283,3 +293,47 @@ def test_a_symbol_that_shadows_a_letter_is_said(symbol: str, tmp_path: Path) -> 
     for name in ("text", "markdown", "json"):
         assert note in report({"x": audited}, name).replace("\\", "")
     assert audit(read(problem("trace(B B') = 1", **own))).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("expected", "true"),
+    [
+        ({"stable_if": ["h > 0.618"]}, True),
+        ({"stable_if": ["2 h > 1.24"]}, True),
+        ({"stable_if": ["h > 0.619"]}, False),
+        ({"stable_if": ["h < 0.618"]}, False),
+    ],
+)
+def test_expected_conditions_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
+    """Of (s + 1)(s + h - 0.618), stable where h > 0.618."""
+    region = {
+        "task": "stability_region",
+        "symbols": {"h": "real"},
+        "specification": {"polynomial": "s^2 + (h + 191/500) s + h - 309/500", "parameters": ["h"]},
+    }
+    given = json.dumps({"title": "region", **region, "printed": [{"expect": expected}]})
+    assert (audit(read(given)).findings == ()) is true
+
+
+@pytest.mark.parametrize(
+    ("expected", "true"),
+    [
+        ({"modes": [{"eigenvalue": "1.414", "stable": False}, {"eigenvalue": "-1.414", "stable": True}]}, True),
+        ({"modes": [{"eigenvalue": "-1.414", "stable": False}, {"eigenvalue": "1.414", "stable": True}]}, False),
+        ({"fixed_polynomial": "1.0"}, True),
+    ],
+)
+def test_expected_modes_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
+    surds = {"task": "detectability", "plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
+    given = json.dumps({"title": "modes", **surds, "printed": [{"expect": expected}]})
+    assert (audit(read(given)).findings == ()) is true
+
+
+def test_expected_roots_are_compared_as_printed() -> None:
+    turning = {"task": "characteristic_polynomial", "plant": {"A": "[0 1; -1 -1]"}}
+    printed = [
+        {"expect": {"roots": ["-0.5+0.866i", "-0.5-0.866i"]}},
+        {"expect": {"roots": ["-0.5+0.867i", "-0.5-0.867i"]}},
+    ]
+    (found,) = audit(read(json.dumps({"title": "roots", **turning, "printed": printed}))).findings
+    assert "0.867" in found.printed

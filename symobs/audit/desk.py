@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 from symobs.audit import differences
 from symobs.audit.alphabet import Letters
-from symobs.audit.evaluation import Flexible, Printed, as_printed, common, equal, holds, is_signal, value_of
+from symobs.audit.evaluation import as_printed, holds, is_rounded, value_of
 from symobs.audit.functions import Misfit, Unknown
 from symobs.audit.grammar import read_relation
 from symobs.audit.letters import INSTANTS, values
 from symobs.audit.reading import Gap, Reading, Where, exceptions, text
 from symobs.audit.signals import signals
+from symobs.audit.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.slips import found_slip
 from symobs.audit.spectra import is_spectrum, spectral, spectrum_text
 from symobs.audit.statements import Statement, parted
 from symobs.conditions import vanishing_factors
 from symobs.errors import BudgetExceeded, CertificateRejected, UnknownName
 from symobs.exact import Matrix, Scalar
-from symobs.exact.as_printed import decimals_in
 from symobs.expression.tree import Node, letters_of
 from symobs.formula import Environment, Signal
 from symobs.formula.term import Term
@@ -173,7 +173,7 @@ class Desk:
         turned = self._turned(printed_left, printed_right, reading)
         if turned is not None:
             return turned
-        rounded = [_is_rounded(side, reading) for side in (left, right)]
+        rounded = [is_rounded(side, reading) for side in (left, right)]
         if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
             left, right, pair = right, left, (pair[1], pair[0])
         spectra = (left, right) != (printed_left, printed_right) and (right, left) != (printed_left, printed_right)
@@ -276,8 +276,10 @@ class Desk:
         """Return what is wrong with a value, or with a formula for one; None where only rounding parts them."""
         environment = reading.environment
         exact, printed = (differences.as_matrix(term.value) for term in pair)
-        rounded = as_printed(right, reading) if _is_rounded(right, reading) else None
-        if rounded is not None and differences.as_matrix(rounded).shape == exact.shape:  # else it is a 0 of another size
+        rounded = as_printed(right, reading) if is_rounded(right, reading) else None
+        if (
+            rounded is not None and differences.as_matrix(rounded).shape == exact.shape
+        ):  # else it is a 0 of another size
             printed = differences.as_matrix(rounded)
         wrong = differences.wrong_entries(printed, exact)
         if not wrong:
@@ -333,14 +335,16 @@ class Desk:
         reasons = []
         for name in names:
             if name not in printed:
-                reasons.append(f"the term {_term_text(exact[name], name)} is missing")
+                reasons.append(f"the term {differences.term_text(exact[name], name)} is missing")
             elif name not in exact:
-                reasons.append(f"the term {_term_text(printed[name], name)} does not belong there")
+                reasons.append(f"the term {differences.term_text(printed[name], name)} does not belong there")
             else:
                 whole = f"the coefficient of {name}"
                 why = differences.reasons(printed[name], exact[name], whole)
                 reasons.append(why if why.startswith(whole) else f"in {whole} {why}")
-        terms = " + ".join(_term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
+        terms = (
+            " + ".join(differences.term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
+        )
         return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
 
     def _coefficients(self, term: Term) -> dict[str, Matrix]:
@@ -389,19 +393,3 @@ def _is_evident(left: Node, exact: Matrix, printed: Matrix, wrong: int) -> bool:
         return True
     alone = exact.shape == (1, 1)
     return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)
-
-
-def _term_text(value: Matrix, name: str) -> str:
-    if value.shape == (1, 1):
-        scalar = value[0, 0]
-        text = differences.value_text(scalar)
-        if scalar == Scalar.of(1):
-            return name
-        return f"-{name}" if scalar == Scalar.of(-1) else f"({text}) {name}" if " " in text else f"{text} {name}"
-    return f"{differences.value_text(value)} {name}"
-
-
-def _is_rounded(node: Node, reading: Reading) -> bool:
-    """Whether a side is a value written out with decimals."""
-    value = as_printed(node, reading)
-    return value is not None and bool(decimals_in(value))

@@ -184,3 +184,14 @@ def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -
 def _number_text(value: Scalar, printed: Scalar | None) -> str:
     decimal = single(printed) if printed is not None and value.is_constant else None
     return text(value) if decimal is None else decimal.rounded(value.fraction())
+
+
+def term_text(value: Matrix, name: str) -> str:
+    """Return a matrix times a signal."""
+    if value.shape == (1, 1):
+        scalar = value[0, 0]
+        text = value_text(scalar)
+        if scalar == Scalar.of(1):
+            return name
+        return f"-{name}" if scalar == Scalar.of(-1) else f"({text}) {name}" if " " in text else f"{text} {name}"
+    return f"{value_text(value)} {name}"

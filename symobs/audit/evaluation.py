@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from symobs.audit.functions import (
     MOST_BITS,
@@ -19,30 +19,19 @@ from symobs.audit.functions import (
     too_large,
 )
 from symobs.audit.letters import INSTANTS
-from symobs.certificate import SENSELESS, verify
+from symobs.audit.sizes import Flexible, Printed, alike, common, equal, fitted, is_signal, kind_of, shape
+from symobs.certificate import SENSELESS
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
-from symobs.exact.as_printed import as_generator
-from symobs.exact.functions import identities
+from symobs.exact.as_printed import as_generator, decimals_in
 from symobs.expression.tree import Node, exponent_of
-from symobs.formula import Apply, Environment, Letter, Literal, Relation, Signal
+from symobs.formula import Apply, Letter, Literal, Signal
 from symobs.formula.term import Term, block
-from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.audit.reading import Reading
-
-
-@dataclass(frozen=True)
-class Flexible:
-    """A multiple of the identity matrix whose order its neighbours decide; 0 is the zero matrix of any size."""
-
-    factor: Scalar
-
-
-Printed: TypeAlias = Term | Flexible
 
 
 def value_of(node: Node, reading: Reading) -> Printed:
@@ -108,33 +97,6 @@ def _letter(name: str, reading: Reading) -> Printed:
     raise Unknown(name)
 
 
-def shape(term: Term) -> tuple[int, int] | None:
-    """Return rows and columns of a value or a signal, None for a number."""
-    value = term.value
-    if isinstance(value, Signal):
-        return value.size, 1
-    return value.shape if isinstance(value, Matrix) else None
-
-
-def is_signal(printed: Printed) -> bool:
-    """Whether a value is made of signals."""
-    return isinstance(printed, Term) and isinstance(printed.value, Signal)
-
-
-def fitted(flexible: Flexible, like: Term) -> Term:
-    """Return a multiple of the identity in the size of another value; raises Misfit where that is not square."""
-    size = shape(like)
-    if is_signal(like):
-        raise no_fit("the identity matrix stands beside a signal")
-    if size is None or size == (1, 1):
-        return Term(Literal(flexible.factor), like.environment)
-    if flexible.factor.is_zero:
-        return Term(Literal(Matrix.zeros(*size)), like.environment)
-    if size[0] != size[1]:
-        raise no_fit(f"the identity matrix is square, but {sized(size)} stands beside it")
-    return Term(Literal(Matrix.identity(size[0]) * flexible.factor), like.environment)
-
-
 def _sum(parts: Sequence[Node], reading: Reading) -> Printed:
     found = [value_of(part, reading) for part in parts]
     terms = [(part, value) for part, value in zip(parts, found, strict=True) if isinstance(value, Term)]
@@ -146,30 +108,15 @@ def _sum(parts: Sequence[Node], reading: Reading) -> Printed:
     total: Term | None = None
     for part, value in zip(parts, found, strict=True):
         term = fitted(value, first) if isinstance(value, Flexible) else value
-        if not _alike(term, first):
+        if not alike(term, first):
             raise no_fit(f"{_unsigned(head)} {kind_of(first)}, but {_unsigned(part)} {kind_of(term)}")
         total = term if total is None else total + term
     assert total is not None  # noqa: S101 - a sum has parts
     return total
 
 
-def kind_of(term: Term) -> str:
-    """Return what size a value has, in words."""
-    size = shape(term)
-    if size is not None and is_signal(term):
-        return f"has {size[0]} component{'s' if size[0] > 1 else ''}"
-    return f"is {sized(size)}"
-
-
 def _unsigned(part: Node) -> Node:
     return part.parts[0] if part.kind == "negative" else part
-
-
-def _alike(left: Term, right: Term) -> bool:
-    single = ((1, 1), None)
-    if is_signal(left) != is_signal(right):
-        return False
-    return shape(left) == shape(right) or (shape(left) in single and shape(right) in single)
 
 
 def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed:
@@ -235,10 +182,10 @@ def _require_inverse(base: Node, determinant: Scalar, reading: Reading) -> None:
 def _at(function: Node, argument: Node, reading: Reading) -> Printed:
     """Return a function at its argument: P(0), φ(A); at its own variable, and at a time, it is itself."""
     value, variable = value_of(function, reading), reading.environment.variable
-    whole = None if isinstance(value, Flexible) or is_signal(value) else value.value
-    if argument.text == variable or whole is None or variable not in whole.names:
-        if argument.kind == "letter" and argument.text in {variable, "t"}:
-            return value
+    varies = isinstance(value, Term) and not is_signal(value) and variable in value.value.names
+    if argument.kind == "letter" and (argument.text == variable or (argument.text == "t" and not varies)):
+        return value
+    if not isinstance(value, Term) or not varies:
         raise Misfit(f"{function} is no function of {variable}")
     where = value_of(argument, reading)
     if isinstance(where, Flexible) or is_signal(where):
@@ -246,8 +193,8 @@ def _at(function: Node, argument: Node, reading: Reading) -> Printed:
     if isinstance(where.value, Matrix) and where.value.shape != (1, 1):
         return _at_matrix(function, value, argument, where)
     try:
-        found = whole.substitute({variable: where.scalar})
-        below = whole.common_denominator().substitute({variable: where.scalar})
+        found = value.value.substitute({variable: where.scalar})
+        below = value.value.common_denominator().substitute({variable: where.scalar})
     except ZeroDivisionError:
         raise Misfit(f"{function}({argument}) has no value") from None
     if below.is_zero:
@@ -382,39 +329,6 @@ def _integral(parts: Sequence[Node], reading: Reading) -> Term:
     return Term(Literal(found), reading.environment)
 
 
-# -- comparison -------------------------------------------------------------------------------------------------------
-
-
-def common(left: Printed, right: Printed, environment: Environment) -> tuple[Term, Term]:
-    """Return two sides in one size; raises Misfit where they have none."""
-    if isinstance(left, Flexible) or isinstance(right, Flexible):
-        if isinstance(left, Term):
-            return left, fitted(right, left)  # type: ignore[arg-type]
-        if isinstance(right, Term):
-            return fitted(left, right), right
-        return tuple(Term(Literal(side.factor), environment) for side in (left, right))  # type: ignore[return-value]
-    if not _alike(left, right) and (_is_zero(left) or _is_zero(right)):
-        return (left, left - left) if _is_zero(right) else (right - right, right)
-    if not _alike(left, right):
-        raise no_fit(f"the left side {kind_of(left)}, the right side {kind_of(right)}")
-    return left, right
-
-
-def _is_zero(term: Term) -> bool:
-    return isinstance(term.value, Scalar) and term.value.is_zero
-
-
-def equal(left: Term, right: Term) -> bool:
-    """Tell whether two sides are equal, by a certificate."""
-    environment = left.environment
-    exact = [value for value in (left.value, right.value) if isinstance(value, (Scalar, Matrix))]
-    meanings, relations = identities(exact)
-    if meanings or relations:
-        environment = Environment(environment.variable, coefficients=meanings, relations=relations)
-        return bool(verify(Relation((Literal(exact[0]), Literal(exact[1])), ("=",)), environment)[0])
-    return bool(verify(Relation((left.formula, right.formula), ("=",)), environment)[0])
-
-
 def as_printed(node: Node, reading: Reading) -> Matrix | Scalar | None:
     """Return what is printed of a value, decimals as generators; None where decimals are used and not compared.
 
@@ -453,3 +367,9 @@ def holds(left: Node, right: Node, reading: Reading) -> bool:
         return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
     except (Misfit, Unknown, *SENSELESS):  # InputError is a ValueError
         return False
+
+
+def is_rounded(node: Node, reading: Reading) -> bool:
+    """Whether a side is a value written out with decimals."""
+    value = as_printed(node, reading)
+    return value is not None and bool(decimals_in(value))

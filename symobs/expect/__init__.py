@@ -19,10 +19,11 @@ from symobs.expect.roots import (
     key_of,
     numbers_agree,
     read_roots,
+    root_rounds_to,
     roots_round_to,
     rounded_roots,
 )
-from symobs.expect.structure import RELATION, agree, factored_table, factors_agree, relation
+from symobs.expect.structure import RELATION, agree, factored_table, factors_agree, relation, relations_agree
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
 
@@ -214,7 +215,10 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if all(isinstance(entry, (Complex, Root)) for entry in found):
         return numbers_agree(found, expected, names, where)
     if all(_is_relation(entry) for entry in found):
-        return {relation(e, names, where) for e in expected} == {relation(str(e), names, where) for e in found}
+        wanted, came = ([relation(str(e), names, where) for e in each] for each in (expected, found))
+        return all(any(relations_agree(w, c) for c in came) for w in wanted) and all(
+            any(relations_agree(w, c) for w in wanted) for c in came
+        )
     if all(isinstance(entry, Mapping) and "eigenvalue" in entry for entry in found):
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
@@ -297,7 +301,13 @@ def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str)
     for key, entry in wanted.items():
         value = mode[key]
         if isinstance(value, Root):
-            if Counter(map(key_of, read_roots([entry], names, variable, f"{where}.{key}"))) != Counter([key_of(value)]):
+            rounded = rounded_roots([entry], names, f"{where}.{key}")
+            if rounded:
+                if len(rounded) != 1 or not root_rounds_to(rounded[0], value):
+                    return False
+            elif Counter(map(key_of, read_roots([entry], names, variable, f"{where}.{key}"))) != Counter(
+                [key_of(value)]
+            ):
                 return False
         elif key == "conditions":
             if not _lists_agree(value, entry if isinstance(entry, list) else [entry], result, f"{where}.{key}"):

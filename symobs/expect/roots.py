@@ -57,6 +57,11 @@ def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: st
         return False
 
 
+def root_rounds_to(printed: Complex, found: Root) -> bool:
+    """Tell whether a root with a closed form rounds to the decimals of a printed number."""
+    return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed)
+
+
 def _surd(text: str, names: Any, variable: str, where: str) -> Root:
     """Return the root a + b sqrt(c) or a + b sqrt(c) I: sqrt(c) is read as a new name q, with q**2 = c."""
     before, _, behind = text.partition("sqrt")
