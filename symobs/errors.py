@@ -28,14 +28,19 @@ class SymobsError(Exception):
         self.facts = facts
 
     def __str__(self) -> str:
-        """Return `where: message; repair` on one line, leaving out what is not known."""
+        """Return `where: message; repair` on one line, leaving out what is not known; no terminal obeys what it quotes."""
         place = f"{self.where}: " if self.where else ""
         repair = f"; {self.repair}" if self.repair else ""
-        return f"{place}{self.message}{repair}"
+        return _printable(f"{place}{self.message}{repair}")
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by facts, so that an error crosses process borders whole."""
         return (_rebuild, (type(self), self.message, self.where, self.repair, self.facts))
+
+
+def _printable(text: str) -> str:
+    """Return a text with what is no character on paper, line ends apart, written as its escape."""
+    return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def _rebuild(kind: type[SymobsError], message: str, where: str, repair: str, facts: dict[str, object]) -> SymobsError:

@@ -14,7 +14,7 @@ from typing import Annotated, Any, TypeAlias
 from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
-from symobs.expression import parse_matrix, parse_poles, parse_polynomial
+from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.record import dataclass
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
@@ -246,23 +246,16 @@ def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
     return quantity
 
 
-def read_names(value: object, known: Sequence[str], name: str) -> tuple[str, ...]:
-    """Return names that stand in the problem; raises `InputError` for others, and for one that is named twice."""
+def read_names(value: object, name: str) -> tuple[str, ...]:
+    """Return the names of a list or a text, which may be empty; raises `InputError` for one that is named twice."""
     where = f"specification.{name}"
-    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
-
     listed = re.split(r"[,;\s]+", value.strip(" []")) if isinstance(value, str) else value
     listed = [str(entry) for entry in (listed if isinstance(listed, (list, tuple)) else [listed])]
-    for entry in listed:
-        if entry not in known:
-            near = get_close_matches(entry[:64], known, 1)
-            existing = f"the names there are {', '.join(known)}" if known else "no name stands there"
-            repair = f"did you mean {near[0]}?" if near else existing
-            raise InputError(f"{entry[:40]!r} does not stand in the polynomial", where=where, repair=repair)
-    if len(set(listed)) < len(listed) or not listed:
-        message = "a parameter is named twice" if listed else "no parameter is named"
-        raise InputError(message, where=where, repair=f'write for example {name} = "{", ".join(known[:2])}"')
-    return tuple(listed)
+    found = [declared_name(entry, where) for entry in listed if entry]
+    if len(set(found)) < len(found):
+        repair = f'write for example {name} = "{", ".join(dict.fromkeys(found))}"'
+        raise InputError("a parameter is named twice", where=where, repair=repair)
+    return tuple(found)
 
 
 def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:

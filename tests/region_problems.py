@@ -341,7 +341,7 @@ ONE_PARAMETER = [
         "margin_one", "s^3 + 6 s^2 + 11 s + 6 + h", ("h",), "-15/8 < h < 24", 1, bounded=True, margin="1/2", window=30
     ),
     Problem("quintic_one", in_powers("1", "5 + h", "10", "10 - h", "5", "1 + h^2"), ("h",)),
-    Problem("jury_five", "z^5 + h z^4 - h^2 z^2 + 1/3 z - 1/8", ("h",), window=3),
+    Problem("jury_five", "z^5 + h z^4 - h^2 z^2 + 1/3*z - 1/8", ("h",), window=3),
     Problem("symbols_one", "s^3 + a s^2 + h s + a", ("h",), "h > 1", symbols={"a": "positive"}),
 ]
 

@@ -47,7 +47,6 @@ def test_gains_agree_with_the_numbers_of_python_control() -> None:
 @pytest.mark.parametrize(
     "system",
     [
-        control.tf([1], [1, 1]),
         SimpleNamespace(A=np.array([[np.nan]]), B=np.array([[1.0]]), C=np.array([[1.0]]), D=np.array([[0.0]]), dt=0),
         SimpleNamespace(A=np.array([[1j]]), B=np.array([[1.0]]), C=np.array([[1.0]]), D=np.array([[0.0]]), dt=0),
     ],

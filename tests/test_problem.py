@@ -308,7 +308,7 @@ def test_another_relation_or_root_is_not_met(line: str) -> None:
         ("s^2 - 2", ["sqrt(2)", "-sqrt(2)"]),
         ("s^2 + 2 s + 19", ["-1 + 3*sqrt(2)*I", "-1 - 3 sqrt(2) i"]),
         ("s^2 + 2 s + 19", ["-1 + sqrt(-18)", "-1 - sqrt(-18)"]),
-        ("s^2 - 4/9 s - 1/81", ["2/9 + sqrt(5)/9", "2/9 - sqrt(5)/9"]),
+        ("s^2 - 4/9*s - 1/81", ["2/9 + sqrt(5)/9", "2/9 - sqrt(5)/9"]),
         ("(s^2 + 1) (s - 3)", [3, "i", "-i"]),
         ("s^3 - 2", ["CRootOf(s^3 - 2, 2)", "CRootOf(s**3 - 2, 1)", "CRootOf(s**3 - 2, 0)"]),
         ("s^2 - 4", ["sqrt(4)", "-sqrt(4)"]),

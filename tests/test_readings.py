@@ -155,3 +155,24 @@ def test_a_declared_sign_may_not_contradict_an_assumption(declared: str, assumed
 def test_the_variable_of_the_polynomials_needs_no_assumption() -> None:
     variable = Symbol("s", real=False)
     assert sympy.Matrix([[-1]]) == symobs.StateSpace.from_transfer_function(1 / (variable + 1)).A
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        {"x1": "real", "x_1": "real"},
+        {"k": "real", "x": {"latex": "k"}},
+        {"omega": "real", "w": {"latex": r"\omega"}},
+        {"x1": {"latex": "x_{1}"}, "x_1": "real"},
+    ],
+)
+def test_two_names_that_print_alike_are_refused(declared: dict[str, Any]) -> None:
+    one_name, another = sorted(declared)
+    with pytest.raises(InputError, match=f"{one_name} and {another} are printed alike; give one of them another name"):
+        Symbols.of(declared)
+
+
+def test_undeclared_names_that_print_alike_are_refused() -> None:
+    with pytest.raises(InputError, match="x1 and x_1 are printed alike"):
+        symobs.StateSpace("[x1 1; 0 x_1]")
+    assert Symbols.of({"x1": "real", "x_1": {"latex": "y"}, "x2": "real"}).closed

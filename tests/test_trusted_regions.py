@@ -166,10 +166,10 @@ def test_parts_of_a_plane_are_its_own() -> None:
 
 
 def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
-    given: tuple[tuple[str, ...], ...] = ((), ("h",))
+    given: tuple[tuple[str, ...], ...] = ((), ("h",), ("h", "k"))
     for names in given:
         assert region_of(s + h, IN_S, discrete=False, names=names) is not None
-    others: tuple[tuple[str, ...], ...] = (("k",), ("h", "k"))
+    others: tuple[tuple[str, ...], ...] = (("k",), ("h", "s"))
     for names in others:
         assert region_of(s + h, IN_S, discrete=False, names=names) is None
         assert not is_survey(Survey(CHI, names, (), ((said(h, ">", 0),),)), s + h, IN_S, discrete=False)

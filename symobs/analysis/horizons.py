@@ -39,8 +39,8 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
         raise InputError(f"the horizon {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
     if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
         raise InputError(f"the horizon {found} is not positive", where=where, repair='write "T", or a number above 0')
-    if "t" in found.names:
-        raise InputError("the horizon depends on t", where=where, repair='t is the time; write "T"')
+    if "t" in found.names and found != Scalar.symbol("t"):  # the end of the horizon may be called t, as in W(t)
+        raise InputError("the horizon depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
     if plant.is_discrete and not (found.is_constant and found.fraction().denominator == 1):
         raise InputError(f"{found} is not a number of steps", where=where, repair="write a whole number, or inf")
     if plant.is_discrete and found.fraction() > _MOST_STEPS:

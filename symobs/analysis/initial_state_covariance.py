@@ -344,5 +344,8 @@ def initial_state_covariance(
     end = read_horizon(plant, horizon)
     if end == INFINITE:
         raise InputError("the horizon is finite here", where="specification.horizon", repair='write "T", or a number')
+    if end == TIME:
+        message = "the horizon cannot be called t here, where integrands contain both"
+        raise InputError(message, where="specification.horizon", repair='write "T"')
     asked = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity, "horizon": end}
     return over_horizon(lambda: choose("initial_state_covariance", method, "gramian").solve(plant, asked))

@@ -41,9 +41,9 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
         if plant.origin is not None:
-            page.given(relation(page["P"], factored_form(page, plant.origin)))
-            page.environment = page.environment.having(values={"P": plant.origin})
-            page.remark("realised")
+            from symobs.analysis.cancelled_poles import state_transfer_function  # noqa: PLC0415 - it stands on this module
+
+            state_transfer_function(page)
         page.set("A", m.A)
         relations = []
         rate = _as_given(page, m.A) @ page["x"]

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import sign_of
-from symobs.errors import InputError
+from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Scalar
 from symobs.record import dataclass
 from symobs.region.critical import Boundary, Critical
@@ -15,6 +15,10 @@ from symobs.system import StateSpace, read_scalar
 
 if TYPE_CHECKING:
     from symobs.exact import Matrix
+
+
+#: The determinants that decide for a polynomial with parameters grow too large beyond this degree.
+MOST_DEGREE = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +88,15 @@ def read_question(
     boundary = _boundary(plant, margin, radius)
     asked = Question(plant, found["K"], found["L"], (), boundary)
     names = sorted(asked.polynomial.names - {plant.variable})
+    degree = asked.polynomial.degree(plant.variable)
+    if names and degree > MOST_DEGREE:
+        message = f"a polynomial of degree {degree} with parameters, more than {MOST_DEGREE}"
+        raise BudgetExceeded(message, where="specification.polynomial", repair="put numbers in place of the symbols")
     if parameters is not None:
-        chosen = read_names(parameters, names, "parameters")
+        chosen = read_names(parameters, "parameters")
+        if plant.variable in chosen:
+            message = f"{plant.variable} is the variable of the polynomial"
+            raise InputError(message, where="specification.parameters", repair="leave it out")
     else:
         gained = {name for gain in found.values() if gain is not None for name in gain.names}
         chosen = _free((gained or set(names)) - boundary.names or set(names), plant)

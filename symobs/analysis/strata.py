@@ -60,7 +60,9 @@ def region_of(plant: StateSpace) -> Region:
     """Return the parameters of a plant: with their signs, on its stratum, where its denominators do not vanish."""
     m, signs = plant.matrices, plant.symbols.signs
     domain = vanishing_factors([part.common_denominator() for part in (m.A, m.B, m.C, m.D)], signs)
-    return Region(signs, frozenset((*domain, *vanishing_factors(plant.nonzero, signs))), ideal=plant.ideal)
+    return Region(
+        signs, frozenset((*domain, *vanishing_factors((*plant.nonzero, *plant.apart), signs))), ideal=plant.ideal
+    )
 
 
 def _below(equations: Iterable[Scalar], region: Region, plant: StateSpace, solve: Solve) -> Iterator[Case]:

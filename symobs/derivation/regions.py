@@ -142,7 +142,7 @@ def _region_of(
     names: tuple[str, ...],
 ) -> LineRegion | PlaneRegion | None:
     critical = Critical(polynomial, Boundary(variable, discrete), dict(signs))
-    if names and tuple(sorted(names)) != critical.parameters:
+    if names and (variable in names or not set(critical.parameters) <= set(names)):
         return None
     return region_in(critical, names or critical.parameters)
 

@@ -139,6 +139,29 @@ def complex_from_sympy(expression: Any, where: str) -> Complex:
     raise InputError(message, where=where, repair="use numbers, symbols and + - * / with integer powers")
 
 
+def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:
+    """Return numerator and denominator as they stand, those of a sum brought over the least common denominator."""
+    if isinstance(expression, sympy.Add | sympy.Mul):
+        above, below = fraction_from_sympy(expression.args[0], where)
+        for argument in expression.args[1:]:
+            other_above, other_below = fraction_from_sympy(argument, where)
+            if expression.is_Mul:
+                above, below = above * other_above, below * other_below
+            else:
+                ratio = below / other_below
+                mine, theirs = (
+                    (Complex.of(ratio.real.denominator), Complex.of(ratio.real.numerator))
+                    if ratio.is_real
+                    else (other_below, below)
+                )
+                above, below = above * mine + other_above * theirs, below * mine
+        return above, below
+    if isinstance(expression, sympy.Pow) and expression.exp.is_Integer:
+        above, below = (part ** abs(int(expression.exp)) for part in fraction_from_sympy(expression.base, where))
+        return (above, below) if expression.exp > 0 else (below, above)
+    return complex_from_sympy(expression, where), Complex.of(1)
+
+
 def scalar_from_sympy(expression: Any, where: str) -> Scalar:
     """Return the scalar of a real SymPy expression."""
     value = complex_from_sympy(expression, where)

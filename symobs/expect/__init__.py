@@ -12,6 +12,7 @@ from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
 from symobs.exact.functions import roots_in, symbols_in
+from symobs.expect.conditions import conditions_agree
 from symobs.expect.functions import agrees, functions_agree
 from symobs.expect.roots import (
     COUNTED,
@@ -23,7 +24,7 @@ from symobs.expect.roots import (
     roots_round_to,
     rounded_roots,
 )
-from symobs.expect.structure import RELATION, agree, factored_table, factors_agree, relation, relations_agree
+from symobs.expect.structure import RELATION, agree, factored_table, factors_agree
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
 
@@ -47,7 +48,7 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
         expected = {key: (entry, f"expect.{key}") for key, entry in expect.items() if key in _available(result)}
         own = expect.get(result.task)
         if isinstance(own, Mapping):
-            expected |= {key: (entry, f"expect.{result.task}.{key}") for key, entry in own.items()}
+            expected |= {key: (entry, f"expect.{result.task}.{shown(key, 40)}") for key, entry in own.items()}
         lines += _held_against(result, expected, errors)
     known = sorted({name for result in results for name in _available(result)})
     found = applicable(results, expect)
@@ -215,10 +216,7 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if all(isinstance(entry, (Complex, Root)) for entry in found):
         return numbers_agree(found, expected, names, where)
     if all(_is_relation(entry) for entry in found):
-        wanted, came = ([relation(str(e), names, where) for e in each] for each in (expected, found))
-        return all(any(relations_agree(w, c) for c in came) for w in wanted) and all(
-            any(relations_agree(w, c) for w in wanted) for c in came
-        )
+        return conditions_agree(found, expected, names, where, result.plant.symbols.signs)
     if all(isinstance(entry, Mapping) and "eigenvalue" in entry for entry in found):
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):

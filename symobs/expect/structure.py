@@ -59,7 +59,14 @@ def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
         difference, operator = -difference, operator.replace("<", ">")
     if difference.is_zero or decimals_in(difference):
         return difference, operator
-    unit, _ = difference.factors()
+    if operator == "!=":
+        factors = (difference.numerator * difference.denominator).factors()[1]
+        return product_of(factor for factor, _ in factors), operator
+    if operator == ">":  # a/b > 0 says the same as a b > 0
+        difference = difference.numerator * difference.denominator
+    unit, factors = difference.factors()
+    if operator == ">" and unit.fraction() > 0 and all(power % 2 == 0 for _, power in factors):
+        return product_of(factor for factor, _ in factors), "!="
     return difference / (unit if operator in {"!=", "=="} else Scalar.of(abs(unit.fraction()))), operator
 
 

@@ -39,9 +39,15 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     if plain is not None:
         rows, bracketed = plain
         return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
-    entries = parse(Tokeniser(source, scope).run(), source)
-    evaluator = _Evaluator(source, scope)
-    return [evaluator.entry(each) for each in entries]
+    source, trees = trees_of(text, scope, where)
+    evaluator = Evaluator(source, scope)
+    return [evaluator.entry(tree) for tree in trees]
+
+
+def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[Node, ...]]:
+    """Return the trees of a text's entries, and where they stand."""
+    source = Source(text, where)
+    return source, parse(Tokeniser(source, scope).run(), source)
 
 
 @dataclass(frozen=True)
@@ -67,7 +73,7 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 _SCALAR_OPERATIONS = 12
 
 
-class _Evaluator:
+class Evaluator:
     """Computes a tree on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
 
     def __init__(self, source: Source, scope: Scope) -> None:

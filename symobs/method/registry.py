@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 import symobs
 from symobs.errors import InputError, UsageError
 from symobs.record import dataclass
+from symobs.system import as_plant
 
 if TYPE_CHECKING:
     from symobs.method.result import Document, Result
@@ -77,8 +78,25 @@ def _of_constant_plants(function: Callback) -> Callback:
     return refusing  # type: ignore[return-value]
 
 
+def _of_plants(function: Callback) -> Callback:
+    """Let a task take the plants of other programs; one that needs a plant refuses what is none."""
+    only = inspect.signature(function).parameters["plant"].default is not None
+
+    @wraps(function)
+    def reading(*arguments: Any, **keywords: Any) -> Result:
+        if arguments and arguments[0] is not None:
+            arguments = (as_plant(arguments[0], only=only), *arguments[1:])
+        elif keywords.get("plant") is not None:
+            keywords["plant"] = as_plant(keywords["plant"], only=only)
+        result: Result = function(*arguments, **keywords)
+        return result
+
+    return reading  # type: ignore[return-value]
+
+
 def _registered(function: Callback) -> Callback:
     """Register a task; its keyword-only parameters are its specification, their annotations the kinds."""
+    function = _of_plants(function)
     signature = inspect.signature(function).parameters
     keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
     alone = signature["plant"].default is None

@@ -129,9 +129,10 @@ class Result(Faces):
 
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be a plant: the denominators of its entries."""
+        """What must not vanish for there to be a plant: what its data divide by."""
         m = self.plant.matrices
-        factors = vanishing_factors(_denominators([m.A, m.B, m.C, m.D]), self.plant.symbols.signs)
+        divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
+        factors = vanishing_factors(divisors, self.plant.symbols.signs)
         return tuple(Condition("domain", factor) for factor in factors)
 
     @cached_property

@@ -182,6 +182,7 @@ LETTERS: dict[str, LetterForm] = {
     "e_2": LetterForm("e_2", "e₂", "error of the reduced-order observer"),
     "z_o": LetterForm("z", "z", "state of the reduced-order observer"),
     "w_o": LetterForm("w", "w", "state of the reduced-order observer"),
+    "c_P": LetterForm("c({v})", "c({v})", "what cancels in the plant's transfer function"),
     "P": LetterForm("P({v})", "P({v})", "plant"),
     "Phi": LetterForm(r"\Phi(t,t_0)", "Φ(t, t₀)", "transition matrix"),
     "Phi_": LetterForm(r"\Phi", "Φ", "transition matrix"),

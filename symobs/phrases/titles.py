@@ -16,6 +16,11 @@ PHRASES: dict[str, str] = {
     "existence": "An observer from nothing but its task.",
     "feedforward": "Feedforward.",
     "tracking": "Tracking.",
+    "lowest_terms_parameters": "What cancels is not zero, for the function has no meaning elsewhere: {condition}.",
+    "lowest_terms": "The <pole|poles> {poles} <cancels|cancel>, and what follows is about the function in lowest terms.",
+    "lowest_terms_unstable_continuous": "The <pole|poles> {poles} <cancels|cancel>, and what follows is about the function in lowest terms: a plant that has <this mode|these modes> hides <it|them>, and <it does not lie|not all lie> in the open left half plane.",
+    "lowest_terms_unstable_discrete": "The <pole|poles> {poles} <cancels|cancel>, and what follows is about the function in lowest terms: a plant that has <this mode|these modes> hides <it|them>, and <it does not lie|not all lie> inside the unit circle.",
+    "lowest_terms_where": "The <pole|poles> {poles} <cancels|cancel>, and what follows is about the function in lowest terms: a plant that has <this mode|these modes> hides <it|them>, and <it is|they are> stable exactly where {where}.",
     "realised": "In controllable canonical form this is",
     "from_floats": "The entries are the shortest decimals of the floating-point numbers they came as.",
     "exact_decimals": "The decimals are exact: {numbers}.",
@@ -33,3 +38,8 @@ PHRASES: dict[str, str] = {
 }
 
 NAMING = ("without_serifs",)
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "lowest_terms_unstable_continuous": ("unstable",),
+    "lowest_terms_unstable_discrete": ("unstable",),
+}

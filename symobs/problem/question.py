@@ -225,7 +225,6 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "Quantity":
             return read_quantity(value, plant, name)
         case "Names":
-            symbols = plant.symbols.naming(value, where)
-            return read_names(value, sorted(symbols.signs), name)
+            return read_names(value, name)
         case _:
             return value

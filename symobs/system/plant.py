@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError, ProblemErrors, ShapeMismatch, SymobsError
+from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismatch, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
-from symobs.expression import parse_polynomial, parse_scalar
+from symobs.expression import parse_polynomial
+from symobs.system.fraction import MOST_STATES, Written, read_transfer_function, realise
 from symobs.system.reading import has_decimals, read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
@@ -40,11 +40,12 @@ class StateSpace:
         dt: object = 0,
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
-        transfer_function: Scalar | None = None,
+        transfer_function: Written | None = None,
     ) -> None:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         known = known.seen([A, B, C, D])
+        A, B, C, D = (_as_rows(name, value) for name, value in zip("ABCD", (A, B, C, D), strict=True))
         named, texts = known.with_time(), [value for value in (A, B, C, D) if isinstance(value, str)]
         errors: list[SymobsError] = []
         parts: dict[str, Matrix | None] = {}
@@ -53,6 +54,8 @@ class StateSpace:
                 parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts)
             except SymobsError as error:
                 errors.append(error)
+        if parts.get("D") == Matrix.zeros(1, 1):
+            parts["D"] = None
         if "A" in parts:
             errors += _shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         if errors:
@@ -60,13 +63,14 @@ class StateSpace:
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
-        self.origin = transfer_function
+        self.written = transfer_function
         self.polynomial: Scalar | None = None
         self.is_from_floats = False
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         given = [part for part in parts.values() if part is not None]
+        known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in part.field.position and "t" in part.names for part in given):
             self._let_vary()
         given = [part for part in given if self.variable in part.field.position]
@@ -87,13 +91,10 @@ class StateSpace:
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         time = read_time(dt, known)
         known = known.seen(transfer_function, time.variable)
-        where, variable = "plant.transfer_function", time.variable
-        if isinstance(transfer_function, str):
-            value = parse_scalar(transfer_function, known.names, variable=variable, where=where)
-        else:
-            value = read_scalar(transfer_function, known, where)
-        A, B, C, D = realise(value, variable, where)
-        return cls(A, B, C, D, dt, symbols=known, transfer_function=value)
+        where = "plant.transfer_function"
+        written = read_transfer_function(transfer_function, known, time.variable, where)
+        A, B, C, D = realise(written.value, time.variable, where)
+        return cls(A, B, C, D, dt, symbols=known, transfer_function=written)
 
     @classmethod
     def from_polynomial(
@@ -115,21 +116,22 @@ class StateSpace:
         if not rest or not value.is_polynomial_in(variable):
             message = f"{value} is not a polynomial in {variable} of degree 1 or more"
             raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
+        if len(rest) > MOST_STATES:
+            message = f"a polynomial of degree {len(rest)}, more than {MOST_STATES}"
+            raise BudgetExceeded(message, where=where, repair="give one of lower degree")
         plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
         plant.polynomial = value
         return plant
 
     @classmethod
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
-        """Return the plant of a python-control state-space system; each float is read as its shortest decimal.
+        """Return the plant of a python-control system; each float is read as its shortest decimal.
 
-        The page says so.  Raises `InputError` where the system has no A, B, C, D, or an entry is not a finite number.
+        The page says so.  Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
         """
-        rows = {name: _shortest_decimals(system, name) for name in "ABCD"}
-        dt = repr(system.dt) if isinstance(system.dt, float) else system.dt
-        plant = cls(rows["A"], rows["B"], rows["C"], rows["D"], dt or 0, symbols=symbols)
-        plant.is_from_floats = True
-        return plant
+        from symobs.system.foreign import from_control  # noqa: PLC0415 - it stands on this module
+
+        return from_control(system, symbols=symbols)
 
     # -- what the kernel sees ----------------------------------------------------------------------------------------
 
@@ -187,6 +189,16 @@ class StateSpace:
         plant.equations, plant.nonzero = self.equations, self.nonzero
         return plant
 
+    @property
+    def origin(self) -> Scalar | None:
+        """The transfer function in lowest terms where the plant is given by one."""
+        return None if self.written is None else self.written.value
+
+    @property
+    def apart(self) -> tuple[Scalar, ...]:
+        """Polynomials in the parameters that the data divide by, though no entry of a matrix does."""
+        return () if self.written is None else self.written.apart
+
     @cached_property
     def field(self) -> Field:
         """Q(parameters of the plant)."""
@@ -240,14 +252,7 @@ class StateSpace:
 
     def knowing(self, *values: object) -> StateSpace:
         """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
-        symbols = self.symbols.seen(list(values), self.variable)
-        if symbols is self.symbols:
-            return self
-        m = self.matrices
-        told = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=symbols)
-        told.matrices, told.time, told.origin = m, self.time, self.origin
-        told.is_from_floats, told.is_in_decimals = self.is_from_floats, self.is_in_decimals
-        return told
+        return self.with_symbols(self.symbols.seen(list(values), self.variable))
 
     def with_symbols(self, symbols: Symbols) -> StateSpace:
         """Return the same plant where these symbols are known."""
@@ -323,47 +328,21 @@ class Matrices:
         return not self.D.is_zero
 
 
-def _shortest_decimals(system: Any, name: str) -> list[list[str]]:
-    """Return a matrix of a python-control system as texts, each the shortest that names the same float."""
-    try:
-        rows = [[float(entry) for entry in row] for row in getattr(system, name).tolist()]
-    except (AttributeError, TypeError, ValueError) as error:
-        message = (
-            f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers {name}"
-        )
-        raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)") from error
-    for entry in (entry for row in rows for entry in row):
-        if not isfinite(entry):
-            message = f"{entry} is not a finite number"
-            raise InputError(message, where=f"plant.{name}", repair="give finite entries")
-    return [[repr(entry) for entry in row] for row in rows]
-
-
-def realise(value: Scalar, variable: str, where: str = "transfer_function") -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return the controllable canonical form (A, B, C, D) of a proper rational function."""
-    denominator = value.denominator.coefficients(variable)
-    order = len(denominator) - 1
-    numerator = value.numerator.coefficients(variable)
-    if order < 1:
-        message = f"{value} has no pole, so it has no state"
-        example = f"1/({variable}*({variable}+1))"
-        raise InputError(
-            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
-        )
-    if len(numerator) > order + 1:
-        message = f"{value} is not proper: degree {len(numerator) - 1} over degree {order}"
-        raise InputError(message, where=where, repair="the degree of the numerator may not exceed the denominator's")
-    lead = denominator[0]
-    monic = [c / lead for c in denominator[1:]]
-    padded = [Scalar.of(0)] * (order + 1 - len(numerator)) + [c / lead for c in numerator]
-    feedthrough = padded[0]
-    rest = [b - feedthrough * a for a, b in zip(monic, padded[1:], strict=True)]
-    return (
-        companion(monic),
-        Matrix.unit(order, order - 1),
-        Matrix.row(list(reversed(rest))),
-        Matrix.of([[feedthrough]]),
-    )
+def _as_rows(name: str, value: Any) -> Any:
+    """Return a matrix in rows: a flat list is a column of B, a row of C or D, and a number is one of one entry."""
+    if (
+        name == "A"
+        or value is None
+        or isinstance(value, (str, Matrix))
+        or (hasattr(value, "shape") and len(value.shape) == 2)
+    ):
+        return value
+    listed = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(listed, (list, tuple)):
+        return [[value]]
+    if any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
+        return value
+    return [[entry] for entry in listed] if name == "B" else [list(listed)]
 
 
 def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
 from symobs.expression import declared_name
+from symobs.expression.names import NAME
 from symobs.expression.source import shown
-from symobs.notation import GREEK
+from symobs.notation import GREEK, symbol_latex
 from symobs.record import dataclass
 
 
@@ -62,7 +63,18 @@ class Symbols:
                 _require_parameter(key, name, signs.get(name), place)
             if "latex" in details:
                 latex[name] = _latex(details["latex"], f"{place}.latex")
-        return Symbols(signs, latex, objects, closed=True)
+        known = Symbols(signs, latex, objects, closed=True)
+        known.refuse_alike(signs, where)
+        return known
+
+    def refuse_alike(self, names: Iterable[str], where: str) -> None:
+        """Raise `InputError` where two of the names are printed alike, as x1 and x_1 are."""
+        printed: dict[str, str] = {}
+        for name in sorted(filter(NAME.fullmatch, names)):  # others are generators of our own
+            form = re.sub(r"[{}\s]", "", symbol_latex(name, self.latex.get(name)))
+            if printed.setdefault(form, name) != name:
+                message = f"{printed[form]} and {name} are printed alike"
+                raise InputError(message, where=where, repair="give one of them another name, or a latex of its own")
 
     def with_time(self) -> Symbols:
         """Return these symbols with the time t among them, which a plant need not declare."""

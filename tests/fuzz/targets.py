@@ -80,7 +80,7 @@ _READERS: dict[str, Callable[[Any, Any], object]] = {
     "time": lambda value, names: parse_matrix(value, names, where="specification.input", functions=True),
     "time scalar": lambda value, names: parse_scalar(value, _without(names, "t"), variable="t", functions=True),
     "name": lambda value, _: declared_name(value),
-    "names": lambda value, names: read_names(value, tuple(names or ()), "parameters"),
+    "names": lambda value, _: read_names(value, "parameters"),
     "entries": lambda value, _: read_entries(value, "zero", (2, 3)),
 }
 

@@ -1,0 +1,55 @@
+"""The transfer function a plant is given by, as the page states it: what cancels in it is a finding."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.pages import factored_form
+from symobs.conditions import vanishing_factors
+from symobs.exact import roots_of
+from symobs.formula import Exactly, Roots
+from symobs.page import predicate, relation
+from symobs.stability import as_inequality, monic, stability
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+    from symobs.page import Page
+
+
+def state_transfer_function(page: Page) -> None:
+    """State P, as it is written where that is not in lowest terms, and what cancels in it."""
+    plant, written = page.plant, page.plant.written
+    assert written is not None  # noqa: S101 - the caller has looked
+    lowest = factored_form(page, written.value)
+    cancelled = monic(written.cancelled, plant.variable)
+    if written.cancelled.is_one and not written.apart:
+        page.given(relation(page["P"], lowest))
+    else:
+        above, below = (factored_form(page, part) for part in (written.above, written.below))
+        page.given(relation(page["P"], above / below, lowest))
+    page.environment = page.environment.having(values={"P": written.value})
+    apart = vanishing_factors(written.apart, plant.symbols.signs)
+    if apart:
+        page.assume("lowest_terms_parameters", *apart)
+    if not written.cancelled.is_one:
+        _say_cancelled(page, cancelled, written.below)
+    page.remark("realised")
+
+
+def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:
+    """Say which poles cancel, and warn where they are not surely stable."""
+    plant = page.plant
+    c = page.set("c_P", cancelled)
+    rest = page.value(below / cancelled)
+    poles = Roots(c.formula, roots_of(cancelled, plant.variable))
+    facts = (relation(below, c * rest),)
+    told = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if told.verdict == "yes":
+        page.remark("lowest_terms", *facts, poles=poles)
+    elif told.verdict == "no":
+        time = "discrete" if plant.is_discrete else "continuous"
+        page.caution(f"lowest_terms_unstable_{time}", predicate("unstable", c), *facts, poles=poles)
+    else:
+        solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+        where = Exactly(predicate("stable", c), tuple(relation(*parts) for parts in solved))
+        page.caution("lowest_terms_where", *facts, poles=poles, where=where)

@@ -1,0 +1,154 @@
+"""Plants as people give them: fractions that are not in lowest terms, flat lists, systems of other programs."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+import sympy
+from sympy.physics.control import Series, TransferFunction, TransferFunctionMatrix
+from sympy.physics.control import StateSpace as SymPyStateSpace
+
+import symobs
+from symobs import StateSpace
+from symobs.errors import InputError
+
+b, p, s, z = sympy.symbols("b p s z")
+
+
+def text_of(transfer_function: object, dt: object = 0) -> str:
+    result = symobs.observability(StateSpace.from_transfer_function(transfer_function, dt))
+    return " ".join(str(result.to("text")).split())
+
+
+@pytest.mark.parametrize(
+    ("function", "dt", "said"),
+    [
+        ("(s+1)/((s+1)(s+2))", 0, "The pole -1 cancels, and what follows is about the function in lowest terms."),
+        ("(s-1)/((s-1)(s+2))", 0, "A caution. The pole 1 cancels, .* it does not lie in the open left half plane"),
+        ("(z-1/2)/((z-1/2) z)", 1, "The pole 1/2 cancels, and what follows is about the function in lowest terms."),
+        ("(z-2)/((z-2) z)", 1, "A caution. The pole 2 cancels, .* it does not lie inside the unit circle"),
+        ("s(s+1)/(s^2 (s+1)^2)", 0, "A caution. The poles 0, -1 cancel, .* not all lie in the open left half plane"),
+        ("(s+b)/((s+b)(s+2))", 0, "A caution. The pole -b cancels, .* it is stable exactly where b > 0"),
+        ("1/(s+1) - s/(s+1)^2 - 1/(s+1)^2 + 1/s", 0, "The poles -1, -1 cancel"),
+        ((s**2 - 1) / (s**2 + s - 2), 0, "A caution. The pole 1 cancels"),
+        ([[1, -1], [1, 1, -2]], 0, "A caution. The pole 1 cancels"),
+    ],
+)
+def test_a_pole_that_cancels_is_a_finding(function: object, dt: int, said: str) -> None:
+    """The expected poles are those of the written denominator that are none of the function's."""
+    assert re.search(said, text_of(function, dt))
+
+
+@pytest.mark.parametrize("function", ["1/(s+1) + 2/(s+1)", "2 (s+3)/(4 (s+1))", "1/25/((s+1/50)(s+3/50))", "0.5/(s+1)"])
+def test_nothing_is_said_of_a_function_in_lowest_terms(function: str) -> None:
+    assert "cancel" not in text_of(function)
+
+
+@pytest.mark.parametrize(
+    "function", ["b(s+1)/(b(s+2))", b * (s**2 - 1) / (b * s**2 + b * s - 2 * b), [["b", "b"], ["b", "2*b"]]]
+)
+def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
+    plant = StateSpace.from_transfer_function(function, symbols={"b": "real"})
+    for result in (
+        symobs.observability(plant),
+        symobs.transfer_function(plant),
+        symobs.observer(plant, poles=[-3]),
+        symobs.observer(plant, poles=["-b"]),
+    ):
+        assert list(result.conditions) == [sympy.Ne(b, 0, evaluate=False)]
+        assert result.verdict == "yes"
+        assert "What cancels is not zero, for the function has no meaning elsewhere: b ≠ 0" in " ".join(
+            str(result.to("text")).split()
+        )
+    positive = StateSpace.from_transfer_function(function, symbols={"b": "positive"})
+    assert not symobs.observability(positive).conditions
+
+
+# -- shapes -----------------------------------------------------------------------------------------------------------
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        lambda: StateSpace([[0, 1], [0, -1]], [0, 1], [1, 0], 0),
+        lambda: StateSpace([[0, 1], [0, -1]], ("0", 1), sympy.Matrix([[1, 0]]), "0"),
+        lambda: StateSpace([[0, 1], [0, -1]], [sympy.Integer(0), 1], [1, sympy.Integer(0)], [0]),
+    ],
+)
+def test_flat_lists_are_a_column_and_a_row(given: Any) -> None:
+    plant = given()
+    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
+
+
+def test_arrays_of_one_dimension_are_a_column_and_a_row() -> None:
+    numpy = pytest.importorskip("numpy")
+    plant = StateSpace(numpy.array([[0, 1], [0, -1]]), numpy.array([0, 1]), numpy.array([1, 0]), numpy.int64(0))
+    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
+
+
+def test_zero_is_the_feedthrough_of_any_size() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[0 1; 1 0]", "[1 0; 0 1]", 0)
+    assert sympy.zeros(2, 2) == plant.D
+
+
+def test_numbers_are_matrices_of_one_entry() -> None:
+    plant = StateSpace([[-1]], 1, 2, 3)
+    assert [m[0, 0] for m in (plant.A, plant.B, plant.C, plant.D)] == [-1, 1, 2, 3]
+
+
+# -- systems of other programs ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        ([1], [1, 1, 0]),
+        TransferFunction(1, s * (s + 1), s),
+        TransferFunction(1, p * (p + 1), p),
+        Series(TransferFunction(1, s, s), TransferFunction(1, s + 1, s)),
+        SymPyStateSpace(SERVO.A, SERVO.B, SERVO.C),
+    ],
+)
+def test_systems_of_sympy_and_coefficients_are_plants(system: object) -> None:
+    """The characteristic polynomial of the error is (s + 1)(s + 2): trace and determinant of A - L C."""
+    result = symobs.observer(system, poles=[-1, -2])
+    error = SERVO.A - result.L * SERVO.C
+    assert (error.trace(), error.det()) == (-3, 2)
+
+
+def test_systems_of_python_control_are_plants() -> None:
+    control = pytest.importorskip("control")
+    for system in (control.tf([1], [1, 1, 0]), control.ss([[0, 1], [0, -1]], [[0], [1]], [[1, 0]], [[0]])):
+        result = symobs.observer(system, poles=[-1, -2])
+        error = SERVO.A - result.L * SERVO.C
+        assert (error.trace(), error.det()) == (-3, 2)
+        assert "shortest decimals" in " ".join(str(result.to("text")).split())
+    sampled = symobs.observability(control.tf([1], [1, 0.5], 0.1)).plant
+    assert (sampled.A, sampled.dt) == (sympy.Matrix([[-sympy.Rational(1, 2)]]), sympy.Rational(1, 10))
+
+
+@pytest.mark.parametrize(
+    ("system", "reason"),
+    [
+        ("1/s", 'a value of type str came; .*from_transfer_function\\("1/'),
+        (1 / s, "a plant is expected, but a value of type Pow came"),
+        (3, "a plant is expected, but a value of type int came"),
+        (TransferFunctionMatrix([[TransferFunction(1, s, s)]]), "with one input and one output is expected"),
+        (TransferFunction(s**2, s + 1, s), "is not proper: degree 2 over degree 1"),
+        (([1], [0]), "the denominator is 0"),
+    ],
+)
+def test_what_is_no_plant_is_refused(system: object, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        symobs.observability(system)
+
+
+def test_a_transfer_matrix_of_python_control_is_refused() -> None:
+    control = pytest.importorskip("control")
+    system = control.tf([[[1], [1]]], [[[1, 1], [1, 2]]])
+    with pytest.raises(InputError, match=r"a transfer matrix has several realisations; convert it by control\.ss"):
+        symobs.observability(system)

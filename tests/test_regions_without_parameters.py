@@ -1,0 +1,72 @@
+"""Regions of polynomials without the parameter, or without any: everywhere or nowhere; horizons that are called t."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs.errors import InputError
+from symobs.problem import read
+
+T, t = sympy.symbols("T t")
+
+
+@pytest.mark.parametrize("parameters", [[], "", "h", ["h", "k"]])
+@pytest.mark.parametrize(
+    ("polynomial", "stable"), [("s^2 + s + 1", True), ("(s + 1)^3", True), ("s^2 - s + 1", False), ("s", False)]
+)
+def test_a_polynomial_without_the_parameter_is_stable_everywhere_or_nowhere(
+    polynomial: str,
+    stable: bool,  # noqa: FBT001
+    parameters: Any,
+) -> None:
+    """Their roots are (-1 ± √3 i)/2; -1; (1 ± √3 i)/2; 0."""
+    region = symobs.stability_region(polynomial, parameters=parameters)
+    assert region.verdict == ("yes" if stable else "no")
+    assert list(region.stable_if) == ([] if stable else ["False"])
+    assert region.empty is not stable
+    if parameters == "h":
+        assert [tuple(ends) for ends in region.intervals] == ([("-oo", "oo")] if stable else [])
+    for name in ("text", "latex", "html", "json"):
+        assert region.to(name)
+
+
+def test_a_parameter_that_does_not_stand_in_the_polynomial_leaves_the_others_as_they_are() -> None:
+    region = symobs.stability_region("s^2 + h s + 1", parameters="h, k")
+    assert list(region.stable_if) == ["h > 0"]
+    assert region.to("latex")
+    assert list(symobs.stability_region("s^2 + h s + 1", parameters=[]).stable_if) == ["h > 0"]
+
+
+def test_a_file_needs_no_parameter() -> None:
+    problem = read('task = "stability_region"\n[specification]\npolynomial = "s^2 + s + 1"\nparameters = []\n')
+    assert [result.verdict for result in problem.solve()] == ["yes"]
+
+
+def test_the_variable_is_no_parameter() -> None:
+    with pytest.raises(
+        InputError, match=r"specification\.parameters: s is the variable of the polynomial; leave it out"
+    ):
+        symobs.stability_region("s^2 + h s + 1", parameters="s")
+
+
+@pytest.mark.parametrize("of", ["observability", "controllability"])
+def test_a_horizon_may_be_called_t(of: str) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    W = symobs.gramian(plant, horizon="t", of=of)
+    tau = sympy.Symbol("tau")
+    exponential = sympy.Matrix([[1, tau], [0, 1]])
+    seen = sympy.Matrix([[1, 0]]) * exponential if of == "observability" else (exponential * sympy.Matrix([0, 1])).T
+    assert W.matrix == (seen.T * seen).integrate((tau, 0, t)).as_immutable()
+    assert W.to("latex")
+
+
+def test_a_horizon_that_contains_t_is_refused() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError, match="the horizon depends on t"):
+        symobs.gramian(plant, horizon="2*t")
+    with pytest.raises(InputError, match="cannot be called t here"):
+        symobs.initial_state_covariance(plant, horizon="t", Q="[1]", R="[1]")
