@@ -1,85 +1,80 @@
-"""The order of computation, held against a parser made by lark from the grammar as it is written."""
+"""The order of computation, held against Python's, which reads numbers, signs, parentheses and powers alike."""
 
 from __future__ import annotations
 
-from typing import Any
+import ast
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given, reject
 from hypothesis import strategies as st
-from lark import Lark, Token, Transformer, UnexpectedToken
-from lark.lexer import Lexer
 
 from symobs.errors import InputError
-from symobs.expression import tokens
+from symobs.expression import parse_matrix, parse_scalar, tokens
 from symobs.expression.names import Scope
-from symobs.expression.ordering import Step, postfix
+from symobs.expression.parser import parse
 from symobs.expression.source import Source
+from symobs.expression.tree import Node, every, operands_first
 
-GRAMMAR = r"""
-row: sum (_COMMA sum)*
-?sum: product | sum ADD product -> operation
-?product: signed | product MULTIPLY signed -> operation
-?signed: atom | ADD signed -> sign | atom POWER signed -> operation
-?atom: VALUE -> value | _OPEN sum _CLOSE | LEFT row (_END row)* _RIGHT -> brackets | FUNCTION _OPEN sum _CLOSE -> call
-%declare VALUE FUNCTION ADD MULTIPLY POWER LEFT _RIGHT _OPEN _CLOSE _COMMA _END
-"""
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
-
-class _Ready(Lexer):
-    def __init__(self, _configuration: object) -> None:
-        pass
-
-    def lex(self, made: Any) -> Any:  # type: ignore[override]
-        return (Token(token.type, token, start_pos=token.start) for token in made)
-
-
-class _Postfix(Transformer[Token, Any]):
-    """Writes a tree as its steps: kind, place, and the lengths of rows."""
-
-    def row(self, entries: list[list[Any]]) -> list[list[Any]]:
-        return entries
-
-    def value(self, parts: list[Token]) -> list[Any]:
-        return [("VALUE", parts[0].start_pos, ())]
-
-    def operation(self, parts: list[Any]) -> list[Any]:
-        return [*parts[0], *parts[2], (parts[1].type, parts[1].start_pos, ())]
-
-    def sign(self, parts: list[Any]) -> list[Any]:
-        return [*parts[1], ("sign", parts[0].start_pos, ())]
-
-    def call(self, parts: list[Any]) -> list[Any]:
-        return [*parts[1], ("FUNCTION", parts[0].start_pos, ())]
-
-    def brackets(self, parts: list[Any]) -> list[Any]:
-        left, *rows = parts
-        inside = [step for row in rows for entry in row for step in entry]
-        return [*inside, ("LEFT", left.start_pos, tuple(len(row) for row in rows))]
-
-
-PARSER = Lark(GRAMMAR, parser="lalr", lexer=_Ready, start="row", maybe_placeholders=False)
 PIECES = ["1", "2.5", "a", "b ", "sqrt(", "(", ")", "[", "]", ",", ";", "\n", " ", "+", "-", "*", "/", "^", "**"]
+MOST = 10**6
+OPERATIONS: dict[type, Callable[[Fraction, Fraction], Fraction]] = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+}
 
 
-def by_grammar(made: list[tokens.Token]) -> list[Any] | int | None:
-    """Return the steps, or where the first token stands that cannot follow, None for the end."""
+def by_python(node: ast.AST) -> Fraction:
+    """Return what Python's own tree of a text is worth."""
+    match node:
+        case ast.Expression(body):
+            return by_python(body)
+        case ast.Constant(int(value)):
+            return Fraction(value)
+        case ast.UnaryOp(ast.USub(), operand):
+            return -by_python(operand)
+        case ast.UnaryOp(_, operand):
+            return by_python(operand)
+        case ast.BinOp(left, ast.Pow(), right):
+            base, exponent = by_python(left), by_python(right)
+            assume(exponent.denominator == 1 and abs(exponent) <= 6)
+            assume(abs(base.numerator) <= MOST and base.denominator <= MOST)
+            return base ** int(exponent)
+        case ast.BinOp(left, operator, right):
+            return OPERATIONS[type(operator)](by_python(left), by_python(right))
+    raise TypeError(node)
+
+
+SIGNS = st.sampled_from(["+", "-", "*", "/", "**", "*-", "**-", "/+", " + ", " - ", "--", "*--"])
+
+
+def _joined(parts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    return st.one_of(
+        st.tuples(parts, SIGNS, parts).map("".join),
+        parts.map("({})".format),
+        parts.map("-{}".format),
+        parts.map("+{}".format),
+    )
+
+
+@given(st.recursive(st.sampled_from(["1", "2", "3", "7"]), _joined, max_leaves=14))
+@example("-2**2*3")
+@example("2**-2**2")
+@example("7-3-2/3/2*-3**2")
+@example("--+2 + (4)**2 - 1")
+def test_numbers_are_worth_what_python_finds(text: str) -> None:
     try:
-        entries = _Postfix().transform(PARSER.parse(made))
-    except UnexpectedToken as found:
-        return None if found.token.type == "$END" else found.token.start_pos
-    return [step for entry in entries for step in entry]
-
-
-def by_precedence(made: list[tokens.Token], text: str) -> list[Any] | int | None:
-    """Return the same from `postfix`."""
-    try:
-        found: list[Step] = postfix(made, Source(text, ""))
-    except InputError as error:
-        above = text.split("\n")[: int(str(error.facts["line"])) - 1]
-        position = sum(len(line) + 1 for line in above) + int(str(error.facts["column"])) - 1
-        return None if position == len(text) else position
-    return [(step.kind, step.token.start, step.rows) for step in found]
+        expected = by_python(ast.parse(text, mode="eval"))
+    except ZeroDivisionError:
+        reject()
+    assert parse_scalar(text).fraction() == expected
 
 
 def tokens_of(text: str) -> list[tokens.Token] | None:
@@ -91,49 +86,61 @@ def tokens_of(text: str) -> list[tokens.Token] | None:
 
 
 @given(st.lists(st.sampled_from(PIECES), min_size=1, max_size=14).map("".join))
-@example("-a^-2^3*b")
-@example("[1 -2; a, (b + 1)^2]/3")
-@example("--+2 + sqrt(4)^2 - 1")
-def test_steps_are_those_of_the_grammar(text: str) -> None:
+@example("[1 -2; a, (b + 1)^2]*3")
+@example("a^-2^3*b")
+def test_a_tree_has_every_operand_in_its_place_or_its_fault(text: str) -> None:
     made = tokens_of(text)
-    if made is not None:
-        assert by_precedence(made, text) == by_grammar(made)
+    if made is None:
+        return
+    operands = [token.start for token in made if token.type == "VALUE"]
+    try:
+        found = parse(made, Source(text, ""))
+    except InputError:
+        return
+    leaves = [part for entry in found for part in every(entry) if part.kind == "number"]
+    assert [leaf.places[0] for leaf in leaves] == operands
+    for entry in found:
+        assert set(operands_first(entry)) == set(every(entry))
+        for part in every(entry):
+            wanted = len(part.parts) - 1 if part.kind in {"sum", "product"} else 1
+            assert part.kind == "row" or len(part.places) == wanted
 
 
-OPERANDS = st.sampled_from(["1", "a", "sqrt(4)"])
-
-
-def _joined(parts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    sign = st.sampled_from(["+", "-", "*", "/", "^", "*-", "^-", " + ", " - "])
-    return st.one_of(
-        st.tuples(parts, sign, parts).map("".join),
-        parts.map("({})".format),
-        parts.map("-{}".format),
-        parts.map("sqrt({})".format),
-        st.lists(parts, min_size=1, max_size=3).map(lambda row: f"[{', '.join(row)}]"),
-        st.lists(parts, min_size=1, max_size=3).map(lambda column: f"[{'; '.join(column)}]"),
-    )
-
-
-@given(st.recursive(OPERANDS, _joined, max_leaves=12))
-def test_steps_of_well_formed_texts_are_those_of_the_grammar(text: str) -> None:
-    made = tokens_of(text)
-    assert made is not None
-    steps = by_precedence(made, text)
-    assert isinstance(steps, list)
-    assert steps == by_grammar(made)
-
-
-@pytest.mark.parametrize("text", ["1 +", "(", "2 * ", "[1,", "*1", "(*2)", "[;", "2^"])
-def test_what_is_missing_is_missed_by_both(text: str) -> None:
-    made = tokens_of(text)
-    if made is not None:
-        assert not isinstance(by_precedence(made, text), list)
-        assert by_precedence(made, text) == by_grammar(made)
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("1 +", 'a number, a name or "(" is expected at the end, at column 4'),
+        ("2 * ", "at the end, at column 5"),
+        ("[1,]", 'before "]", at column 4'),
+        ("*1", 'before "*", at column 1'),
+        ("(*2)", 'before "*", at column 2'),
+        ("[;]", 'before "]", at column 3'),
+        ("2^", "at the end, at column 3"),
+        ("()", 'before ")", at column 2'),
+        ("1 2", "a number follows a number, at column 3"),
+        ("[1 2; 3]", "row 2 has 1 entry, but row 1 has 2, at column 1"),
+    ],
+)
+def test_what_is_missing_is_said_with_its_place(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=re.escape(says)):
+        parse_matrix(text)
 
 
 def test_a_thousand_signs_are_read() -> None:
     text = "-" * 5_000 + "1" + "^1" * 2_000
     made = tokens_of(text)
     assert made is not None
-    assert len(postfix(made, Source(text, ""))) == 5_000 + 1 + 2 * 2_000
+    (tree,) = parse(made, Source(text, ""))
+    assert sum(1 for _ in every(tree)) == 5_000 + 1 + 2 * 2_000
+    assert parse_scalar(text).fraction() == 1
+
+
+def test_a_sign_before_a_product_is_that_of_the_product() -> None:
+    def tree(text: str) -> Node:
+        made = tokens_of(text)
+        assert made is not None
+        return parse(made, Source(text, ""))[0]
+
+    assert tree("-a b") == tree("-(a b)")
+    assert tree("a*-b c").kind == "product"
+    assert [part.kind for part in tree("a*-b c").parts] == ["number", "negative", "number"]

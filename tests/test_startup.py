@@ -9,7 +9,7 @@ import pytest
 
 from tests.command_line import EXAMPLES, SAFETY, SERVO, environment
 
-HEAVY = {"control", "lark", "matplotlib", "mpmath", "numpy", "scipy", "sympy", "z3"}
+HEAVY = {"control", "matplotlib", "mpmath", "numpy", "scipy", "sympy", "z3"}
 KERNEL = {"flint", "jinja2"}
 _COMMAND = """
 import sys

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.audit.differences import decimals_of, wrong_entries
-from symobs.audit.evaluation import Flexible, is_signal, shape, value_of
+from symobs.audit.differences import wrong_entries
+from symobs.audit.evaluation import as_printed, value_of
 from symobs.audit.functions import Misfit, Unknown
-from symobs.audit.grammar import Node
 from symobs.audit.letters import HIDDEN, INSTANTS
+from symobs.audit.reading import Reading
+from symobs.audit.sizes import Flexible, is_signal, shape
 from symobs.exact import Matrix
+from symobs.exact.as_printed import decimals_in
+from symobs.expression.tree import Node
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
@@ -46,20 +49,17 @@ class Letters:
 
     def rounded(self, block: Node) -> str | None:
         """Return the letter whose value a bracket of decimals is, rounded."""
-        for name, value in self.environment.values.items():
-            if isinstance(value, Matrix) and (decimals := decimals_of(block, value.shape)):
-                try:
-                    printed = value_of(block, self.environment)
-                except (Misfit, Unknown):
-                    return None
-                if not isinstance(printed, Flexible) and not wrong_entries(printed.value, value, decimals):
-                    return name
-        return None
+        printed = as_printed(block, Reading(self.environment))
+        if not isinstance(printed, Matrix) or not decimals_in(printed):
+            return None
+        known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]
+        alike = ((name, value) for name, value in known if value.shape == printed.shape)
+        return next((name for name, value in alike if not wrong_entries(printed, value)), None)
 
     def _kind(self, name: str) -> Kind:
         """Return whether a letter is a signal, and its size; numbers and 1x1 matrices are one kind."""
         try:
-            found = value_of(Node("letter", text=name), self.environment)
+            found = value_of(Node("letter", text=name), Reading(self.environment))
         except (Misfit, Unknown):
             return None
         if isinstance(found, Flexible):

@@ -2,62 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symobs.audit.reading import text
 from symobs.exact import Matrix, Scalar
+from symobs.exact.as_printed import decimals_in, rounds_to, written_out
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.audit.grammar import Node
+    from symobs.exact.as_printed import Decimal
 
-_DECIMAL = re.compile(r"(?P<whole>[0-9]*)(?:\.(?P<places>[0-9]*))?(?:[eE](?P<power>[+-]?[0-9]+))?")
 _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
-
-
-@dataclass(frozen=True)
-class Decimal:
-    """A decimal as it is printed: so many units of its last place, with the power of ten written beside it."""
-
-    units: int
-    places: int
-    power: str
-
-    @property
-    def unit(self) -> Fraction:
-        """What one in the last place is worth."""
-        return Fraction(10) ** (int(self.power or 0) - self.places)
-
-    def agrees(self, exact: Fraction) -> bool:
-        """Whether this is the exact value, rounded to its last place."""
-        return abs(exact / self.unit - self.units) <= Fraction(1, 2)
-
-    def rounded(self, exact: Fraction) -> str:
-        """Return an exact value, rounded as this is written."""
-        units = round(exact / self.unit)
-        digits = str(abs(units)).rjust(self.places + 1, "0")
-        text = digits if self.places == 0 else f"{digits[: -self.places]}.{digits[-self.places :]}"
-        return f"{'-' if units < 0 else ''}{text}{f'e{self.power}' if self.power else ''}"
-
-    def slip(self, exact: Fraction) -> str:
-        """Return what happened to the exact value on its way into print, empty where that is not plain."""
-        if int(exact / self.unit) == self.units:  # towards 0
-            return "truncated, not rounded"
-        return "the sign is wrong" if abs(-exact / self.unit - self.units) <= Fraction(1, 2) else ""
-
-
-def decimal_of(node: Node) -> Decimal | None:
-    """Return the decimal that an entry is, where it is one with a point or a power of ten."""
-    sign, inner = (-1, node.parts[0]) if node.kind == "negative" else (1, node)
-    match = _DECIMAL.fullmatch(inner.text) if inner.kind == "number" else None
-    if match is None or (match["places"] is None and match["power"] is None):
-        return None
-    places = match["places"] or ""
-    return Decimal(sign * int((match["whole"] + places) or "0"), len(places), match["power"] or "")
 
 
 @dataclass(frozen=True)
@@ -79,37 +38,35 @@ def as_matrix(value: Scalar | Matrix) -> Matrix:
     return value if isinstance(value, Matrix) else Matrix.of([[value]])
 
 
-def decimals_of(node: Node, shape: tuple[int, int]) -> dict[tuple[int, int], Decimal]:
-    """Return the decimals among the entries of a printed matrix or number."""
-    rows = [row.parts for row in node.parts] if node.kind == "block" else [(node,)]
-    if (len(rows), len(rows[0])) != shape:
-        return {}
-    cells = {(i, j): decimal_of(cell) for i, row in enumerate(rows) for j, cell in enumerate(row)}
-    return {place: found for place, found in cells.items() if found is not None}
+def single(printed: Scalar) -> Decimal | None:
+    """Return the decimal that a printed value is, with its sign; None for any other value."""
+    decimals = decimals_in(printed)
+    if len(decimals) != 1:
+        return None
+    ((name, decimal),) = decimals.items()
+    generator = Scalar.symbol(name)
+    return decimal if printed == generator else -decimal if printed == -generator else None
 
 
-def wrong_entries(
-    printed: Matrix, right: Matrix, decimals: dict[tuple[int, int], Decimal], *, whole: str = "the value"
-) -> list[Entry]:
-    """Return the entries in which a printed matrix differs; decimals may be rounded."""
-    found = []
-    for i in range(right.shape[0]):
-        for j in range(right.shape[1]):
-            place = whole if right.shape == (1, 1) else f"entry ({i + 1}, {j + 1})"
-            decimal = decimals.get((i, j)) if right[i, j].is_constant else None
-            if decimal is None and printed[i, j] != right[i, j]:
-                found.append(
-                    Entry(place, value_text(printed[i, j]), value_text(right[i, j]), slip(printed[i, j], right[i, j]))
-                )
-            elif decimal is not None and not decimal.agrees(exact := right[i, j].fraction()):
-                because = decimal.slip(exact) or slip(printed[i, j], right[i, j])
-                text = f"{'-' if decimal.units < 0 else ''}{_as_written(decimal)}"
-                found.append(Entry(place, text, decimal.rounded(exact), because))
-    return found
+def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[Entry]:
+    """Return the entries in which a printed matrix differs; its decimals are generators and may be rounded."""
+    places = [(i, j) for i in range(right.shape[0]) for j in range(right.shape[1])]
+    return [
+        entry(whole if right.shape == (1, 1) else f"entry ({i + 1}, {j + 1})", printed[i, j], right[i, j])
+        for i, j in places
+        if not rounds_to(printed[i, j], right[i, j])
+    ]
 
 
-def _as_written(decimal: Decimal) -> str:
-    return decimal.rounded(abs(decimal.units) * decimal.unit).removeprefix("-")
+def entry(place: str, printed: Scalar, right: Scalar) -> Entry:
+    """Return what is to be said of a wrong value."""
+    decimal, plain = single(printed), written_out(printed)
+    if decimal is None or not right.is_constant:
+        return Entry(place, text(plain), text(right), slip(plain, right))
+    exact = right.fraction()
+    sign, size = "-" if decimal.units < 0 else "", -decimal if decimal.units < 0 else decimal
+    because = decimal.slip(exact) or slip(plain, right)
+    return Entry(place, f"{sign}{size.rounded(size.units * size.unit)}", decimal.rounded(exact), because)
 
 
 def slip(printed: Scalar, right: Scalar) -> str:
@@ -127,11 +84,12 @@ def slip(printed: Scalar, right: Scalar) -> str:
     return ""
 
 
-def reasons(printed: Matrix, right: Matrix, decimals: dict[tuple[int, int], Decimal], whole: str) -> str:
+def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
     """Return why a printed matrix is not the right one, the simplest that explains all of it."""
-    entries = wrong_entries(printed, right, decimals, whole=whole)
+    entries = wrong_entries(printed, right, whole=whole)
     if len(entries) == 1 or (entries and all(entry.slip.startswith("truncated") for entry in entries)):
         return listed(entries)
+    printed = written_out(printed)
     if printed == -right:
         return "all signs are wrong"
     if printed == right.T:
@@ -193,9 +151,9 @@ def polynomial_reason(printed: Scalar, right: Scalar, variable: str) -> str:
     if wanted == [-coefficient for coefficient in came]:
         return "all signs are wrong"
     entries = [
-        Entry(_power_name(length - 1 - i, variable), value_text(one), value_text(other), slip(one, other))
+        entry(_power_name(length - 1 - i, variable), one, other)
         for i, (one, other) in enumerate(zip(came, wanted, strict=True))
-        if one != other
+        if not rounds_to(one, other)
     ]
     return listed(entries)
 
@@ -209,17 +167,31 @@ def _power_name(power: int, variable: str) -> str:
 # -- values as text ---------------------------------------------------------------------------------------------------
 
 
-def value_text(value: Scalar | Matrix, decimals: dict[tuple[int, int], Decimal] | None = None) -> str:
+def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -> str:
     """Return a value in the grammar of printed equations, its decimals rounded as they are printed."""
     if isinstance(value, Scalar):
-        decimal = (decimals or {}).get((0, 0))
-        return decimal.rounded(value.fraction()) if decimal and value.is_constant else str(value).replace("**", "^")
-    rows = []
-    for i, row in enumerate(value.rows):
-        cells = []
-        for j, entry in enumerate(row):
-            decimal = (decimals or {}).get((i, j)) if entry.is_constant else None
-            text = decimal.rounded(entry.fraction()) if decimal else str(entry).replace("**", "^")
-            cells.append(text.replace(" ", ""))
-        rows.append(" ".join(cells))
+        return _number_text(value, printed if isinstance(printed, Scalar) else None)
+    alike = printed if isinstance(printed, Matrix) and printed.shape == value.shape else None
+    rows = [
+        " ".join(
+            _number_text(entry, None if alike is None else alike[i, j]).replace(" ", "") for j, entry in enumerate(row)
+        )
+        for i, row in enumerate(value.rows)
+    ]
     return f"[{'; '.join(rows)}]"
+
+
+def _number_text(value: Scalar, printed: Scalar | None) -> str:
+    decimal = single(printed) if printed is not None and value.is_constant else None
+    return text(value) if decimal is None else decimal.rounded(value.fraction())
+
+
+def term_text(value: Matrix, name: str) -> str:
+    """Return a matrix times a signal."""
+    if value.shape == (1, 1):
+        scalar = value[0, 0]
+        text = value_text(scalar)
+        if scalar == Scalar.of(1):
+            return name
+        return f"-{name}" if scalar == Scalar.of(-1) else f"({text}) {name}" if " " in text else f"{text} {name}"
+    return f"{value_text(value)} {name}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from symobs.audit.functions import (
     MOST_BITS,
@@ -17,33 +18,25 @@ from symobs.audit.functions import (
     sized,
     too_large,
 )
-from symobs.audit.grammar import Node
 from symobs.audit.letters import INSTANTS
-from symobs.certificate import EVALUATION_ERRORS, verify
+from symobs.audit.sizes import Flexible, Printed, alike, common, equal, fitted, is_signal, kind_of, shape
+from symobs.certificate import EVALUATION_ERRORS
 from symobs.errors import InputError
-from symobs.exact import Matrix, Scalar, rank
-from symobs.exact.functions import identities
-from symobs.formula import Environment, Letter, Literal, Relation, Signal
+from symobs.exact import Matrix, Scalar
+from symobs.exact.as_printed import as_generator, decimals_in
+from symobs.expression.tree import Node, exponent_of
+from symobs.formula import Apply, Letter, Literal, Signal
 from symobs.formula.term import Term, block
-from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-
-@dataclass(frozen=True)
-class Flexible:
-    """A multiple of the identity matrix whose order its neighbours decide; 0 is the zero matrix of any size."""
-
-    factor: Scalar
+    from symobs.audit.reading import Reading
 
 
-Printed: TypeAlias = Term | Flexible
-
-
-def value_of(node: Node, environment: Environment) -> Printed:
+def value_of(node: Node, reading: Reading) -> Printed:
     """Return what a tree is worth; raises Misfit, Unknown and BudgetExceeded."""
-    found = _value(node, environment)
+    found = _value(node, reading)
     if isinstance(found, Term):
         _bounded(found)
     return found
@@ -56,79 +49,56 @@ def _bounded(term: Term) -> None:
             raise too_large()
 
 
-def _value(node: Node, environment: Environment) -> Printed:
+def _value(node: Node, reading: Reading) -> Printed:
     parts = node.parts
     match node.kind:
         case "number":
-            assert node.value is not None  # noqa: S101 - an invariant of the grammar
-            return Term(Literal(node.value), environment)
+            decimal = as_generator(node.text, node.places[0]) if reading.rounding and node.places else None
+            assert isinstance(node.value, Scalar)  # noqa: S101 - an invariant of the grammar
+            return Term(Literal(decimal or node.value), reading.environment)
         case "letter":
-            return _letter(node.text, environment)
+            return _letter(node.text, reading)
         case "sum":
-            return _sum(parts, environment)
+            return _sum(parts, reading)
         case "negative":
-            inner = value_of(parts[0], environment)
+            inner = value_of(parts[0], reading)
             return Flexible(-inner.factor) if isinstance(inner, Flexible) else -inner
         case "product":
-            total = value_of(parts[0], environment)
+            total = value_of(parts[0], reading)
             for i, part in enumerate(parts[1:], start=1):
-                total = _times(total, value_of(part, environment), Node("product", parts[:i]), part)
+                total = _times(total, value_of(part, reading), Node("product", parts[:i]), part)
                 if isinstance(total, Term):
                     _bounded(total)
             return total
         case "quotient":
-            return _quotient(parts, environment)
+            return _quotient(parts, reading)
         case "power":
-            return _power(parts[0], int(node.text), environment)
+            return _power(parts[0], exponent_of(node) or 0, reading)
+        case "at":
+            return _at(parts[0], parts[1], reading)
         case "primed":
-            return _primed(parts[0], environment)
+            return _primed(parts[0], reading)
         case "block":
-            return _block([row.parts for row in parts], environment)
+            return _block([row.parts for row in parts], reading)
         case _:
-            return _call(node, environment)
+            return _call(node, reading)
 
 
-def _letter(name: str, environment: Environment) -> Printed:
+def _letter(name: str, reading: Reading) -> Printed:
+    environment = reading.environment
+    if name in environment.signs:
+        return Term(Literal(Scalar.symbol(name)), environment)
     if environment.knows(name) and name != "s":
         return Term(Letter(name), environment)
-    if name == environment.variable:
+    if name in {environment.variable, *INSTANTS}:
         return Term(Literal(Scalar.symbol(name)), environment)
     if name == "I":
         return Flexible(Scalar.of(1))
-    if name in INSTANTS:
-        return Term(Literal(Scalar.symbol(name)), environment)
     raise Unknown(name)
 
 
-def shape(term: Term) -> tuple[int, int] | None:
-    """Return rows and columns of a value or a signal, None for a number."""
-    value = term.value
-    if isinstance(value, Signal):
-        return value.size, 1
-    return value.shape if isinstance(value, Matrix) else None
-
-
-def is_signal(printed: Printed) -> bool:
-    """Whether a value is made of signals."""
-    return isinstance(printed, Term) and isinstance(printed.value, Signal)
-
-
-def fitted(flexible: Flexible, like: Term) -> Term:
-    """Return a multiple of the identity in the size of another value; raises Misfit where that is not square."""
-    size = shape(like)
-    if is_signal(like):
-        raise no_fit("the identity matrix stands beside a signal")
-    if size is None or size == (1, 1):
-        return Term(Literal(flexible.factor), like.environment)
-    if flexible.factor.is_zero:
-        return Term(Literal(Matrix.zeros(*size)), like.environment)
-    if size[0] != size[1]:
-        raise no_fit(f"the identity matrix is square, but {sized(size)} stands beside it")
-    return Term(Literal(Matrix.identity(size[0]) * flexible.factor), like.environment)
-
-
-def _sum(parts: Sequence[Node], environment: Environment) -> Printed:
-    found = [value_of(part, environment) for part in parts]
+def _sum(parts: Sequence[Node], reading: Reading) -> Printed:
+    found = [value_of(part, reading) for part in parts]
     terms = [(part, value) for part, value in zip(parts, found, strict=True) if isinstance(value, Term)]
     if not terms:
         return Flexible(sum((value.factor for value in found if isinstance(value, Flexible)), Scalar.of(0)))
@@ -138,30 +108,15 @@ def _sum(parts: Sequence[Node], environment: Environment) -> Printed:
     total: Term | None = None
     for part, value in zip(parts, found, strict=True):
         term = fitted(value, first) if isinstance(value, Flexible) else value
-        if not _alike(term, first):
+        if not alike(term, first):
             raise no_fit(f"{_unsigned(head)} {kind_of(first)}, but {_unsigned(part)} {kind_of(term)}")
         total = term if total is None else total + term
     assert total is not None  # noqa: S101 - a sum has parts
     return total
 
 
-def kind_of(term: Term) -> str:
-    """Return what size a value has, in words."""
-    size = shape(term)
-    if size is not None and is_signal(term):
-        return f"has {size[0]} component{'s' if size[0] > 1 else ''}"
-    return f"is {sized(size)}"
-
-
 def _unsigned(part: Node) -> Node:
     return part.parts[0] if part.kind == "negative" else part
-
-
-def _alike(left: Term, right: Term) -> bool:
-    single = ((1, 1), None)
-    if is_signal(left) != is_signal(right):
-        return False
-    return shape(left) == shape(right) or (shape(left) in single and shape(right) in single)
 
 
 def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed:
@@ -183,39 +138,82 @@ def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed
     return left @ right
 
 
-def _quotient(parts: Sequence[Node], environment: Environment) -> Printed:
-    above, below = (value_of(part, environment) for part in parts)
+def _quotient(parts: Sequence[Node], reading: Reading) -> Printed:
+    above, below = (value_of(part, reading) for part in parts)
     if isinstance(below, Flexible) or is_signal(below) or shape(below) not in (None, (1, 1)):
         raise Misfit(f"{parts[1]} is no number to divide by")
     divisor = below.scalar
     if divisor.is_zero:
         raise Misfit(f"{parts[1]} is 0")
+    reading.fails_where([divisor], f"{parts[1]} is 0")
     return Flexible(above.factor / divisor) if isinstance(above, Flexible) else above / below
 
 
-def _power(base: Node, exponent: int, environment: Environment) -> Printed:
-    value = value_of(base, environment)
+def _power(base: Node, exponent: int, reading: Reading) -> Printed:
+    value = value_of(base, reading)
     if isinstance(value, Flexible):
-        return value
+        if exponent < 0:
+            _require_inverse(base, value.factor, reading)
+        return Flexible(value.factor**exponent)
     size = shape(value)
     if is_signal(value) or (size is not None and size[0] != size[1]):
         raise no_fit(f"{base} {kind_of(value)}: only square matrices have powers and inverses")
     if exponent < 0:
         if isinstance(value.value, Matrix):
             require_small(value.value)
-        singular = value.scalar.is_zero if size in (None, (1, 1)) else rank(value.value) < size[0]
-        if singular:
-            raise Misfit(f"{base} has no inverse")
+        whole = value.scalar if size in (None, (1, 1)) else value.value.determinant()
+        _require_inverse(base, whole, reading)
         value, exponent = value.inverse, -exponent
+    if not exponent:
+        return Term(Literal(Scalar.of(1) if size is None else Matrix.identity(size[0])), reading.environment)
     total: Term = value
     for _ in range(exponent - 1):
         total = total @ value
         _bounded(total)
-    return total if exponent else Term(Literal(Scalar.of(1)), environment)
+    return total
 
 
-def _primed(base: Node, environment: Environment) -> Printed:
-    value = value_of(base, environment)
+def _require_inverse(base: Node, determinant: Scalar, reading: Reading) -> None:
+    if determinant.is_zero:
+        raise Misfit(f"{base} has no inverse")
+    reading.fails_where([determinant], f"{base} has no inverse")
+
+
+def _at(function: Node, argument: Node, reading: Reading) -> Printed:
+    """Return a function at its argument: P(0), φ(A); at its own variable, and at a time, it is itself."""
+    value, variable = value_of(function, reading), reading.environment.variable
+    varies = isinstance(value, Term) and not is_signal(value) and variable in value.value.names
+    if argument.kind == "letter" and (argument.text == variable or (argument.text == "t" and not varies)):
+        return value
+    if not isinstance(value, Term) or not varies:
+        raise Misfit(f"{function} is no function of {variable}")
+    where = value_of(argument, reading)
+    if isinstance(where, Flexible) or is_signal(where):
+        raise Misfit(f"{argument} is no number here")
+    if isinstance(where.value, Matrix) and where.value.shape != (1, 1):
+        return _at_matrix(function, value, argument, where)
+    try:
+        found = value.value.substitute({variable: where.scalar})
+        below = value.value.common_denominator().substitute({variable: where.scalar})
+    except ZeroDivisionError:
+        raise Misfit(f"{function}({argument}) has no value") from None
+    if below.is_zero:
+        raise Misfit(f"{function}({argument}) has no value")
+    reading.fails_where([below], f"{function}({argument}) has no value")
+    return Term(Literal(found), reading.environment)
+
+
+def _at_matrix(function: Node, value: Term, argument: Node, where: Term) -> Term:
+    polynomial = function.kind == "letter" and isinstance(value.value, Scalar)
+    if not polynomial or not value.value.is_polynomial_in(where.environment.variable):
+        raise Misfit(f"{function} is no polynomial, which alone has a value at a matrix")
+    if where.value.shape[0] != where.value.shape[1]:
+        raise no_fit(f"{argument} {kind_of(where)}, but a polynomial takes a square matrix")
+    return Term(Apply(f"{function.text}_at", where.formula), where.environment)
+
+
+def _primed(base: Node, reading: Reading) -> Printed:
+    value = value_of(base, reading)
     if isinstance(value, Flexible):
         return value
     if not is_signal(value):
@@ -231,8 +229,8 @@ def _primed(base: Node, environment: Environment) -> Printed:
 # -- blocks -----------------------------------------------------------------------------------------------------------
 
 
-def _block(rows: Sequence[Sequence[Node]], environment: Environment) -> Printed:
-    found = [[value_of(entry, environment) for entry in row] for row in rows]
+def _block(rows: Sequence[Sequence[Node]], reading: Reading) -> Printed:
+    found = [[value_of(entry, reading) for entry in row] for row in rows]
     found = [[_zero(value) for value in row] for row in found] if _in_blocks(found) else found
     heights: list[int | None] = [None] * len(rows)
     widths: list[int | None] = [None] * len(rows[0])
@@ -249,13 +247,13 @@ def _block(rows: Sequence[Sequence[Node]], environment: Environment) -> Printed:
                         raise no_fit(message)
                     sizes[index] = size
     _spread(found, heights, widths)
-    order = environment.values["A"].shape[0] if "A" in environment.values else 1  # type: ignore[union-attr]
+    order = reading.environment.values["A"].shape[0] if "A" in reading.environment.values else 1  # type: ignore[union-attr]
     terms = []
     for i, row in enumerate(found):
         line = []
         for j, value in enumerate(row):
             room = (heights[i] or order, widths[j] or order)
-            line.append(value if isinstance(value, Term) else _of_size(value, room, environment))
+            line.append(value if isinstance(value, Term) else _of_size(value, room, reading))
         terms.append(line)
     if any(is_signal(term) for line in terms for term in line) and not all(
         len(line) == 1 and is_signal(line[0]) for line in terms
@@ -286,25 +284,25 @@ def _spread(found: Sequence[Sequence[Printed]], heights: list[int | None], width
                     widths[j] = widths[j] or heights[i]
 
 
-def _of_size(value: Flexible, size: tuple[int, int], environment: Environment) -> Term:
+def _of_size(value: Flexible, size: tuple[int, int], reading: Reading) -> Term:
     if value.factor.is_zero:
-        return Term(Literal(Matrix.zeros(*size)), environment)
+        return Term(Literal(Matrix.zeros(*size)), reading.environment)
     if size[0] != size[1]:
         raise no_fit(f"the identity matrix stands where a {sized(size)} block belongs")
-    return Term(Literal(Matrix.identity(size[0]) * value.factor), environment)
+    return Term(Literal(Matrix.identity(size[0]) * value.factor), reading.environment)
 
 
 # -- functions --------------------------------------------------------------------------------------------------------
 
 
-def _call(node: Node, environment: Environment) -> Printed:
+def _call(node: Node, reading: Reading) -> Printed:
     if node.text == "integral":
-        return _integral(node.parts, environment)
-    found = [value_of(part, environment) for part in node.parts]
+        return _integral(node.parts, reading)
+    found = [value_of(part, reading) for part in node.parts]
     if node.text == "size":
-        return _size(node.parts[0], found[0], environment)
+        return _size(node.parts[0], found[0], reading)
     arguments = [_argument(part, value) for part, value in zip(node.parts, found, strict=True)]
-    return Term(Literal(applied(node, arguments, environment)), environment)
+    return Term(Literal(applied(node, arguments, reading)), reading.environment)
 
 
 def _argument(part: Node, value: Printed) -> Matrix:
@@ -313,58 +311,65 @@ def _argument(part: Node, value: Printed) -> Matrix:
     return value.value if isinstance(value.value, Matrix) else Matrix.of([[value.value]])
 
 
-def _size(part: Node, value: Printed, environment: Environment) -> Term:
+def _size(part: Node, value: Printed, reading: Reading) -> Term:
     if isinstance(value, Flexible):
         raise Misfit(f"{part} has any size")
-    return Term(Literal(Matrix.row(list(shape(value) or (1, 1)))), environment)
+    return Term(Literal(Matrix.row(list(shape(value) or (1, 1)))), reading.environment)
 
 
-def _integral(parts: Sequence[Node], environment: Environment) -> Term:
+def _integral(parts: Sequence[Node], reading: Reading) -> Term:
     if parts[1].kind != "letter":
         raise Misfit(f"{parts[1]} is no time to integrate over")
-    integrand, begin, end = (_argument(part, value_of(part, environment)) for part in (parts[0], *parts[2:]))
+    integrand, begin, end = (_argument(part, value_of(part, reading)) for part in (parts[0], *parts[2:]))
     found = integrated(integrand, parts[1].text, (begin[0, 0], end[0, 0]))
     if found is None:
         raise InputError(f"the integral of {parts[0]} has no closed form here", repair="leave the entry out")
-    return Term(Literal(found), environment)
+    new = found.common_denominator() / integrand.common_denominator()
+    reading.fails_where([new], f"the integral of {parts[0]} is another")
+    return Term(Literal(found), reading.environment)
 
 
-# -- comparison -------------------------------------------------------------------------------------------------------
+def as_printed(node: Node, reading: Reading) -> Matrix | Scalar | None:
+    """Return what is printed of a value, decimals as generators; None where decimals are used and not compared.
+
+    They are compared where numbers, symbols, sums, products and quotients make up a number or the entries of one bracket.
+    """
+    if _written_as(node, reading) is None:
+        return None
+    found = value_of(node, replace(reading, rounding=True))
+    return None if isinstance(found, Flexible) or is_signal(found) else found.value
 
 
-def common(left: Printed, right: Printed, environment: Environment) -> tuple[Term, Term]:
-    """Return two sides in one size; raises Misfit where they have none."""
-    if isinstance(left, Flexible) or isinstance(right, Flexible):
-        if isinstance(left, Term):
-            return left, fitted(right, left)  # type: ignore[arg-type]
-        if isinstance(right, Term):
-            return fitted(left, right), right
-        return tuple(Term(Literal(side.factor), environment) for side in (left, right))  # type: ignore[return-value]
-    if not _alike(left, right) and (_is_zero(left) or _is_zero(right)):
-        return (left, left - left) if _is_zero(right) else (right - right, right)
-    if not _alike(left, right):
-        raise no_fit(f"the left side {kind_of(left)}, the right side {kind_of(right)}")
-    return left, right
+def _written_as(node: Node, reading: Reading) -> str | None:
+    """Return `number` or `block` for a value that is written out, None for what refers to other values."""
+    plain = {*reading.environment.signs, reading.environment.variable, *INSTANTS}
+    kinds = [_written_as(part, reading) for part in node.parts]
+    match node.kind:
+        case "number":
+            return "number"
+        case "letter":
+            return "number" if node.text in plain else None
+        case "negative" | "primed" | "sum":
+            return kinds[0] if len(set(kinds)) == 1 else None
+        case "product":
+            return None if None in kinds or kinds.count("block") > 1 else "block" if "block" in kinds else "number"
+        case "quotient" | "power":
+            return kinds[0] if kinds[1] == "number" and (kinds[0] == "number" or node.kind == "quotient") else None
+        case "row" | "block":
+            return node.kind if set(kinds) == {"row" if node.kind == "block" else "number"} else None
+        case _:
+            return None
 
 
-def _is_zero(term: Term) -> bool:
-    return isinstance(term.value, Scalar) and term.value.is_zero
-
-
-def equal(left: Term, right: Term) -> bool:
-    """Tell whether two sides are equal, by a certificate."""
-    environment = left.environment
-    exact = [value for value in (left.value, right.value) if isinstance(value, (Scalar, Matrix))]
-    meanings, relations = identities(exact)
-    if meanings or relations:
-        environment = Environment(environment.variable, coefficients=meanings, relations=relations)
-        return bool(verify(Relation((Literal(exact[0]), Literal(exact[1])), ("=",)), environment)[0])
-    return bool(verify(Relation((left.formula, right.formula), ("=",)), environment)[0])
-
-
-def holds(left: Node, right: Node, environment: Environment) -> bool:
+def holds(left: Node, right: Node, reading: Reading) -> bool:
     """Tell whether an equation is true; one whose sizes do not fit is not."""
     try:
-        return equal(*common(value_of(left, environment), value_of(right, environment), environment))
+        return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
     except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
         return False
+
+
+def is_rounded(node: Node, reading: Reading) -> bool:
+    """Whether a side is a value written out with decimals."""
+    value = as_printed(node, reading)
+    return value is not None and bool(decimals_in(value))

@@ -70,7 +70,6 @@ def values(plant: StateSpace, results: Sequence[Result], convention: Convention)
         found[written.get(key, key)] = -gain if gain is not None and key in convention.turned else gain
     found |= blocks_of(plant, K, L, convention)
     found |= _for_the_observer(m, L, name)
-    found |= {symbol: Scalar.symbol(symbol) for symbol in plant.symbols.signs}
     return {key: value for key, value in found.items() if value is not None}
 
 

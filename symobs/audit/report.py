@@ -23,11 +23,11 @@ def report(audited: Mapping[str, Audited], format_name: str) -> str:
 def summary(audited: Mapping[str, Audited]) -> str:
     """Return one sentence: how many printed equations there are, and how many are wrong."""
     checked = sum(each.checked for each in audited.values())
-    wrong = sum(len(each.findings) for each in audited.values())
+    wrong = sum(len(each.wrong) for each in audited.values())
+    general = sum(len(each.findings) for each in audited.values()) - wrong
     equations = "equation" if checked == 1 else "equations"
-    if not wrong:
-        return f"{checked} printed {equations}, nothing wrong."
-    return f"{checked} printed {equations}, {wrong} wrong."
+    beside = f", {general} true in general only" if general else ""
+    return f"{checked} printed {equations}, {wrong or 'nothing'} wrong{beside}."
 
 
 def _heading(finding: Finding) -> str:
@@ -39,11 +39,13 @@ def _text(audited: Mapping[str, Audited]) -> str:
 
     lines: list[str] = []
     for path, each in audited.items():
-        if each.findings:
+        if each.findings or each.notes:
             lines += [printable(f"{path}: {each.title}" if each.title else path)]
+        lines += [f"  note: {printable(note)}" for note in each.notes]
         for finding in each.findings:
             lines += [f"  {printable(_heading(finding))}", f"    printed   {printable(finding.printed)}"]
-            lines += [f"    right     {printable(finding.right)}"] if finding.right else []
+            label = "plainly" if finding.holds else "right  "
+            lines += [f"    {label}   {printable(finding.right)}"] if finding.right else []
             lines += (
                 wrap(f"    because   {printable(finding.reason)}", _WIDTH, subsequent_indent=" " * 14)
                 if finding.reason
@@ -69,7 +71,8 @@ def _markdown(audited: Mapping[str, Audited]) -> str:
             cells = (plain(place), plain(found.erratum), code(found.printed), code(found.right), plain(found.reason))
             lines.append(f"| {' | '.join(cells)} |")
     table = [*lines, ""] if len(lines) > 2 else []
-    return "\n".join([*table, summary(audited), ""])
+    notes = [line for path, each in audited.items() for note in each.notes for line in (plain(f"{path}: {note}"), "")]
+    return "\n".join([*table, *notes, summary(audited), ""])
 
 
 def _json(audited: Mapping[str, Audited]) -> str:
@@ -79,9 +82,17 @@ def _json(audited: Mapping[str, Audited]) -> str:
             "title": each.title,
             "checked": each.checked,
             "findings": [
-                {"where": f.where, "erratum": f.erratum, "printed": f.printed, "right": f.right, "reason": f.reason}
+                {
+                    "where": f.where,
+                    "erratum": f.erratum,
+                    "printed": f.printed,
+                    "right": f.right,
+                    "reason": f.reason,
+                    "holds": f.holds,
+                }
                 for f in each.findings
             ],
+            "notes": list(each.notes),
         }
         for path, each in audited.items()
     ]

@@ -11,7 +11,8 @@ from dataclasses import replace
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
-from symobs.audit.grammar import Node, every, letters_of, with_part
+from symobs.exact import Scalar
+from symobs.expression.tree import Node, every, exponent_of, letters_of, with_part
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ _MOST_TRIED = 1_000
 #: changes are tried.
 _MOST_PARTS, _MOST_PARTS_OF_A_FILE = 12_000, 100_000
 _MOST_ROWS = 6
+_MINUS_ONE = Node("negative", (Node("number", text="1", value=Scalar.of(1)),))
 _INDEX = re.compile(r"_?[0-9]+$|_d$")
 _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
@@ -233,10 +235,10 @@ def _inverses(side: Node) -> Iterator[Slip]:
     """An inverse is printed that should not be, or is missing."""
 
     def change(node: Node) -> Iterator[Slip]:
-        if node.kind == "power" and node.text == "-1":
+        if node.kind == "power" and exponent_of(node) == -1:
             yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
         elif node.kind == "letter":
-            inverse = Node("power", (node,), text="-1")
+            inverse = Node("power", (node, _MINUS_ONE))
             yield Slip(inverse, _printed_for(node, inverse))
 
     return _outermost(side, change)

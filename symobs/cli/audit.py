@@ -40,7 +40,7 @@ def audit_command(
 
     def work(tell: Tell) -> Outcome:
         found = _audited(chosen, tell)
-        wrong = any(each.findings for each in found.values())
+        wrong = any(each.wrong for each in found.values())
         return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
 
     _run(work, timeout, memory, _place(chosen[0]) if len(chosen) == 1 else "")

@@ -12,6 +12,8 @@ from symobs.exact.precision import Precision
 from symobs.exact.real import RealRoot
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from symobs.exact.scalar import Scalar
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
@@ -65,16 +67,17 @@ def _ball(value: Scalar) -> arb:
         number = value.fraction()
         return arb(number.numerator) / number.denominator
     names = {name: _generator(name) for name in value.names}
-    above, below = (_polynomial(part, names) for part in (value.numerator, value.denominator))
+    above, below = (polynomial_ball(part, names) for part in (value.numerator, value.denominator))
     return above / below
 
 
-def _polynomial(value: Scalar, names: dict[str, arb]) -> arb:
+def polynomial_ball(value: Scalar, names: Mapping[str, arb]) -> arb:
+    """Return an enclosure of a polynomial, given those of its names; a number has its own."""
     total = arb(0)
     for coefficient, powers in value.terms():
         term = arb(coefficient)
         for name, power in powers:
-            term = term * names[name] ** power
+            term = term * (names[name] if name in names else _generator(name)) ** power
         total = total + term
     return total
 

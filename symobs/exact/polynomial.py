@@ -10,7 +10,7 @@ from symobs.exact.matrix import Matrix
 from symobs.exact.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
 
 def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
@@ -19,6 +19,18 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
     for coefficient in coefficients:
         value = value * generator + coefficient
     return value
+
+
+def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:
+    """Return the coefficients of a numerator, as a polynomial in all but these names: where all vanish, it does."""
+    found: dict[tuple[tuple[str, int], ...], Scalar] = {}
+    for coefficient, powers in value.numerator.terms():
+        inner = Scalar.of(coefficient)
+        for name, power in powers:
+            inner = inner * Scalar.symbol(name) ** power if name in names else inner
+        monomial = tuple((name, power) for name, power in powers if name not in names)
+        found[monomial] = found.get(monomial, Scalar.of(0)) + inner
+    return list(found.values())
 
 
 def product_of(factors: Iterable[Scalar]) -> Scalar:

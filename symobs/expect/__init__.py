@@ -13,8 +13,17 @@ from symobs.errors import CertificateRejected, InputError, ProblemErrors, Symobs
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
 from symobs.exact.functions import roots_in, symbols_in
 from symobs.expect.conditions import conditions_agree
-from symobs.expect.functions import functions_agree
-from symobs.expect.roots import COUNTED, is_number, key_of, numbers_agree, read_roots
+from symobs.expect.functions import agrees, functions_agree
+from symobs.expect.roots import (
+    COUNTED,
+    is_number,
+    key_of,
+    numbers_agree,
+    read_roots,
+    root_rounds_to,
+    roots_round_to,
+    rounded_roots,
+)
 from symobs.expect.structure import RELATION, agree, factored_table, factors_agree
 from symobs.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.expression.source import shown
@@ -166,22 +175,23 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
-        return functions_agree(read(expected, names, variable="t", where=where, functions=True), found)
+        return functions_agree(read(expected, names, variable="t", where=where, functions=True, rounding=True), found)
     if isinstance(found, Matrix):
         known = names if names is None or variable not in found.names else {**names, variable: "real"}
-        return parse_matrix(expected, known, where=where) == found
+        return agrees(parse_matrix(expected, known, where=where, rounding=True), found)
     table = factored_table(found)
     if table is not None:
         known = None if names is None else {**names, variable: "real"}
-        return parse_matrix(expected, known, where=where) == table
+        return agrees(parse_matrix(expected, known, where=where, rounding=True), table)
     if isinstance(found, Mapping):
         return agree(found, expected, names, where)
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
         if roots_in(value):
-            return functions_agree(parse_scalar(expected, names, variable=free, where=where, functions=True), value)
-        return parse_scalar(expected, names, variable=free, where=where) == value
+            read_as = parse_scalar(expected, names, variable=free, where=where, functions=True, rounding=True)
+            return functions_agree(read_as, value)
+        return agrees(parse_scalar(expected, names, variable=free, where=where, rounding=True), value)
     if isinstance(found, int) and not isinstance(found, bool):
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
     if found is None or isinstance(found, (str, bool)):
@@ -199,6 +209,9 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if not found or not expected:
         return not found and not expected
     if all(isinstance(entry, Root) for entry in found):
+        rounded = rounded_roots(expected, names, where)
+        if rounded:
+            return roots_round_to(rounded, found, variable)
         return Counter(map(key_of, found)) == Counter(map(key_of, read_roots(expected, names, variable, where)))
     if all(isinstance(entry, (Complex, Root)) for entry in found):
         return numbers_agree(found, expected, names, where)
@@ -209,11 +222,13 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):
         return sorted(found) == sorted(expected)
     if result.in_time and all(isinstance(entry, Scalar) for entry in found):
-        read = [parse_scalar(entry, names, variable="t", where=where, functions=True) for entry in expected]
+        read = [
+            parse_scalar(entry, names, variable="t", where=where, functions=True, rounding=True) for entry in expected
+        ]
         return len(read) == len(found) and all(map(functions_agree, read, found))
     if all(isinstance(entry, Scalar) for entry in found):
-        read = [parse_scalar(entry, names, where=f"{where}[{i}]") for i, entry in enumerate(expected)]
-        return bool(found == read)
+        read = [parse_scalar(entry, names, where=f"{where}[{i}]", rounding=True) for i, entry in enumerate(expected)]
+        return len(read) == len(found) and all(map(agrees, read, found))
     if all(isinstance(entry, Matrix) for entry in found):
         alike = len(found) == len(expected)
         return alike and all(
@@ -249,13 +264,17 @@ def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
         return polynomials[0] == polynomials[1] and int(counted[0][2]) == int(counted[1][2])
     if counted[0] or counted[1]:
         return False
-    left, right = (parse_scalar(text, names, where=where, functions=True) for text in (found, expected))
-    return functions_agree(left, right)
+    return functions_agree(
+        parse_scalar(expected, names, where=where, functions=True, rounding=True),
+        parse_scalar(found, names, where=where, functions=True),
+    )
 
 
 def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
     """Tell whether an entry of a list is this matrix; a number alone is none."""
-    return isinstance(expected, (str, list)) and parse_matrix(expected, names, where=where) == found
+    if not isinstance(expected, (str, list)):
+        return False
+    return agrees(parse_matrix(expected, names, where=where, rounding=True), found)
 
 
 # -- modes ----------------------------------------------------------------------------------------------------------
@@ -280,7 +299,13 @@ def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str)
     for key, entry in wanted.items():
         value = mode[key]
         if isinstance(value, Root):
-            if Counter(map(key_of, read_roots([entry], names, variable, f"{where}.{key}"))) != Counter([key_of(value)]):
+            rounded = rounded_roots([entry], names, f"{where}.{key}")
+            if rounded:
+                if len(rounded) != 1 or not root_rounds_to(rounded[0], value):
+                    return False
+            elif Counter(map(key_of, read_roots([entry], names, variable, f"{where}.{key}"))) != Counter(
+                [key_of(value)]
+            ):
                 return False
         elif key == "conditions":
             if not _lists_agree(value, entry if isinstance(entry, list) else [entry], result, f"{where}.{key}"):

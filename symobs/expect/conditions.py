@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.expect.structure import relation
+from symobs.exact.as_printed import decimals_in
+from symobs.expect.structure import relation, relations_agree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,6 +19,9 @@ def conditions_agree(
     """Tell whether two conjunctions of relations hold at the same parameters, as far as that is proved."""
     ours = {relation(str(entry), names, where) for entry in found}
     theirs = {relation(entry, names, where) for entry in expected}
+    if any(decimals_in(value) for value, _ in theirs):
+        pairs = [(mine, other) for other in theirs for mine in ours if relations_agree(other, mine)]
+        return {mine for mine, _ in pairs} == ours and {other for _, other in pairs} == theirs
     return ours == theirs or (_implies(ours, theirs, signs) and _implies(theirs, ours, signs))
 
 

@@ -7,6 +7,8 @@ from typing import Any
 
 from symobs.errors import InputError
 from symobs.exact import Complex, Root, Scalar, root_of_pole
+from symobs.exact.as_printed import decimals_in, polynomial_of, rounds_to
+from symobs.exact.roots import polynomial_of_roots
 from symobs.expect.functions import functions_agree
 from symobs.expression import parse_poles, parse_scalar
 from symobs.expression.source import shown
@@ -35,6 +37,29 @@ def read_roots(expected: list[Any], names: Any, variable: str, where: str) -> li
             read = parse_poles(entry if isinstance(entry, str) else [entry], names, where=place)
             roots += [root_of_pole(pole, variable) for pole in read]
     return roots
+
+
+def rounded_roots(expected: list[Any], names: Any, where: str) -> tuple[Complex, ...]:
+    """Return the numbers of a list with decimals; nothing where it has none."""
+    if any(isinstance(entry, str) and "CRootOf" in entry for entry in expected):
+        return ()
+    texts = ", ".join(str(entry).strip(" []") for entry in expected)
+    read = parse_poles(texts, names, where=where, functions=True, rounding=True) if "." in texts else ()
+    return read if any(decimals_in(root.real) or decimals_in(root.imaginary) for root in read) else ()
+
+
+def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: str) -> bool:
+    """Tell whether the roots found round to the decimals of those printed."""
+    exact = polynomial_of_roots(variable, tuple(found))
+    try:
+        return exact is not None and rounds_to(polynomial_of(printed, variable), exact)
+    except ValueError:  # one lacks its conjugate
+        return False
+
+
+def root_rounds_to(printed: Complex, found: Root) -> bool:
+    """Tell whether a root with a closed form rounds to the decimals of a printed number."""
+    return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed)
 
 
 def _surd(text: str, names: Any, variable: str, where: str) -> Root:
@@ -76,7 +101,7 @@ def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str)
     waiting = list(found)
     for i, entry in enumerate(expected):
         counted = isinstance(entry, str) and "CRootOf" in entry
-        read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True)
+        read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True, rounding=True)
         match = next((n for n in waiting if (str(n) == entry if counted else is_number(n, read[0]))), None)
         if match is None:
             return False
@@ -88,4 +113,4 @@ def is_number(found: Complex | Root, expected: Complex) -> bool:
     """Tell whether a complex number is the one expected, as functions of its symbols."""
     if isinstance(found, Root):
         return False
-    return functions_agree(found.real, expected.real) and functions_agree(found.imaginary, expected.imaginary)
+    return functions_agree(expected.real, found.real) and functions_agree(expected.imaginary, found.imaginary)

@@ -8,8 +8,9 @@ from typing import Any
 
 from symobs.errors import InputError, SymobsError
 from symobs.exact import Factored, Matrix, Scalar, product_of
+from symobs.exact.as_printed import decimals_in, rounds_to, written_out
 from symobs.exact.functions import symbols_in
-from symobs.expect.functions import functions_agree
+from symobs.expect.functions import agrees, functions_agree
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.source import shown
 
@@ -28,13 +29,16 @@ def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
         return all(agree(entry, wanted, names, f"{where}[{i}]") for i, (entry, wanted) in pairs)
     if found is None or isinstance(found, bool) or expected is None or isinstance(expected, (bool, list, Mapping)):
         if isinstance(found, Matrix) and isinstance(expected, list):
-            return parse_matrix(expected, _knowing(names, found), where=where) == found
+            return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
         return type(found) is type(expected) and bool(found == expected)
     if isinstance(found, Matrix):
-        return isinstance(expected, str) and parse_matrix(expected, _knowing(names, found), where=where) == found
+        if not isinstance(expected, str):
+            return False
+        return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
     if isinstance(found, (Scalar, Factored, int)):
         value = found.value if isinstance(found, Factored) else Scalar.of(found) if isinstance(found, int) else found
-        return functions_agree(parse_scalar(expected, _knowing(names, value), where=where, functions=True), value)
+        known = _knowing(names, value)
+        return functions_agree(parse_scalar(expected, known, where=where, functions=True, rounding=True), value)
     return str(found) == str(expected) or _agree_as_mathematics(str(found), str(expected), names, where)
 
 
@@ -47,11 +51,13 @@ def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
         message = f'"{shown(str(text))}" is not a relation'
         raise InputError(message, where=where, repair='write for example "2*c - 1 != 0"')
     left, operator, right = match.groups()
-    difference = parse_scalar(left, names, where=where, functions=True)
-    difference = difference - parse_scalar(right, names, where=where, functions=True)
+    difference, subtracted = (
+        parse_scalar(side, names, where=where, functions=True, rounding=True) for side in (left, right)
+    )
+    difference = difference - subtracted
     if operator in {"<", "<="}:
         difference, operator = -difference, operator.replace("<", ">")
-    if difference.is_zero:
+    if difference.is_zero or decimals_in(difference):
         return difference, operator
     if operator == "!=":
         factors = (difference.numerator * difference.denominator).factors()[1]
@@ -64,6 +70,25 @@ def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
     return difference / (unit if operator in {"!=", "=="} else Scalar.of(abs(unit.fraction()))), operator
 
 
+def relations_agree(expected: tuple[Scalar, str], found: tuple[Scalar, str]) -> bool:
+    """Tell whether a relation is the one found, up to a factor that does not matter; its decimals may be rounded."""
+    (printed, operator), (exact, other) = expected, found
+    if not decimals_in(printed) or exact.is_zero or operator != other:
+        return expected == found
+    coefficient, powers = exact.terms()[0]
+    decimals = decimals_in(printed)
+    leads = [
+        product_of([Scalar.of(number), *(Scalar.symbol(name) ** power for name, power in each if name in decimals)])
+        for number, each in printed.numerator.terms()
+        if tuple(pair for pair in each if pair[0] not in decimals) == powers
+    ]
+    lead = sum(leads, Scalar.of(0))
+    same = written_out(lead) * coefficient
+    if same.is_zero or (operator in {">", ">="} and same.fraction() < 0):
+        return False
+    return rounds_to(printed.numerator / lead, exact / Scalar.of(coefficient))
+
+
 def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: Any, where: str) -> bool:
     """Tell whether the factors with their powers are those expected, in any order."""
     read: list[tuple[Scalar, int]] = []
@@ -73,8 +98,10 @@ def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: A
         known = names
         for factor, _ in found:
             known = _knowing(known, factor)
-        read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]"), pair[1]))
-    return len(read) == len(found) and all(pair in read for pair in found)
+        read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]", rounding=True), pair[1]))
+    return len(read) == len(found) and all(
+        any(power == other and agrees(value, factor) for value, other in read) for factor, power in found
+    )
 
 
 def factored_table(found: Any) -> Matrix | None:
@@ -95,8 +122,11 @@ def _agree_as_mathematics(found: str, expected: str, names: Any, where: str) -> 
     """Tell whether two texts say the same; what is no mathematics says nothing but itself."""
     try:
         if RELATION.match(found) or RELATION.match(expected):
-            return relation(found, names, where) == relation(expected, names, where)
-        left, right = (parse_scalar(text, names, where=where, functions=True) for text in (found, expected))
+            return relations_agree(relation(expected, names, where), relation(found, names, where))
+        left, right = (
+            parse_scalar(text, names, where=where, functions=True, rounding=text == expected)
+            for text in (expected, found)
+        )
     except SymobsError:
         return False
     return functions_agree(left, right)

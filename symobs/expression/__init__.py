@@ -1,9 +1,9 @@
 """Text to exact values: the only way from what a user wrote into the field.
 
-Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  `ordering` puts
-the tokens into the order of computation, and `evaluation` computes with exact values; `budget` asks before every
-operation how large its result can get.  Nothing is run as a program and nothing recurses on the depth of a text, so
-any text ends, soon, in an exact value or in one of symobs's errors.
+Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  `parser` makes the
+syntax tree, the same for problem files and printed equations, and `evaluation` computes with exact values; `budget` asks
+before every operation how large its result can get.  Nothing is run as a program and nothing recurses on the depth of a
+text, so any text ends, soon, in an exact value or in one of symobs's errors.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
 from symobs.expression.budget import common_denominator_excess
-from symobs.expression.evaluation import EQUAL_ROWS, Grid, read, unequal_row
+from symobs.expression.evaluation import Grid, read
 from symobs.expression.names import Names, Scope, declared_name
+from symobs.expression.parser import EQUAL_ROWS, unequal_row
 from symobs.expression.plain import plain_rows
 from symobs.expression.source import shown
 from symobs.expression.tokens import MOST_DIGITS, sharing
@@ -37,16 +38,23 @@ _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number",
 
 
 def parse_scalar(
-    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    rounding: bool = False,
 ) -> Scalar:
     """Return the real value of a text, an int or a Fraction.
 
     `names` are the declared names, None for any; `variable` (s, z or t) is known besides them; with `functions`, exp,
-    sin, cos, sinh, cosh and sqrt of real arguments are read as generators.
+    sin, cos, sinh, cosh and sqrt of real arguments are read as generators; with `rounding` decimals are (`exact.as_printed`).
     Raises ExpressionError for what is no expression, UnknownName, BudgetExceeded, InexactInput for a float, and
     InputError for any other type; all name the place `where`.
     """
-    return _real(_entry(value, Scope.of(names, variable, where, functions=functions), where), where)
+    scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
+    return _real(_entry(value, scope, where), where)
 
 
 def parse_matrix(
@@ -56,6 +64,7 @@ def parse_matrix(
     variable: str | None = None,
     where: str = "",
     functions: bool = False,
+    rounding: bool = False,
     beside: Sequence[object] = (),
 ) -> Matrix:
     """Return the matrix of a MATLAB-style text (`[1 0; 0 1]`) or of nested lists of int, Fraction and text.
@@ -63,7 +72,7 @@ def parse_matrix(
     The values stand in one context with those of the texts `beside` it, which need not be carried over then.
     Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
     """
-    scope = Scope.of(names, variable, where, functions=functions)
+    scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
     if _is_of_numbers(value):
         return matrix_of_numbers(value)
     if beside:
@@ -80,14 +89,20 @@ def parse_matrix(
 
 
 def parse_poles(
-    value: object, names: Names = None, *, variable: str | None = None, where: str = "", functions: bool = False
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    rounding: bool = False,
 ) -> tuple[Complex, ...]:
     """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
 
     With `functions` square roots are read as generators; where there are names, the values stand in one context with
     `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
-    scope = Scope.of(names, None, where, functions=functions)
+    scope = Scope.of(names, None, where, functions=functions, rounding=rounding)
     if isinstance(value, str):
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))

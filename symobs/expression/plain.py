@@ -24,6 +24,8 @@ _MOST_NAMES = 100
 def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | None:
     """Return rows of entries, and whether brackets stand around them; None where the text is not plain."""
     inside = text.strip(" ")
+    if scope.rounding and "." in inside:
+        return None
     bracketed = inside[:1] == "[" and inside[-1:] == "]"
     if bracketed:
         lines = [line.split() for line in inside[1:-1].split(";")]

@@ -49,7 +49,7 @@ def _term_backwards(tokens: Sequence[Token], end: int) -> Iterator[int]:
     for place in range(end - 1, -1, -1):
         kind = tokens[place].type
         if not depth:
-            if kind in {*_OPENING, "_COMMA", "_END"} or (kind == "ADD" and _follows_operand(tokens, place)):
+            if kind in {*_OPENING, "_COMMA", "_END", "_EQUAL"} or (kind == "ADD" and _follows_operand(tokens, place)):
                 return
             yield place
         depth += (kind in _CLOSING) - (kind in _OPENING)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
+from symobs.exact.as_printed import as_generator
 from symobs.exact.functions import PI
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
 from symobs.expression.readings import OPERAND_ENDS, division_before, two_readings
@@ -43,7 +44,7 @@ _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
     """Return the scope with one context for all texts among the values, and for the variable of what is made of them."""
     context = _context_of((value for value in values if isinstance(value, str)), variable)
-    return Scope(scope.names, scope.variable, scope.meter, context, scope.functions)
+    return Scope(scope.names, scope.variable, scope.meter, context, scope.functions, scope.rounding)
 
 
 def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
@@ -219,6 +220,9 @@ class Tokeniser:
         if len(power.lstrip("+-0")) > 4 or abs(int(power or 0)) > MOST_POWER_OF_TEN:
             message, repair = f"a power of ten is beyond {MOST_POWER_OF_TEN}", "write a smaller power"
             raise self.source.error(message, at, repair, kind=BudgetExceeded)
+        decimal = as_generator(text, at) if self.scope.rounding else None
+        if decimal is not None:
+            return decimal
         digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
         return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
 

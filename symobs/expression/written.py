@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Complex, Scalar
-from symobs.expression.evaluation import Evaluator, steps_of
+from symobs.expression.evaluation import Evaluator, trees_of
 from symobs.expression.names import Scope
 from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.expression.budget import Number
     from symobs.expression.names import Names
-    from symobs.expression.tokens import Token
+    from symobs.expression.tree import Node
 
 _ONE = Scalar.of(1)
 
@@ -34,9 +34,8 @@ def parse_fraction(text: str, names: Names, *, variable: str, where: str) -> tup
     None where they are complex or no polynomials in every name.  Raises what `parse_scalar` raises.
     """
     scope = Scope.of(names, variable, where)
-    source, steps = steps_of(text, scope, where)
-    (entry,) = _Written(source, scope).entries(steps)
-    found = _fraction(entry)
+    source, (tree,) = trees_of(text, scope, where)
+    found = _fraction(_Written(source, scope).entry(tree))
     above, below = found.above, found.below
     if not isinstance(above, Scalar) or not isinstance(below, Scalar):
         return None
@@ -50,43 +49,43 @@ def _fraction(value: Any) -> Fraction:
 class _Written(Evaluator):
     """Computes with fractions that are not reduced; every operation on their parts is charged for."""
 
-    def _combined(self, left: Any, token: Token, right: Any, sign: str = "") -> Any:
-        one, other, sign = _fraction(left), _fraction(right), sign or token
+    def _combined(self, left: Any, place: int, right: Any, sign: str) -> Any:
+        one, other = _fraction(left), _fraction(right)
         if sign == "*":
-            return Fraction(self._of(one.above, "*", other.above, token), self._of(one.below, "*", other.below, token))
+            return Fraction(self._of(one.above, "*", other.above, place), self._of(one.below, "*", other.below, place))
         if sign == "/":
             if isinstance(other.above, Scalar):
-                self._require_nonzero(other.above, token)
-            return Fraction(self._of(one.above, "*", other.below, token), self._of(one.below, "*", other.above, token))
-        ratio = self._of(one.below, "/", other.below, token)
+                self._require_nonzero(other.above, place)
+            return Fraction(self._of(one.above, "*", other.below, place), self._of(one.below, "*", other.above, place))
+        ratio = self._of(one.below, "/", other.below, place)
         if isinstance(ratio, Complex):
             mine, theirs = other.below, one.below
         else:
             mine, theirs = ratio.denominator, ratio.numerator
-        left, right = self._of(one.above, "*", mine, token), self._of(other.above, "*", theirs, token)
-        return Fraction(self._of(left, sign, right, token), self._of(one.below, "*", mine, token))
+        left, right = self._of(one.above, "*", mine, place), self._of(other.above, "*", theirs, place)
+        return Fraction(self._of(left, sign, right, place), self._of(one.below, "*", mine, place))
 
-    def _of(self, left: Number, sign: str, right: Number, token: Token) -> Number:
-        return super()._combined(left, token, right, sign)
+    def _of(self, left: Number, sign: str, right: Number, place: int) -> Number:
+        return super()._combined(left, place, right, sign)
 
-    def _power(self, base: Any, token: Token, value: Any) -> Any:
-        exponent, fraction = self._exponent(self._value(value, token), token), _fraction(base)
+    def _power(self, base: Any, place: int, value: Any) -> Any:
+        exponent, fraction = self._exponent(self._reduced(value, place), place), _fraction(base)
         above, below = (
-            super(_Written, self)._power(part, token, Scalar.of(abs(exponent)))
+            super(_Written, self)._power(part, place, Scalar.of(abs(exponent)))
             for part in (fraction.above, fraction.below)
         )
         if exponent >= 0:
             return Fraction(_value_of(above), _value_of(below))
         if isinstance(above, Scalar):
-            self._require_nonzero(above, token)
+            self._require_nonzero(above, place)
         return Fraction(_value_of(below), _value_of(above))
 
-    def _call(self, function: Token, number: Any) -> Any:
-        return super()._call(function, self._value(number, function))
+    def _call(self, call: Node, number: Any) -> Any:
+        return super()._call(call, self._reduced(number, call.places[0]))
 
-    def _value(self, number: Any, token: Token) -> Number:
+    def _reduced(self, number: Any, place: int) -> Number:
         found = _fraction(number)
-        return self._of(found.above, "/", found.below, token)
+        return self._of(found.above, "/", found.below, place)
 
 
 def _value_of(part: Any) -> Number:

@@ -149,7 +149,7 @@ def _read_problem(raw: bytes) -> str:
     with patch.object(Problem, "solve", _unsolved):
         problem = validate(parse(_decoded(raw)))
     question_of(problem)
-    statements(problem.printed, problem.convention)
+    statements(problem.printed, problem.convention, problem.plant.symbols.signs)
     return "read"
 
 
