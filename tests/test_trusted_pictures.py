@@ -18,7 +18,7 @@ from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.responses import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
-from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Letter, Literal, Product
 from symobs.picture import Course, End, LinePicture, Mark, PoleMap, RegionPicture, TimeResponse
 from tests import drawn_by_hand as hand
@@ -276,7 +276,7 @@ def test_a_root_is_surely_near() -> None:
     """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
 
     def is_near(*coefficients: Any, within: Any) -> bool:
-        shifted = [Complex(Scalar.of(Fraction(c)), Scalar.of(0)) for c in coefficients]
+        shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
         return pole_paths._has_root_near(shifted, Fraction(within))
 
     assert is_near(1, 2, 0, within=1)
@@ -290,9 +290,18 @@ def test_a_root_is_surely_near() -> None:
     assert is_near(0, 1, within=1)
 
 
+def test_a_polynomial_is_moved_to_a_place() -> None:
+    """At k = 2, k s² + s − 1 about 1 + i/2 has the constant term 2 (3/4 + i) + i/2, the slope 4 (1 + i/2) + 1."""
+    found = pole_paths._shifted(k * s**2 + s - 1, "k", Fraction(2), at(1, "1/2"), "s")
+    assert found == [at("3/2", "5/2"), at(5, 2), at(2, 0)]
+    assert pole_paths._shifted(k * s**2 + s - 1, "k", Fraction(0), at(1, 3), "s") == [at(0, 3), at(1, 0)]
+    with pytest.raises(ZeroDivisionError):
+        pole_paths._shifted(s + 1 / k, "k", Fraction(0), at(1, 3), "s")
+
+
 def test_moduli_and_distances() -> None:
-    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(4))) == 25
-    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(-1))) == 10
+    assert pole_paths._square(at(3, 4)) == 25
+    assert pole_paths._square(at(3, -1)) == 10
     assert pole_paths._distance(at(1, 2), at(4, 6)) == 25
     assert pole_paths._distance(at(1, 3), at(0, -2)) == 26
 
