@@ -49,9 +49,12 @@ def member(pair: Pair, desired: DesiredPolynomial, wish: str, signs: Mapping[str
 
 def _decoupled(pair: Pair, desired: DesiredPolynomial) -> Matrix | str:
     """Return the simplest gain that gives each chain factors of φ of its own and decouples the outputs, or why not."""
-    found = []
+    found, tried = [], set()
     for order in permutations(range(pair.c.shape[0])):
         chains = Chains.of(pair.A, pair.c, order)
+        if chains.by_output in tried:
+            continue  # in another order the same chains share the same factors
+        tried.add(chains.by_output)
         for share in shares(desired.factors, chains.lengths, pair.variable):
             gain = chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
             if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]:
