@@ -394,7 +394,12 @@ def test_the_same_chains_are_not_shared_out_again(monkeypatch: pytest.MonkeyPatc
     """Two double integrators: two orders of the outputs, the same chains, and three ways to share -1, -1, -2, -2."""
     tried: list[object] = []
     own_rows = slices._own_rows
-    monkeypatch.setattr(slices, "_own_rows", lambda pair, gain: (tried.append(gain), own_rows(pair, gain))[1])
+
+    def noted(pair: Any, gain: Any) -> Any:
+        tried.append(gain)
+        return own_rows(pair, gain)
+
+    monkeypatch.setattr(slices, "_own_rows", noted)
     plant = symobs.StateSpace("[0 1 0 0; 0 0 0 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0; 0 0 1 0]")
     symobs.observer(plant, poles=[-1, -1, -2, -2], member="decoupled")
     *looked_at, claimed = tried

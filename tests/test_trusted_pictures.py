@@ -578,9 +578,10 @@ UNITS = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
 def test_modes_are_slow_by_their_eigenvalues_and_not_by_the_entries() -> None:
     for radius, is_slow in (("2.6", True), ("3.1", False)):
         largest = Fraction(radius)
-        for table in ([[largest, 1000], [0, -1]], [[-1, 0], [1000, -largest]], [[0, largest], [-largest, 0]]):
-            assert responses._is_slow(Matrix.of(table), Fraction(1)) is is_slow
-            assert responses._is_slow(Matrix.of(table) * Scalar.of(1000), Fraction(1, 1000)) is is_slow
+        for rows in ((largest, 1000, 0, -1), (-1, 0, 1000, -largest), (0, largest, -largest, 0)):
+            table = Matrix.of([rows[:2], rows[2:]])
+            assert responses._is_slow(table, Fraction(1)) is is_slow
+            assert responses._is_slow(table * Scalar.of(1000), Fraction(1, 1000)) is is_slow
 
 
 def test_the_error_of_an_exponential_and_of_its_powers_is_counted() -> None:

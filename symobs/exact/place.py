@@ -6,7 +6,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly, fmpz
 
 from symobs.exact.real import count_roots
 
@@ -43,7 +43,7 @@ def vanishes_near(polynomial: fmpz_poly, middle: Fraction, off: Fraction) -> boo
     else Sturm's theorem tells.
     """
     around = fmpq_poly(polynomial)(fmpq_poly([_ratio(middle), _ratio(off)])).numer()
-    constant, *others = around.coeffs() or [0]
+    constant, *others = around.coeffs() or [fmpz(0)]
     if abs(constant) > sum(map(abs, others)):
         return False
     return bool(around(1) * around(-1) <= 0) or count_roots(around, -_ONE, _ONE) > 0
