@@ -111,6 +111,14 @@ def test_a_sheet_is_timed_in_every_format() -> None:
     assert all(seconds > 0 for seconds in spent.values())
 
 
+def test_random_compensators_repeat_and_come_to_a_page() -> None:
+    pages = benchmarks.groups()["pages"]
+    first = next(pages.compensators(1))
+    assert next(pages.compensators(4)) == first
+    assert len(set(pages.compensators(4))) == 4
+    assert "\\begin{document}" in pages.page(first)
+
+
 def test_memory_is_told_where_the_system_tells_it() -> None:
     memory = benchmarks.groups()["memory"]
     little, much = memory.peak("pass", 60), memory.peak("x = bytearray(10**8)", 60)

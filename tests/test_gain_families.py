@@ -9,6 +9,8 @@ import os
 import random
 from contextlib import suppress
 from fractions import Fraction
+from itertools import pairwise, permutations
+from math import prod
 from typing import Any
 
 import pytest
@@ -16,7 +18,10 @@ import sympy
 from sympy import Matrix, Rational
 
 import symobs
+from symobs.design import slices
+from symobs.design.chains import shares
 from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Scalar
 from symobs.method import methods
 from tests.plain import characteristic, matrix_at, multiply, observability_rows, rank_of, subtract
 
@@ -365,3 +370,42 @@ def test_all_methods_agree_for_one_output(block: int) -> None:
                 assert back.answer["K"] == (None if gain is None else gain.T)
                 verdicts.add(back.verdict)
         assert len(gains) == len(verdicts) == 1, (A, C, listed)
+
+
+# -- sharing the factors of a polynomial -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("roots", ["aabbcc", "abcabc", "aaaaaa", "abcdef"])
+@pytest.mark.parametrize("lengths", [(6,), (4, 2), (2, 2, 2), (3, 1, 2)])
+def test_factors_are_shared_in_every_way_once(roots: str, lengths: tuple[int, ...]) -> None:
+    """Found by all orders of the factors, cut at the lengths."""
+    s = Scalar.symbol("s")
+    factors = [s + ord(root) for root in roots]
+    ends = [sum(lengths[:k]) for k in range(len(lengths) + 1)]
+    wanted = {tuple("".join(sorted(order[low:high])) for low, high in pairwise(ends)) for order in permutations(roots)}
+    polynomials = {
+        part: prod((s + ord(root) for root in part), start=Scalar.of(1)).coefficients("s")[1:]
+        for ways in wanted
+        for part in ways
+    }
+    found = [tuple(map(tuple, share)) for share in shares(factors, lengths, "s")]
+    assert len(set(found)) == len(found) or roots == "abcabc"  # equal factors that do not stand together
+    assert set(found) == {tuple(polynomials[part] for part in ways) for ways in wanted}
+    assert all(not coefficient.field.names for share in found for part in share for coefficient in part)
+
+
+def test_the_same_chains_are_not_shared_out_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two double integrators: two orders of the outputs, the same chains, and three ways to share -1, -1, -2, -2."""
+    tried: list[object] = []
+    own_rows = slices._own_rows
+
+    def noted(pair: Any, gain: Any) -> Any:
+        tried.append(gain)
+        return own_rows(pair, gain)
+
+    monkeypatch.setattr(slices, "_own_rows", noted)
+    plant = symobs.StateSpace("[0 1 0 0; 0 0 0 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0; 0 0 1 0]")
+    symobs.observer(plant, poles=[-1, -1, -2, -2], member="decoupled")
+    *looked_at, claimed = tried
+    assert len(looked_at) == len(set(looked_at)) == 3
+    assert claimed in looked_at

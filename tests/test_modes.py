@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.errors import CertificateRejected, DerivationRejected, InputError
-from symobs.exact import EIGENVALUE, Extension, Matrix, Scalar
+from symobs.exact import EIGENVALUE, Extension, Matrix, Scalar, stable_roots
 from symobs.method import render
 from symobs.stability import is_beyond, is_marginal, on_boundary
 from tests.second_reader import sympy_scalar
@@ -427,3 +427,45 @@ def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest:
     dual = symobs.detectability(symobs.StateSpace(A, None, rest.replace(";", "")))
     assert dual.derivation.check().knows("N")
     assert dual.verdict == result.verdict
+
+
+# -- which root is stable ---------------------------------------------------------------------------------------------
+
+#: Irreducible, lowest coefficient first, with roots on both sides of the axis or on it; the last two are self-reciprocal.
+MIXED = ((3606, -36, 106, -12, 1), (1, 0, 3, 0, 1), (1, 0, 0, 0, 1), (5, 1, 0, 1), (3, 1, -5, 1, 3), (3, 1, 5, 1, 3))
+
+
+@pytest.mark.parametrize("coefficients", MIXED)
+@pytest.mark.parametrize("discrete", [False, True])
+def test_roots_are_told_apart_in_the_order_of_sympy(coefficients: tuple[int, ...], *, discrete: bool) -> None:
+    x = sympy.Symbol("s")
+    polynomial = sympy.Poly(coefficients[::-1], x)
+    assert polynomial.is_irreducible
+    wanted = []
+    for k in range(polynomial.degree()):
+        value = sympy.CRootOf(polynomial, k).evalf(12)
+        wanted.append(bool((abs(value) - 1 if discrete else sympy.re(value)) < -1e-9))
+    factor = sum((Scalar.symbol("s") ** k * c for k, c in enumerate(coefficients)), Scalar.of(0))
+    assert stable_roots(factor, "s", discrete=discrete) == tuple(wanted)
+
+
+def test_roots_are_told_apart_without_sympy_s_own_refinement(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SymPy isolates them quickly and takes seconds to enclose them."""
+    monkeypatch.delattr(sympy.CRootOf, "eval_rational")
+    s = Scalar.symbol("s")
+    assert stable_roots(s**4 - 12 * s**3 + 106 * s**2 - 36 * s + 3606, "s", discrete=False) == (
+        True,
+        True,
+        False,
+        False,
+    )
+
+
+def test_a_root_beside_the_boundary_is_told_from_one_on_it() -> None:
+    """Parts of 10⁻⁴⁰ decide."""
+    s = Scalar.symbol("s")
+    assert stable_roots(10**40 * (s**2 + 1) + s, "s", discrete=False) == (True, True)
+    assert stable_roots(10**40 * (s**2 + 1) - s, "s", discrete=False) == (False, False)
+    assert stable_roots(s**2 + 1, "s", discrete=False) == (False, False)
+    assert stable_roots(10**40 * s**2 + s + 10**40 - 1, "s", discrete=True) == (True, True)
+    assert stable_roots(10**40 * s**2 + s + 10**40, "s", discrete=True) == (False, False)

@@ -11,8 +11,9 @@ import pytest
 
 import symobs
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Scalar
+from symobs.exact import Scalar, plane_proof
 from symobs.exact.real import real_roots, roots_of_scalar
+from symobs.region import cells_proof
 from symobs.region.cells_proof import is_region
 from symobs.region.critical import Boundary, Critical
 from symobs.region.inequalities import Bound, short_list
@@ -197,3 +198,20 @@ def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(poly
     bounds = None if one.empty else short_list(one)
     assert is_region(one, bounds)
     assert is_region(other, bounds)
+
+
+def test_a_division_is_proved_once_where_the_list_adds_no_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """s³ + x s² + y s + 1: the condition x y > 1 is critical, and x > 0 divides the plane anew."""
+    proved: list[object] = []
+    holds = plane_proof.holds
+
+    def noted(plane: Any) -> bool:
+        proved.append(plane)
+        return holds(plane)
+
+    monkeypatch.setattr(cells_proof, "holds", noted)
+    symobs.stability_region("s^2 + (x1d + 1) s + y1d - 1", parameters=["x1d", "y1d"]).to_json()
+    assert len(proved) == 1
+    proved.clear()
+    symobs.stability_region("s^3 + x1d s^2 + y1d s + 1", parameters=["x1d", "y1d"]).to_json()
+    assert len(proved) == len(set(map(id, proved))) == 2

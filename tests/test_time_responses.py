@@ -8,6 +8,7 @@ from fractions import Fraction
 from math import exp
 from typing import TYPE_CHECKING
 
+import mpmath
 import pytest
 
 import symobs
@@ -224,6 +225,42 @@ def test_errors_that_grow_on_the_way_are_not_seen() -> None:
     for k in (100, 300, 600):
         decay = exp(-k / 100) * 10**6
         assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
+
+
+#: Two loops of order six whose gains are large beside their modes, so that e^{‖M‖t} is beyond 10¹⁰⁰⁰.
+LOOPS = (
+    ("-33/5, -179/20, -33/4", "-43/20, -8/5, -5/4"),
+    ("-7.35+4.2i, -7.35-4.2i, -5.95", "-9.9+1.9i, -9.9-1.9i, -0.75"),
+)
+
+
+@pytest.mark.parametrize(("control", "observer"), LOOPS)
+def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
+    control: str, observer: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from symobs.derivation import responses as trusted  # noqa: PLC0415 - the only test that sets its bits
+    from symobs.exact import response as writer  # noqa: PLC0415
+
+    plant = StateSpace("[1 -1 0; 2 2 1; -3 2 0]", "[0; 1; -1]", "[0 -2 -1]")
+    design = symobs.compensator(plant, control_poles=control, observer_poles=observer)
+    A, B, C = Matrix.of([[1, -1, 0], [2, 2, 1], [-3, 2, 0]]), Matrix.of([[0], [1], [-1]]), Matrix.of([[0, -2, -1]])
+    fed, corrected = B @ design.answer["K"], design.answer["L"] @ C
+    loop = Matrix.block([[A - fed, fed], [Matrix.zeros(3, 3), A - corrected]])
+    ones, step = (Fraction(1),) * 6, Fraction(1, 100)
+    monkeypatch.setattr(writer, "_BITS", (128,))
+    monkeypatch.setattr(trusted, "_KEPT", (256,))
+    found = response(loop, ones, step, 801, 10**6)
+    again = trusted._stepped(loop, ones, step, 801)
+    with mpmath.workdps(60):
+        table = mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in numbers(loop)])
+        for k in (0, 1, 10, 100, 800):
+            true = mpmath.expm(table * k / 100) * mpmath.matrix([1] * 6)
+            assert all(abs(part - 10**6 * value) <= 1 for part, value in zip(found[k], true, strict=True))
+            assert all(abs(part - 2**64 * value) <= 1 for part, value in zip(again[k], true, strict=True))
+
+
+def numbers(table: Matrix) -> list[list[Fraction]]:
+    return [[entry.fraction() for entry in row] for row in table.rows]
 
 
 # -- what is written --------------------------------------------------------------------------------------------------

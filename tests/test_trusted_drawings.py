@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,6 +14,8 @@ from symobs.derivation.pictures import faults, is_faithful, relations_of
 from symobs.derivation.places import Stability
 from symobs.exact import Matrix, Scalar
 from symobs.exact.functions import square_root
+from symobs.exact.place import vanishes_near
+from symobs.exact.plane import PlaneCurve
 from symobs.formula import Environment, Letter
 from symobs.picture import Curve, End, LinePicture, Mark, RegionPicture
 from tests.drawn_by_hand import h1, h2, k, s
@@ -138,23 +141,48 @@ def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, 
     assert region_pictures.passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
 
 
+def test_a_polynomial_vanishes_near_a_number_or_not() -> None:
+    cubic = PlaneCurve((h1 - 1) * (h1 - 2) * (h1 + 5) + 0 * h2, AXES).on_horizontal(Fraction(0))
+    for middle, off, expected in (
+        ("3/2", "1/2", True),  # both ends are roots
+        ("3/2", "0.49", False),
+        ("3/2", "0.51", True),  # two roots and no change of sign: by Sturm's theorem
+        (0, 1, True),
+        (0, "0.99", False),
+        (-5, "0.01", True),
+        (-4, "0.9", False),
+        (10, 100, True),
+    ):
+        assert vanishes_near(cubic, Fraction(middle), Fraction(off)) is expected
+    double = PlaneCurve((h1 - 1) ** 2 + h2, AXES).on_horizontal
+    assert vanishes_near(double(Fraction(0)), Fraction("9/10"), Fraction("1/5"))
+    assert not vanishes_near(double(Fraction(1, 10**12)), Fraction("9/10"), Fraction("1/5"))
+
+
 def test_an_arm_that_lies_in_a_curve_meets_it() -> None:
     for value, along, expected in ((h2 * (h2 - 3), 0, True), (h2 - 3, 0, False), (h1, 1, True), (h1 - 3, 1, False)):
-        assert region_pictures._has_root(value, AXES, at(0, 0), at(1, 1), along) is expected
-    for root, along in ((h1 - 1, 0), (h1 + 1, 0), (h2 - 1, 1), (h2 + 1, 1)):
-        assert region_pictures._has_root(root, AXES, at(0, 0), at(1, 1), along)
-        assert not region_pictures._has_root(root, AXES, at(0, 0), at("0.99", "0.99"), along)
+        curve = PlaneCurve(value, AXES)
+        arm = (curve.on_horizontal, curve.on_vertical)[along](Fraction(0))
+        assert vanishes_near(arm, Fraction(0), Fraction(1)) is expected
 
 
-def test_the_sign_of_a_polynomial_at_a_place() -> None:
-    value = 2 * h1**2 * h2 - 3 * h2**3 + h1 - 5
-    for place in (at("1/2", "2/3"), at(-3, "5/7"), at("-7/4", -2), at(0, 0)):
-        x, y = place
-        exact = 2 * x**2 * y - 3 * y**3 + x - 5
-        assert region_pictures._sign(value, AXES, place) == exact * x.denominator**2 * y.denominator**3
-        swapped = region_pictures._sign(value, ("h2", "h1"), (y, x))
-        assert swapped == region_pictures._sign(value, AXES, place)
-    assert region_pictures._sign(Scalar.of(4), AXES, at("1/2", "1/3")) == 4
+@pytest.mark.parametrize("discrete", [False, True])
+def test_a_polynomial_of_numbers_is_stable_by_its_roots(*, discrete: bool) -> None:
+    """Products of factors whose roots are known: s + 1 is stable, s − 1 and s² + 1 are not; z/2 ± … likewise."""
+    known = (
+        (2 * s + 1, True, True),
+        (3 * s - 1, False, True),
+        (s - 2, False, False),
+        (s**2 + 1, False, False),
+        (3 * s**2 + s + 1, True, True),
+        (s**2 + 5 * s + 9, True, False),
+        (s, False, True),
+        (s + 1, True, False),
+    )
+    for (one, *first), (other, *second), (third, *last) in product(known, repeat=3):
+        wanted = first[discrete] and second[discrete] and last[discrete]
+        value = -(one * other * third).substitute({"s": z if discrete else s}) + 0 * h1
+        assert asked(value, "h1", discrete=discrete).is_stable(Fraction(1)) is wanted
 
 
 def test_edges_that_slope_are_parts_of_curves() -> None:
@@ -268,17 +296,17 @@ def test_what_lies_inside_of_an_area() -> None:
     assert sorted(region_pictures._crossings((at(0, 0), at(3, 0), at(0, 6)), Fraction(2))) == [0, 2]
     assert sorted(region_pictures._crossings(L_SHAPE, Fraction(1))) == [0, 1]  # its upper side is not of it
     for inside in ((2, "1/2"), ("1/2", 3), ("1/2", "1/2")):
-        assert region_pictures._contains(L_SHAPE, at(*inside))
+        assert region_pictures.within_area(L_SHAPE, [at(*inside)]) == [at(*inside)]
     for outside in ((2, 2), (5, "1/2"), (-1, "1/2"), ("1/2", 5), (2, -1)):
-        assert not region_pictures._contains(L_SHAPE, at(*outside))
+        assert region_pictures.within_area(L_SHAPE, [at(*outside)]) == []
 
 
 def test_edges_to_the_left_are_counted() -> None:
     horseshoe = (at(0, 0), at(30, 0), at(30, 9), at(20, 9), at(20, 5), at(10, 5), at(10, 9), at(0, 9))
     for x, expected in ((-5, False), (5, True), (15, False), (25, True), (35, False)):
-        assert region_pictures._contains(horseshoe, at(x, 7)) is expected
+        assert region_pictures.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
     for x, expected in ((0, False), (10, True), (20, False), (30, True)):  # an edge is of what lies to its left
-        assert region_pictures._contains(horseshoe, at(x, 7)) is expected
+        assert region_pictures.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
 
 
 def test_places_inside_of_an_area() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import exp
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from symobs.derivation.places import within, written
 from symobs.derivation.pole_paths import faults_of_poles
 from symobs.derivation.responses import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
-from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Letter, Literal, Product
 from symobs.picture import Course, End, LinePicture, Mark, PoleMap, RegionPicture, TimeResponse
 from tests import drawn_by_hand as hand
@@ -275,7 +276,7 @@ def test_a_root_is_surely_near() -> None:
     """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
 
     def is_near(*coefficients: Any, within: Any) -> bool:
-        shifted = [Complex(Scalar.of(Fraction(c)), Scalar.of(0)) for c in coefficients]
+        shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
         return pole_paths._has_root_near(shifted, Fraction(within))
 
     assert is_near(1, 2, 0, within=1)
@@ -289,9 +290,18 @@ def test_a_root_is_surely_near() -> None:
     assert is_near(0, 1, within=1)
 
 
+def test_a_polynomial_is_moved_to_a_place() -> None:
+    """At k = 2, k s² + s − 1 about 1 + i/2 has the constant term 2 (3/4 + i) + i/2, the slope 4 (1 + i/2) + 1."""
+    found = pole_paths._shifted(k * s**2 + s - 1, "k", Fraction(2), at(1, "1/2"), "s")
+    assert found == [at("3/2", "5/2"), at(5, 2), at(2, 0)]
+    assert pole_paths._shifted(k * s**2 + s - 1, "k", Fraction(0), at(1, 3), "s") == [at(0, 3), at(1, 0)]
+    with pytest.raises(ZeroDivisionError):
+        pole_paths._shifted(s + 1 / k, "k", Fraction(0), at(1, 3), "s")
+
+
 def test_moduli_and_distances() -> None:
-    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(4))) == 25
-    assert pole_paths._square(Complex(Scalar.of(3), Scalar.of(-1))) == 10
+    assert pole_paths._square(at(3, 4)) == 25
+    assert pole_paths._square(at(3, -1)) == 10
     assert pole_paths._distance(at(1, 2), at(4, 6)) == 25
     assert pole_paths._distance(at(1, 3), at(0, -2)) == 26
 
@@ -544,10 +554,64 @@ def test_courses_are_of_the_time_of_their_plant() -> None:
 
 
 def test_a_course_too_long_to_compute_is_refused() -> None:
-    fast = replace(DECAY, values={"A": Matrix.of([[-(10**5)]])})
-    response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 0, 0),), WIDE, PARTS)
+    """e^{6000} takes 8,656 bits."""
     with pytest.raises(ValueError, match="too much to compute"):
-        list(faults_of_response(response, Letter("A"), fast))
+        responses._stepped(Matrix.of([[300]]), (Fraction(1),), Fraction(1, 100), 2001)
+
+
+def test_a_mode_that_turns_unseen_between_two_instants_is_refused() -> None:
+    """The values of e^{-t} cos(ω t) at 0, 1/200, 2/200, … are those of e^{-t} where ω = 710/113 · 200, nearly 400 π."""
+    spin = Fraction(710, 113) * 200
+    for turning, expected in ((0, []), (spin, ["modes that do not turn unseen between two instants"])):
+        table = Matrix.of([[-1, turning], [-turning, -1]])
+        known = replace(DECAY, values={"A": table}, sizes={"x": 2})
+        falling = tuple(round(PARTS * exp(-k / 100)) for k in range(101))
+        drawn = [Course("x", j + 1, row, tuple(h * (1 - j) for h in falling)) for j, row in enumerate(UNITS)]
+        window = ((Fraction(0), Fraction(1)), (Fraction(-1), Fraction(2)))
+        response = TimeResponse(("x",), ((Fraction(1), Fraction(0)),), tuple(drawn), window, PARTS)
+        assert list(faults_of_response(response, Letter("A"), known)) == expected
+
+
+UNITS = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
+
+
+def test_modes_are_slow_by_their_eigenvalues_and_not_by_the_entries() -> None:
+    for radius, is_slow in (("2.6", True), ("3.1", False)):
+        largest = Fraction(radius)
+        for rows in ((largest, 1000, 0, -1), (-1, 0, 1000, -largest), (0, largest, -largest, 0)):
+            table = Matrix.of([rows[:2], rows[2:]])
+            assert responses._is_slow(table, Fraction(1)) is is_slow
+            assert responses._is_slow(table * Scalar.of(1000), Fraction(1, 1000)) is is_slow
+
+
+def test_the_error_of_an_exponential_and_of_its_powers_is_counted() -> None:
+    """Each row is off by no more than is said, and hardly less than a thousandth of it."""
+    table = [[Fraction(-7, 3), Fraction(5)], [Fraction(-11, 2), Fraction(1, 7)]]
+    bits = 96
+    found = responses._exponential(table, bits)
+    with mpmath.workprec(1000):
+        true = mpmath.expm(mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in table]))
+        for _ in range(4):
+            off = [sum(abs(true[i, j] * 2**bits - found.rows[i][j]) for j in range(2)) for i in range(2)]
+            assert found.error / 100_000 < max(off) <= found.error < 2 ** (bits // 2)
+            assert found.norm == max(sum(map(abs, row)) for row in found.rows)
+            true, found = true * true, found.times(found, bits)
+
+
+def test_too_few_bits_are_not_taken_for_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """(M + I)² = 0 with entries of a thousand: e^{Mt} = e^{-t} (I + (M + I) t)."""
+    shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
+    for kept in ((72,), (72, 96)):
+        monkeypatch.setattr(responses, "_KEPT", kept)
+        with pytest.raises(ValueError, match="too much to compute"):
+            responses._stepped(shear, (Fraction(1), Fraction(0)), Fraction(1, 100), 601)
+    monkeypatch.setattr(responses, "_KEPT", (72, 256))
+    found = responses._stepped(shear, (Fraction(1), Fraction(0)), Fraction(1, 100), 601)
+    with mpmath.workprec(300):
+        for k, state in enumerate(found):
+            t = mpmath.mpf(k) / 100
+            for part, factor in zip(state, (1 + 1000 * t, 1000 * t), strict=True):
+                assert abs(part - mpmath.exp(-t) * factor * 2**64) <= 1
 
 
 # -- diagrams -----------------------------------------------------------------------------------------------------------

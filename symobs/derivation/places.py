@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
+from symobs.exact.half_plane import has_positive_minors
+from symobs.exact.place import value_at
 from symobs.record import dataclass
-from symobs.stability import stability
+from symobs.stability import bilinear, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -52,13 +55,17 @@ class Stability:
         """Whether all roots are stable where the signs allow it; where the degree drops a root has gone to infinity."""
         if not all(ALLOWS[sign](part) for sign, part in zip(self.signs, place, strict=True)):
             return False
-        try:
-            there = self.polynomial.substitute(_at(self.axes, place))
-        except ZeroDivisionError:
+        point = dict(zip(self.axes, place, strict=True))
+        below, lead, coefficients = self._parts
+        if value_at(below, point) == 0 or value_at(lead, point) == 0:
             return False
-        if there.degree(self.variable) < self.polynomial.degree(self.variable):
-            return False
-        return stability(there, self.variable, {}, discrete=self.discrete).verdict == "yes"
+        return has_positive_minors([value_at(c, point) for c in coefficients])
+
+    @cached_property
+    def _parts(self) -> tuple[Scalar, Scalar, tuple[Scalar, ...]]:
+        """The denominator, the leading coefficient, and all coefficients of what is stable in continuous time alike."""
+        found = self.polynomial.numerator.coefficients(self.variable)
+        return self.polynomial.denominator, found[0], tuple(bilinear(found)) if self.discrete else found
 
     def is_excluded(self, place: tuple[Fraction, ...], around: Sequence[tuple[Fraction, ...]]) -> bool:
         """Whether a point is not stable, or one that is not lies near: there a condition all but vanishes."""

@@ -7,15 +7,18 @@ reciprocals of z₀ − z, so one root has |z₀ − z|ᵏ ≤ C(n, k) |c₀/c�
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
+from itertools import dropwhile
 from math import comb
 from typing import TYPE_CHECKING
 
 from symobs.derivation.places import within, written
-from symobs.exact import Complex, Scalar
+from symobs.exact.place import shifted, value_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from symobs.exact import Scalar
     from symobs.picture import Place, PoleMap
 
 #: How far a pole may lie from its path, as a part of the window.
@@ -51,33 +54,36 @@ def is_pole(polynomial: Scalar, moved: str, value: Fraction, place: Place, varia
     return _has_root_near(_shifted(polynomial, moved, value, place, variable), near)
 
 
-def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Complex]:
-    """Return c₀, …, cₙ of p(z + w) = Σ cₖ wᵏ."""
-    there = polynomial.substitute({moved: Scalar.of(value)})
-    z = Complex(Scalar.of(place[0]), Scalar.of(place[1]))
-    coefficients = [Complex.of(c) for c in there.coefficients(variable)]
-    found: list[Complex] = []
-    while coefficients:  # divide by w = s − z again and again; what remains are the coefficients
-        for k in range(1, len(coefficients)):
-            coefficients[k] = coefficients[k] + coefficients[k - 1] * z
-        found.append(coefficients.pop())
-    return found
+def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Place]:
+    """Return c₀, …, cₙ of a multiple of p(z + w) = Σ cₖ wᵏ."""
+    below, coefficients = _parts(polynomial, variable)
+    if value_at(below, {moved: value}) == 0:
+        raise ZeroDivisionError
+    found = [value_at(c, {moved: value}) for c in coefficients]
+    return shifted(list(dropwhile(lambda c: c == 0, found)), place)
 
 
-def _has_root_near(shifted: Sequence[Complex], distance: Fraction) -> bool:
+@lru_cache(maxsize=4)
+def _parts(polynomial: Scalar, variable: str) -> tuple[Scalar, tuple[Scalar, ...]]:
+    """Return the denominator of a polynomial and the coefficients of its numerator, highest first."""
+    return polynomial.denominator, polynomial.numerator.coefficients(variable)
+
+
+def _has_root_near(around: Sequence[Place], distance: Fraction) -> bool:
     """Whether some root surely has |w| ≤ distance."""
-    degree = len(shifted) - 1
-    constant = _square(shifted[0])
+    degree = len(around) - 1
+    constant = _square(around[0])
     return any(
         comb(degree, k) ** 2 * constant <= distance ** (2 * k) * _square(c) and _square(c) != 0
-        for k, c in enumerate(shifted)
+        for k, c in enumerate(around)
         if k
     )
 
 
-def _square(value: Complex) -> Fraction:
+def _square(value: Place) -> Fraction:
     """Return the square of the modulus."""
-    return (value.real * value.real + value.imaginary * value.imaginary).fraction()
+    real, imaginary = value
+    return real * real + imaginary * imaginary
 
 
 def _common(picture: PoleMap) -> Iterator[int]:
@@ -93,11 +99,11 @@ def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) ->
     different = sum(factor.degree(variable) for factor, _ in polynomial.numerator.factors()[1])
     apart: list[tuple[Place, Fraction]] = []
     for path, along in zip(picture.paths, picture.along, strict=True):
-        shifted = _shifted(polynomial, picture.moved, along[index], path[index], variable)
-        constant, slope = _square(shifted[0]), _square(shifted[1])
+        around = _shifted(polynomial, picture.moved, along[index], path[index], variable)
+        constant, slope = _square(around[0]), _square(around[1])
         if constant and not slope:
             continue
-        radius = (len(shifted) - 1) ** 2 * constant / slope if constant else Fraction(0)
+        radius = (len(around) - 1) ** 2 * constant / slope if constant else Fraction(0)
         if all(_distance(path[index], place) > 2 * (radius + other) for place, other in apart):
             apart.append((path[index], radius))
     return len(apart) >= different

@@ -12,14 +12,15 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from symobs.derivation.places import within, written
-from symobs.exact import RealNumber, Scalar
-from symobs.exact.real import roots_of_scalar
+from symobs.exact.place import vanishes_near
+from symobs.exact.plane import PlaneCurve
 from symobs.formula.plain import plain_relation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symobs.derivation.places import Stability
+    from symobs.exact import Scalar
     from symobs.formula import Relation
     from symobs.picture import Curve, Interval, Mark, Place, RegionPicture
 
@@ -39,7 +40,7 @@ def faults_of_region(picture: RegionPicture, equations: dict[Relation, Scalar], 
         return
     for curve in picture.curves:
         yield from faults_of_curve(curve, equations[curve.equation], window, test)
-    drawn = tuple(equations.values())
+    drawn = tuple(value for value in equations.values() if _is_of_curve(value, test))
     excluded = frozenset(mark.place for mark in picture.marks if mark.kind == "excluded")
     for area in picture.areas:
         yield from faults_of_area(area, drawn, excluded, window, test)
@@ -53,7 +54,7 @@ def faults_of_region(picture: RegionPicture, equations: dict[Relation, Scalar], 
 def faults_of_curve(curve: Curve, value: Scalar, window: tuple[Interval, Interval], test: Stability) -> Iterator[str]:
     """Yield what is wrong with a curve along which a value is said to vanish."""
     equation = plain_relation(curve.equation, test.variable)
-    if value.is_constant or not value.names <= set(test.axes):
+    if not _is_of_curve(value, test):
         yield f"{equation} is the equation of a curve"
         return
     near, between = _part(window, _NEAR), _part(window, _BETWEEN)
@@ -65,6 +66,11 @@ def faults_of_curve(curve: Curve, value: Scalar, window: tuple[Interval, Interva
         yield equation
     elif curve.boundary not in _are_boundaries(curve, window, test):
         yield f"{equation} is {'a' if curve.boundary else 'no'} boundary"
+
+
+def _is_of_curve(value: Scalar, test: Stability) -> bool:
+    """Whether a value vanishes on a curve in the plane of the axes."""
+    return not value.is_constant and value.names <= set(test.axes)
 
 
 def faults_of_area(
@@ -142,35 +148,14 @@ def _filled(areas: Sequence[tuple[Place, ...]], places: tuple[Place, ...]) -> fr
 
 def passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
     """Whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
-    (x, y), (dx, dy) = place, step
-    here = _sign(value, axes, place)
-    ends = (x - dx, y), (x + dx, y), (x, y - dy), (x, y + dy)
-    if any(here * _sign(value, axes, end) <= 0 for end in ends):
-        return True
-    return any(_has_root(value, axes, place, step, along) for along in (0, 1))
-
-
-def _has_root(value: Scalar, axes: Sequence[str], place: Place, step: Place, along: int) -> bool:
-    """Whether the curve meets one arm of the cross: where two branches are that close no sign changes."""
-    on_line = value.substitute({axes[1 - along]: Scalar.of(place[1 - along])})
-    if axes[along] not in on_line.names:
-        return on_line.is_zero
-    low, high = (RealNumber.of(place[along] + side * step[along]) for side in (-1, 1))
-    return any(low <= root <= high for root in roots_of_scalar(on_line, axes[along]))
-
-
-def _sign(value: Scalar, axes: Sequence[str], place: Place) -> int:
-    """Return a number with the sign of a polynomial at a place: its value times a power of the denominators."""
-    (a, c), (b, d) = ((part.numerator, part.denominator) for part in place)
-    terms, i, j = _table(value, *axes)
-    return sum(k * a**m * c ** (i - m) * b**n * d ** (j - n) for k, m, n in terms)
+    (x, y), (dx, dy), curve = place, step, _curve(value, *axes)
+    return vanishes_near(curve.on_vertical(x), y, dy) or vanishes_near(curve.on_horizontal(y), x, dx)
 
 
 @lru_cache(maxsize=64)
-def _table(value: Scalar, first: str, second: str) -> tuple[list[tuple[int, int, int]], int, int]:
-    """Return the terms of a polynomial in two names as (coefficient, power, power), and both degrees."""
-    terms = [(k, dict(powers).get(first, 0), dict(powers).get(second, 0)) for k, powers in value.terms()]
-    return terms, value.degree(first), value.degree(second)
+def _curve(value: Scalar, first: str, second: str) -> PlaneCurve:
+    """Return a polynomial in two names ready to be cut by lines."""
+    return PlaneCurve(value, (first, second))
 
 
 def _middle(a: Place, b: Place) -> Place:
@@ -246,9 +231,6 @@ def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:
 
 
 def within_area(area: Sequence[Place], places: Sequence[Place]) -> list[Place]:
-    """Return those of some places that lie in a polygon."""
-    return [place for place in places if _contains(area, place)]
-
-
-def _contains(area: Sequence[Place], place: Place) -> bool:
-    return sum(x < place[0] for x in _crossings(area, place[1])) % 2 == 1
+    """Return those of some places that lie in a polygon: an odd number of crossings is to their left."""
+    crossings = {y: list(_crossings(area, y)) for _, y in places}
+    return [(x, y) for x, y in places if sum(crossing < x for crossing in crossings[y]) % 2 == 1]

@@ -1,8 +1,8 @@
 """Whether courses over time are those of the equations of the page (trusted).
 
-The values are found anew, by steps: e^{Mh} from its power series in rational numbers, with a bound for the rest, and
-then one product a step, in fixed point with as many bits as rounding can eat up.  In discrete time they are powers of M
-times the start, and must be met exactly.
+The values are found anew, in whole numbers with an error that is counted: e^{Mh} from the power series of a small part
+of Mh and by squaring, and then twice as many instants with each power e^{Mh}, e^{2Mh}, e^{4Mh}, ….  In discrete time
+they are powers of M times the start, and must be met exactly.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from functools import lru_cache
 from itertools import pairwise
 from math import lcm
 from operator import mul
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.certificate import verify
 from symobs.exact import Matrix, Scalar
@@ -26,10 +26,12 @@ if TYPE_CHECKING:
 
 #: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
 _NEAR, _BETWEEN = Fraction(1, 500), Fraction(1, 100)
-#: Bits that are left when rounding has done its worst, those that a factor e takes, and the most that are worth it.
-_BITS, _BITS_OF_E, _MOST_BITS = 64, Fraction(3, 2), 20_000
-
-Vector = list[Fraction]
+#: Bits that are left when rounding has done its worst, and those that are kept in turn until they are left.
+_BITS, _KEPT = 64, (256, 512, 1024, 2048, 4096)
+#: The series is that of a matrix of norm 2⁻¹⁶ or less, so that each term brings 16 bits.
+_SMALL = 16
+#: A mode may turn by so much between two instants, less than π: one that turns by 2π more would look the same.
+_TURN, _SQUARINGS = 3, 6
 
 
 def faults_of_response(picture: TimeResponse, subject: Formula, environment: Environment) -> Iterator[str]:
@@ -53,6 +55,9 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
     beginning = tuple(part for start in picture.starts for part in start)
     if picture.discrete:
         yield from _faults_of_samples(picture, matrix, beginning)
+        return
+    if not _is_slow(matrix, end / (2 * steps)):
+        yield "modes that do not turn unseen between two instants"
         return
     values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
     for course in picture.courses:
@@ -114,38 +119,64 @@ def _faults_of_course(
         yield f"{course.signal}, which leaves the window,"
 
 
+def _is_slow(matrix: Matrix, step: Fraction) -> bool:
+    """Whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
+    power = matrix * Scalar.of(step / _TURN)
+    for _ in range(_SQUARINGS):
+        power = power @ power
+    return all(sum(abs(entry.fraction()) for entry in row) <= 1 for row in power.rows)
+
+
+class _Enclosed(NamedTuple):
+    """A matrix in parts of 2⁻ᵇⁱᵗˢ, and two norms (largest sums of a row): its own, and a bound for that of its error."""
+
+    rows: list[list[int]]
+    norm: int
+    error: int
+
+    @classmethod
+    def of(cls, rows: list[list[int]], error: int) -> _Enclosed:
+        return cls(rows, max(sum(map(abs, row)) for row in rows), error)
+
+    def times(self, other: _Enclosed, bits: int, divisor: int = 1) -> _Enclosed:
+        """Return the product by a whole number, each entry rounded down."""
+        columns = list(zip(*other.rows, strict=True))
+        rows = [[(sum(map(mul, row, column)) >> bits) // divisor for column in columns] for row in self.rows]
+        error = self.norm * other.error + self.error * other.norm + self.error * other.error
+        return _Enclosed.of(rows, (error >> bits) // divisor + 1 + 2 * len(columns))
+
+
 @lru_cache(maxsize=2)
 def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
-    """Return the state at `count` instants, in parts of 2 to the power of _BITS.
+    """Return the state at `count` instants, in parts of 2 to the power of _BITS, each off by at most one.
 
-    A step enlarges an error at most by e^‖Mh‖ and adds some units of its own: bits are kept in reserve for the former,
-    and _BITS of them, beside those of the start and of the steps, are more than the latter add up to.
+    Raises ValueError where rounding leaves fewer bits.
     """
     table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
-    norm = max(sum(map(abs, row), Fraction(0)) for row in table)
-    largest = max(map(abs, start))
-    bits = 2 * _BITS + int(count * norm * _BITS_OF_E) + count.bit_length() + int(largest).bit_length()
-    if bits > _MOST_BITS:
-        raise ValueError("a course with too much to compute")
-    once = _exponential(table, norm, bits)
-    state = [round(part * (1 << bits)) for part in start]
-    values = []
-    for _ in range(count):
-        values.append([part >> (bits - _BITS) for part in state])
-        state = [sum(map(mul, row, state)) >> bits for row in once]
-    return values
+    for bits in _KEPT:
+        power = _exponential(table, bits)
+        states = [_Enclosed.of([[round(part * (1 << bits))] for part in start], 1)]
+        while len(states) < count:
+            states += [power.times(state, bits) for state in states[: count - len(states)]]
+            power = power.times(power, bits)
+        spare = bits - _BITS
+        if max(state.error for state in states) < 1 << (spare - 1):
+            half = 1 << (spare - 1)
+            return [[(part + half) >> spare for (part,) in state.rows] for state in states]
+    raise ValueError("a course with too much to compute")
 
 
-def _exponential(table: list[Vector], norm: Fraction, bits: int) -> list[list[int]]:
-    """Return e^M in fixed point by its power series, until its terms are nothing and go on falling."""
+def _exponential(table: list[list[Fraction]], bits: int) -> _Enclosed:
+    """Return e^M: the power series of M/2ᵏ, of norm 2⁻¹⁶ at most, squared k times."""
     order = len(table)
-    fixed = [[round(entry * (1 << bits)) for entry in row] for row in table]
-    term = [[(i == j) << bits for j in range(order)] for i in range(order)]
-    total = [list(row) for row in term]
-    k = 0
-    columns = list(zip(*fixed, strict=True))
-    while k <= 2 * norm or any(entry not in {0, -1} for row in term for entry in row):
-        k += 1
-        term = [[(sum(map(mul, row, column)) >> bits) // k for column in columns] for row in term]
-        total = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
+    halvings = _SMALL + int(max(sum(map(abs, row), Fraction(0)) for row in table)).bit_length()
+    small = _Enclosed.of([[round(entry * (1 << bits) / (1 << halvings)) for entry in row] for row in table], order)
+    term = total = _Enclosed.of([[(i == j) << bits for j in range(order)] for i in range(order)], 0)
+    for k in range(1, bits // _SMALL + 1):
+        term = term.times(small, bits, k)
+        rows = [[a + b for a, b in zip(*pair, strict=True)] for pair in zip(total.rows, term.rows, strict=True)]
+        total = _Enclosed.of(rows, total.error + term.error)
+    total = total._replace(error=total.error + 1)  # the terms left out: 2⁻¹⁶ᵏ and less, where 16 k > bits
+    for _ in range(halvings):
+        total = total.times(total, bits)
     return total

@@ -12,7 +12,7 @@ from itertools import combinations, islice, pairwise, permutations
 from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar, apply_polynomial, rank
+from symobs.exact import Field, Matrix, Scalar, apply_polynomial, rank
 from symobs.exact.krylov import Krylov
 from symobs.record import dataclass
 
@@ -71,6 +71,14 @@ class Chains:
         """The first state of each chain."""
         return tuple(end - length + 1 for end, length in zip(self.ends, self.lengths, strict=True))
 
+    @property
+    def by_output(self) -> frozenset[tuple[int, Matrix]]:
+        """The chains without their order: the rows of T that belong to each output."""
+        return frozenset(
+            (output, self.T.select(range(start, end + 1), range(self.T.shape[0])))
+            for output, start, end in zip(self.outputs, self.starts, self.ends, strict=True)
+        )
+
     def linked(self, order: Sequence[int], coefficients: Sequence[Scalar]) -> Matrix:
         """Return the last rows that make one chain of all: each goes on with the next, the last one has φ."""
         size = self.T.shape[0]
@@ -128,7 +136,7 @@ def _lengths(A: Matrix, C: Matrix, order: Sequence[int]) -> list[int]:
 def simple_gains(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Iterator[Matrix]:
     """Yield gains with det(sI − A + LC) = φ that are easy to read, for an observable pair."""
     yield from _of_one_output(A, C, factors, variable)
-    coefficients = prod(factors, start=Scalar.of(1)).coefficients(variable)[1:]
+    coefficients = _coefficients(factors, variable)
     count = C.shape[0]
     for order in islice(permutations(range(count)), ORDERS if not (A.names or C.names) else 2):
         chains = Chains.of(A, C, order)
@@ -165,17 +173,36 @@ def shares(factors: Sequence[Scalar], lengths: Sequence[int], variable: str) -> 
     if not lengths:
         yield []
         return
-    seen = set()
+    degrees = [factor.degree(variable) for factor in factors]
     for size in range(len(factors) + 1):
-        for chosen in combinations(range(len(factors)), size):
-            own = tuple(factors[k] for k in chosen)
-            if sum(f.degree(variable) for f in own) != lengths[0] or own in seen:
-                continue
-            seen.add(own)
+        for chosen in _chosen(factors, degrees, size, lengths[0]):
+            own = [factors[k] for k in chosen]
             rest = [f for k, f in enumerate(factors) if k not in chosen]
-            coefficients = prod(own, start=Scalar.of(1)).coefficients(variable)[1:]
+            coefficients = _coefficients(own, variable)
             for others in shares(rest, lengths[1:], variable):
                 yield [coefficients, *others]
+
+
+def _coefficients(factors: Sequence[Scalar], variable: str) -> tuple[Scalar, ...]:
+    """Return the coefficients of a product of monic polynomials but the first: numbers as numbers."""
+    product = prod(factors, start=Scalar.of(1))
+    return product.coefficients(variable, Field.of(sorted(product.names - {variable})))[1:]
+
+
+def _chosen(
+    factors: Sequence[Scalar], degrees: Sequence[int], size: int, degree: int, first: int = 0
+) -> Iterator[tuple[int, ...]]:
+    """Yield the places of so many factors whose degrees add up to `degree`; of equal ones the first are taken."""
+    if not size:
+        if not degree:
+            yield ()
+        return
+    tried: set[Scalar] = set()
+    for k in range(first, len(factors) - size + 1):
+        if factors[k] not in tried and degrees[k] <= degree:
+            tried.add(factors[k])
+            for others in _chosen(factors, degrees, size - 1, degree - degrees[k], k + 1):
+                yield (k, *others)
 
 
 def cost(gain: Matrix) -> tuple[int, int]:

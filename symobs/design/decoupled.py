@@ -38,9 +38,12 @@ def decoupled_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
     if not pair.is_observable:
         message = "a decoupled gain is looked for where no mode is fixed"
         raise NotDecoupled(message, where=where, repair="leave member out, or give zero")
-    found = []
+    found, tried = [], set()
     for order in permutations(range(pair.c.shape[0])):
         chains = Chains.of(pair.A, pair.c, order)
+        if chains.by_output in tried:
+            continue  # in another order the same chains share the same factors
+        tried.add(chains.by_output)
         for share in shares(desired.factors, chains.lengths, pair.variable):
             gain = chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
             if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]:

@@ -11,12 +11,13 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from symobs.exact.complex import Complex
 from symobs.exact.enclosure import is_number, polynomial_ball, sign_of_number
 from symobs.exact.functions import partial
 from symobs.exact.polynomial import coefficients_over
+from symobs.exact.precision import Precision
 from symobs.exact.real import integer_factor, real_roots
 from symobs.exact.scalar import Scalar
 from symobs.record import dataclass
@@ -223,7 +224,10 @@ class _Box:
 
     def _near(self, names: Sequence[str], equations: Sequence[Scalar]) -> bool:
         """Tell whether Newton's method finds, and an interval step proves, a root that puts all decimals into the box."""
-        before, ctx.prec = ctx.prec, _BITS
+        with Precision(_BITS):
+            return self._is_root_near(names, equations)
+
+    def _is_root_near(self, names: Sequence[str], equations: Sequence[Scalar]) -> bool:
         try:
             slopes = [[partial(equation, name) for name in names] for equation in equations]
             point = [
@@ -243,8 +247,6 @@ class _Box:
             return all(_holds(self.decimals[name].ends, value) for name, value in values.items())
         except ZeroDivisionError:  # the slopes are singular there
             return False
-        finally:
-            ctx.prec = before
 
 
 def _step(

@@ -1,4 +1,4 @@
-"""Whether all roots of a polynomial with rational coefficients lie in the open left half-plane, twice and differently."""
+"""Whether all roots of a polynomial with rational coefficients lie in the open left half-plane, in three ways."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import reduce
 from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpz_poly
+from flint import fmpz_mat, fmpz_poly
 
 from symobs.exact.precision import Precision
 from symobs.exact.real import RealNumber, real_roots
@@ -33,6 +33,19 @@ def all_to_the_left(coefficients: Sequence[Fraction]) -> bool:
         common = reduce(gcd, row, 0) or 1
         above, below = below, [entry // common for entry in row]
     return True
+
+
+def has_positive_minors(coefficients: Sequence[Fraction]) -> bool:
+    """Tell it by Hurwitz's theorem: for a₀ > 0 all leading minors Δ₁, …, Δₙ of the matrix a₂ⱼ₋ᵢ are positive."""
+    whole = integers(coefficients)
+    if not whole[0]:
+        return False
+    order, sign = len(whole) - 1, 1 if whole[0] > 0 else -1
+    padded = [0] * order + [sign * c for c in whole] + [0] * order
+    return all(
+        fmpz_mat([[padded[order + 2 * j - i] for j in range(1, k + 1)] for i in range(1, k + 1)]).det() > 0
+        for k in range(1, order + 1)
+    )
 
 
 def sides(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:

@@ -10,7 +10,7 @@ from functools import cached_property
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
-from flint import fmpz_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from symobs.exact.field import Field
 from symobs.exact.real import RealNumber, irreducible_factors, rational_between, real_roots
@@ -65,12 +65,9 @@ def _collected(polynomial: fmpz_mpoly, outer: int, inner: int) -> list[fmpz_poly
 
 
 def _cut(coefficients: Sequence[fmpz_poly], at: Fraction) -> fmpz_poly:
-    """Return Σ cₖ(at) yᵏ without denominators: each cₖ is made homogeneous in numerator and denominator of the point."""
-    top, bottom = at.numerator, at.denominator
-    degree = max(int(c.degree()) for c in coefficients)
-    powers = [top**j * bottom ** (degree - j) for j in range(degree + 1)]
-    values = [sum(int(c[j]) * powers[j] for j in range(int(c.degree()) + 1)) for c in coefficients]
-    polynomial = fmpz_poly(values)
+    """Return Σ cₖ(at) yᵏ times a positive number, so that its coefficients are whole and have nothing in common."""
+    place = fmpq(at.numerator, at.denominator)
+    polynomial = fmpq_poly([coefficient(place) for coefficient in coefficients]).numer()
     content = polynomial.content()
     return polynomial // content if content > 1 else polynomial
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, fmpq, fmpq_mat
@@ -14,10 +15,9 @@ if TYPE_CHECKING:
 
     from symobs.exact.matrix import Matrix
 
-_BITS, _MOST_BITS = 128, 20_000
+#: Bits that are tried in turn until all enclosures are narrow.
+_BITS = (128, 256, 512, 1024, 2048, 4096)
 _HALF = arb(0.5)
-#: Bits that an error can gain where it grows by a factor e.
-_BITS_OF_E = 1.45
 
 
 def rates(matrix: Matrix) -> tuple[float, float]:
@@ -36,21 +36,21 @@ def radius(matrix: Matrix) -> float:
 def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
     """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
 
-    One exponential, then one product a step: an enclosure grows by e^‖Mh‖ at most, so as many bits are kept for it.
-    Raises `ArithmeticError` where that takes too many.
+    The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again: an enclosure goes through few products.
+    Raises `ArithmeticError` where the enclosures stay too wide.
     """
-    rate = float(max(sum(abs(entry.fraction()) for entry in row) for row in matrix.rows))
-    bits = _BITS + int(_BITS_OF_E * rate * float(step) * count) + parts.bit_length()
-    if bits > _MOST_BITS:
-        raise ArithmeticError("a course with too much to compute")
-    with Precision(bits):
-        once = (arb_mat(_rational(matrix)) * arb(fmpq(step.numerator, step.denominator))).exp()
-        column = arb_mat([[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start])
-        states = []
-        for _ in range(count):
-            states.append([_nearest(entry) for entry in column.entries()])
-            column = once * column
-        return states
+    known = _rational(matrix)
+    for bits in _BITS:
+        with Precision(bits):
+            power = (arb_mat(known) * arb(fmpq(step.numerator, step.denominator))).exp()
+            columns = [[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start]
+            while len(columns[0]) < count:
+                more = (power * arb_mat(columns)).tolist()
+                columns = [[*row, *new] for row, new in zip(columns, more, strict=True)]
+                power = power * power
+            if all(entry.rad() < _HALF for row in columns for entry in row[:count]):
+                return [[_nearest(entry) for entry in state] for state in islice(zip(*columns, strict=True), count)]
+    raise ArithmeticError("a course with too much to compute")
 
 
 def _rational(matrix: Matrix) -> fmpq_mat:
@@ -59,8 +59,6 @@ def _rational(matrix: Matrix) -> fmpq_mat:
 
 
 def _nearest(ball: arb) -> int:
-    """Return a whole number that is nearest to an interval, or next to the nearest."""
-    if not ball.rad() < _HALF:
-        raise ArithmeticError("the enclosure is too wide")
+    """Return a whole number that is nearest to the middle of an interval."""
     whole: Any = (ball.mid() + _HALF).floor().unique_fmpz()  # never None for what has no radius
     return int(whole)

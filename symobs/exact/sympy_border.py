@@ -258,26 +258,15 @@ def sign_from_assumptions(symbol: Any) -> str:
     return "nonzero" if symbol.is_nonzero else "real"
 
 
-def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool, ...]:
-    """Return for the roots of an irreducible polynomial without parameters whether each lies in Re s < 0 (|z| < 1).
+def rectangles(factor: Scalar, variable: str, first: int) -> tuple[tuple[Fraction, Any], ...]:
+    """Return where SymPy has isolated the roots of a polynomial from `CRootOf(polynomial, first)` on.
 
-    They are counted as SymPy's `CRootOf` does.
+    Each is a number times what lies in a rectangle.
     """
-    symbol = sympy.Symbol(variable)
-    polynomial = sympy.Poly(scalar_to_sympy(factor.numerator), symbol)
-    roots = [sympy.CRootOf(polynomial, k) for k in range(polynomial.degree())]
-    return tuple(_is_inside(root, polynomial, discrete=discrete) for root in roots)
-
-
-def _is_inside(root: Any, polynomial: sympy.Poly, *, discrete: bool) -> bool:
-    """Tell on which side of the boundary a root lies; one closer to it than any bound for its distance lies on it."""
-    degree, size = polynomial.degree(), len(str(sum(abs(int(c)) for c in polynomial.all_coeffs())))
-    # r and its mirror image are roots of a polynomial of degree 2d: Mahler's bound for the distance of two roots of it.
-    smallest = (degree + 1) * len(str(2 * degree)) + (4 * degree + 1) * size + 5
-    distance: Any = 0
-    for places in (8, smallest):
-        value = root.evalf(places + size + 10)
-        distance = abs(value) - 1 if discrete else sympy.re(value)
-        if abs(distance) > sympy.Rational(1, 10**places):
-            return bool(distance < 0)
-    return False
+    polynomial = sympy.Poly(scalar_to_sympy(factor.numerator), sympy.Symbol(variable))
+    found = []
+    for k in range(first, polynomial.degree()):
+        scale, root = sympy.CRootOf(polynomial, k).as_coeff_Mul()
+        interval = root._get_interval()  # noqa: SLF001 - SymPy tells its order in no other way
+        found.append((Fraction(int(scale.p), int(scale.q)), interval))
+    return tuple(found)

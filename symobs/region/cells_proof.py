@@ -16,13 +16,13 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.enclosure import sign_of_number
 from symobs.exact.functions import substitute, tidy
 from symobs.exact.half_plane import sides
+from symobs.exact.place import value_at
 from symobs.exact.plane_proof import holds, is_line
 from symobs.exact.real import integer_factor
 from symobs.region.critical import irreducible
 from symobs.region.description import is_regular, meetings_of
 from symobs.region.inequalities import is_exact
 from symobs.region.plane import PlaneRegion
-from symobs.region.points import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -87,8 +87,8 @@ def is_region(region: LineRegion | PlaneRegion, bounds: tuple[Bound, ...] | None
         return False
     if bounds is None:
         return _is_divided(region, ()) and region.empty
-    listed = irreducible(bound.polynomial for bound in bounds)
-    return _is_divided(region, ()) and _is_divided(region, listed) and is_exact(region, bounds)
+    further = [f for f in irreducible(bound.polynomial for bound in bounds) if f not in critical.factors]
+    return _is_divided(region, ()) and (not further or _is_divided(region, further)) and is_exact(region, bounds)
 
 
 def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> bool:

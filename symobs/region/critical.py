@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.half_plane import all_to_the_left
+from symobs.exact.place import value_at
 from symobs.record import dataclass
-from symobs.region.points import value_at
 from symobs.stability import bilinear, hurwitz_matrix, lienard_chipart
 
 if TYPE_CHECKING:

@@ -43,10 +43,10 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
     areas, curves = [], []
     for number, slab in enumerate(region.plane.slabs):
         stable = [cell for cell in region.cells if cell.slab == number and cell.allowed]
-        nodes = _nodes(region, slab, window)
-        if len(nodes) < 2:
+        found = _nodes(region, slab, window)
+        if len(found) < 2:
             continue
-        rows = [_heights(region, x) for x in nodes]
+        nodes, rows = list(found), list(found.values())
         areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
     curves += _verticals(region, window)
@@ -147,13 +147,16 @@ def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
 # -- branches ---------------------------------------------------------------------------------------------------------
 
 
-def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -> list[Fraction]:
-    """Return rational points of a slab inside the window: crowded towards its ends, and where a branch meets the border."""
+def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -> dict[Fraction, list[Fraction]]:
+    """Return rational points of a slab inside the window with the heights of all branches there, ascending.
+
+    They are crowded towards its ends, and stand where a branch meets the border.
+    """
     (left, right), (bottom, top) = window
     low = left if slab.left is None else max(left, slab.left.interval(FIRST_BITS)[1])
     high = right if slab.right is None else min(right, slab.right.interval(FIRST_BITS)[0])
     if low >= high:
-        return []
+        return {}
     found = {
         low + (high - low) * Fraction(round((1 - cos(pi * k / NODES)) * (1 << 29)), 1 << 30) for k in range(NODES + 1)
     }
@@ -164,22 +167,22 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
     grid = (right - left) / _NODE_GRID
     rounded = {round(x / grid) * grid for x in found}
     inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
-    nodes = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    within = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    nodes = {x: _heights(region, x) for x in within}
     for _ in range(_PASSES):
         nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)
     return nodes
 
 
-def _finer(region: PlaneRegion, nodes: Sequence[Fraction], off: Fraction) -> list[Fraction]:
+def _finer(region: PlaneRegion, nodes: dict[Fraction, list[Fraction]], off: Fraction) -> dict[Fraction, list[Fraction]]:
     """Return the nodes and the middles between them where some branch is farther than this off the straight line."""
-    rows = [_heights(region, x) for x in nodes]
-    found = list(nodes)
-    for (x, low), (z, high) in pairwise(zip(nodes, rows, strict=True)):
+    found = dict(nodes)
+    for (x, low), (z, high) in pairwise(nodes.items()):
         middle = (x + z) / 2
         between = _heights(region, middle)
         if any(abs(2 * b - a - c) > 2 * off for a, b, c in zip(low, between, high, strict=True)):
-            found.append(middle)
-    return sorted(found)
+            found[middle] = between
+    return dict(sorted(found.items()))
 
 
 def _heights(region: PlaneRegion, x: Fraction) -> list[Fraction]:

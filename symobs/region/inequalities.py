@@ -12,9 +12,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from symobs.exact import Scalar
+from symobs.exact.place import value_at
 from symobs.record import dataclass
 from symobs.region.critical import irreducible
-from symobs.region.points import value_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar, product_of
+from symobs.exact.place import value_at
 from symobs.record import dataclass
-from symobs.region.points import find_points, value_at
+from symobs.region.points import find_points
 from symobs.region.proof import UNIT, Combined, Step, by_signs, is_product, is_quotient
 from symobs.region.prover import prove, prove_by_opposite
 

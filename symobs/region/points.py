@@ -10,9 +10,10 @@ import random
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from math import isfinite, lcm, sqrt
+from math import isfinite, sqrt
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs.exact.place import value_at as value_at  # noqa: PLC0414 - handed on to `simplify`
 from symobs.region.external import is_free, names_of
 
 if TYPE_CHECKING:
@@ -38,36 +39,6 @@ _ALLOWED = {
     "nonpositive": lambda x: x <= 0,
     "nonzero": lambda x: x != 0,
 }
-
-
-def value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> Fraction:
-    """Return the value of a polynomial at a rational point, in integers over one denominator."""
-    names, degree, terms, below = _prepared(polynomial)
-    common = lcm(*(point[name].denominator for name in names))
-    powers = [_powers(point[name].numerator * (common // point[name].denominator), degree) for name in names]
-    filling = _powers(common, degree)
-    total = 0
-    for coefficient, places in terms:
-        product, left = coefficient, degree
-        for place, exponent in places:
-            product *= powers[place][exponent]
-            left -= exponent
-        total += product * filling[left]
-    return Fraction(total, filling[degree] * below)
-
-
-@lru_cache(maxsize=4096)
-def _prepared(polynomial: Scalar) -> tuple[tuple[str, ...], int, tuple[Term, ...], int]:
-    """Return the names of a polynomial, a bound of its degree, its terms and its denominator."""
-    names = tuple(sorted(polynomial.names))
-    return names, polynomial.degrees()[0], _terms(polynomial, names), int(polynomial.denominator.fraction())
-
-
-def _powers(base: int, degree: int) -> list[int]:
-    found = [1]
-    for _ in range(degree):
-        found.append(found[-1] * base)
-    return found
 
 
 def holds_at(positive: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:

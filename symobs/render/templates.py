@@ -7,6 +7,7 @@ user's takes the place of the built-in one of its name, which it can still exten
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,8 @@ def fill(template: str, values: Mapping[str, object], *, folder: Path | None = N
     from jinja2 import TemplateError  # noqa: PLC0415 - as below
 
     try:
-        return _environment(folder).get_template(template).render(values).lstrip("\n")
+        environment = _environment(folder) if folder else _of_built_in()
+        return environment.get_template(template).render(values).lstrip("\n")
     except RecursionError:
         message = "the template extends itself"
         repair = f'begin it with \\BLOCK{{extends "{_BUILT_IN}/{template}"}}'
@@ -78,6 +80,12 @@ def _place(error: Exception, template: str) -> str:
             name, line = file.name, trace.tb_lineno
         trace = trace.tb_next
     return f"{name}, line {line}" if line is not None else name
+
+
+@cache
+def _of_built_in() -> Environment:
+    """Return the environment of the built-in templates, which are compiled once in a process."""
+    return _environment(None)
 
 
 def _environment(folder: Path | None) -> Environment:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from tests.benchmarks.measuring import Settings
 
-PLACE = 9
+PLACE = 10
 _SERIAL = itertools.count()
 
 
