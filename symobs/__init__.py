@@ -25,7 +25,7 @@ def __getattr__(name: str) -> Any:
         if name in _errors():
             return _errors()[name]
     elif not name.startswith("_"):
-        task = importlib.import_module("symobs.method").task_named(name)
+        task = importlib.import_module("symobs.result").task_named(name)
         if task is not None:
             return task.function
     message = f"module 'symobs' has no attribute {name!r}"
@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    from symobs.method import tasks  # noqa: PLC0415
+    from symobs.result import tasks  # noqa: PLC0415
 
     return sorted(["StateSpace", "__version__", *_errors(), *tasks()])
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
-from symobs.exact.enclosure import sign_of_number
-from symobs.exact.functions import PI, known
-from symobs.record import dataclass
+from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.kernel.generators import PI, known
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Annotated, Any, TypeAlias
 
+from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
-from symobs.record import dataclass
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.

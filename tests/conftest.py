@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from symobs.phrases import PHRASES
-from tests.steps import OWN_PHRASES
+from tests.support.problems.steps import OWN_PHRASES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.pages import factored_form
+from symobs.analysis.factored_form import factored_form
 from symobs.conditions import vanishing_factors
+from symobs.derivation.builder import predicate, relation
 from symobs.exact import roots_of
 from symobs.formula import Exactly, Roots
-from symobs.page import predicate, relation
-from symobs.stability import as_inequality, monic, stability
+from symobs.stability.criteria.stability import monic, stability
+from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
     from symobs.exact import Scalar
-    from symobs.page import Page
 
 
 def state_transfer_function(page: Page) -> None:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.audit.reading import text
+from symobs._dataclass import dataclass
+from symobs.audit.equations.reading import text
 from symobs.exact import Matrix, Scalar
-from symobs.exact.as_printed import decimals_in, rounds_to, written_out
-from symobs.record import dataclass
+from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exact.as_printed import Decimal
+    from symobs.exact.algebraic.rounded_decimals import Decimal
 
 _MOST_LISTED = 4
 _MOST_EXCHANGED = 12

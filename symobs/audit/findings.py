@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.audit.desk import Desk
+from symobs._dataclass import dataclass
+from symobs.audit.equation_auditor import Desk
+from symobs.audit.printed_entries import Statement, statements
 from symobs.audit.slips import Patience
-from symobs.audit.statements import Statement, statements
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
-from symobs.record import dataclass
-from symobs.viewed import Viewed
+from symobs.result.in_convention import Viewed
 
 if TYPE_CHECKING:
     from symobs.problem import Problem

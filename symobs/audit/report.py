@@ -35,7 +35,7 @@ def _heading(finding: Finding) -> str:
 
 
 def _text(audited: Mapping[str, Audited]) -> str:
-    from symobs.render.text import printable  # noqa: PLC0415 - each format pays for its own
+    from symobs.render.formats.text import printable  # noqa: PLC0415 - each format pays for its own
 
     lines: list[str] = []
     for path, each in audited.items():
@@ -56,7 +56,7 @@ def _text(audited: Mapping[str, Audited]) -> str:
 
 
 def _markdown(audited: Mapping[str, Audited]) -> str:
-    from symobs.render.markdown import plain  # noqa: PLC0415 - each format pays for its own
+    from symobs.render.formats.markdown import plain  # noqa: PLC0415 - each format pays for its own
 
     def code(text: str) -> str:
         """Return mathematics as code; what would end it, or the row, is no mathematics and is shown as text."""

@@ -11,9 +11,9 @@ from dataclasses import replace
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
+from symobs._dataclass import dataclass
 from symobs.exact import Scalar
-from symobs.expression.tree import Node, every, exponent_of, letters_of, with_part
-from symobs.record import dataclass
+from symobs.expression.syntax_tree import Node, every, exponent_of, letters_of, with_part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator

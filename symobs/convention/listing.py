@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symobs.convention import PROFILES, STANDARD, Convention, convention_named, conventions
+from symobs.convention.builtin import PROFILES, convention_named, conventions
+from symobs.convention.convention import STANDARD, Convention
 from symobs.notation import LETTERS
 
 _HEAD = ("name", "control law", "observer matrix", "observable pair")

@@ -1,6 +1,7 @@
 """Derivations: closed kinds of steps, and the check without which none is shown."""
 
 from symobs.derivation.check import Derivation
+from symobs.derivation.convention_signs import set_apart, translated
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -18,7 +19,6 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.translation import set_apart, translated
 
 __all__ = [
     "Case",

@@ -10,11 +10,13 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs.certificate import UNREADABLE, as_scalar, verify
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import UNREADABLE, as_scalar, verify
 from symobs.conditions import vanishing_factors
-from symobs.derivation.properties import PREDICATES, are_roots, polynomial_of, subjects
-from symobs.derivation.region_claims import is_exactly
-from symobs.derivation.rejection import BUG, reject
+from symobs.derivation.exact_where import is_exactly
+from symobs.derivation.facts.properties import PREDICATES, are_roots, polynomial_of, subjects
+from symobs.derivation.facts.rejection import BUG, reject
+from symobs.derivation.facts.restriction import on_stratum
 from symobs.derivation.steps import (
     Case,
     Conclude,
@@ -32,8 +34,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.strata import on_stratum
-from symobs.derivation.words import fits, rests
+from symobs.derivation.wording_check import fits, rests
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
@@ -59,15 +60,14 @@ from symobs.formula import (
     letters,
     roots_written,
 )
-from symobs.formula.plain import plain, plain_relation
+from symobs.formula.plain_text import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
-from symobs.record import dataclass
-from symobs.stability import monic
+from symobs.stability.criteria.stability import monic
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.picture import Picture
+    from symobs.figures.plot import Picture
 
 Value: TypeAlias = Scalar | Matrix | Signal
 
@@ -135,7 +135,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             _asserted(step.sentence, facts, environment)
             environment = _sought(step.sentence, environment)
         case Diagram(name, labels):
-            from symobs.derivation.flows import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
+            from symobs.derivation.figures.block_diagram_check import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
 
             for relation in equations_of(name, dict(labels), environment):
                 _fact(relation, environment, discrete)
@@ -146,7 +146,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Survey(polynomial):
             _about_letters(polynomial, environment)
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
-            from symobs.derivation.regions import is_survey  # noqa: PLC0415 - only pages of regions pay for it
+            from symobs.derivation.region_check import is_survey  # noqa: PLC0415 - only pages of regions pay for it
 
             if not is_survey(step, value, environment, discrete=discrete):
                 reject(f"that this is the region of {plain(polynomial, environment.variable)}")
@@ -205,7 +205,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
     polynomial, variable = step.polynomial, step.variable
     _about_letters(polynomial, environment)
     value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
-    from symobs.derivation.tables import is_tabulated, last_determinant  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.derivation.routh_check import is_tabulated, last_determinant  # noqa: PLC0415 - only pages of regions pay for it
 
     if not is_tabulated(step, value, environment):
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
@@ -216,7 +216,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     """Reject a picture that shows what is not true of the polynomial."""
-    from symobs.derivation.pictures import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.derivation.figures.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
 
     for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
         _established(formula, environment)

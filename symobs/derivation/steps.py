@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs._dataclass import dataclass
 from symobs.phrases import slots_of
-from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.flow import Label
+    from symobs.figures.block_diagram import Label
+    from symobs.figures.plot import Picture
     from symobs.formula import Exactly, Fact, Formula, Relation, Together
-    from symobs.picture import Picture
-    from symobs.region.routh import RouthTable
+    from symobs.stability.criteria.routh_table import RouthTable
 
 
 @dataclass(frozen=True)

@@ -3,17 +3,16 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
-from symobs.exact.algebraic import Extension
-from symobs.exact.calculus import antiderivative, exponential_of_integral
-from symobs.exact.complex import Complex
-from symobs.exact.decimals import is_rounding, places, rounded, written
-from symobs.exact.elimination import echelon, independent_rows, kernel, modulo, rank, reduced_echelon, unit_rows
-from symobs.exact.field import EIGENVALUE, RATIONALS, VARIABLES, Field
-from symobs.exact.functions import derivative
-from symobs.exact.ideal import Ideal, TooLarge, apart_from_zero
-from symobs.exact.matrix import Matrix
-from symobs.exact.numeric import matrix_of_numbers
-from symobs.exact.polynomial import (
+from symobs.exact.algebraic.complex import Complex
+from symobs.exact.algebraic.decimals import is_rounding, places, rounded, written
+from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
+from symobs.exact.algebraic.real_algebraic import RealNumber
+from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero
+from symobs.exact.kernel.field import EIGENVALUE, RATIONALS, VARIABLES, Field
+from symobs.exact.kernel.generators import derivative
+from symobs.exact.kernel.matrix import Matrix
+from symobs.exact.kernel.polynomial import (
     apply_polynomial,
     companion,
     from_coefficients,
@@ -22,12 +21,21 @@ from symobs.exact.polynomial import (
     remainder,
     resultant,
 )
-from symobs.exact.real import RealNumber
-from symobs.exact.roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
-from symobs.exact.scalar import Scalar
-from symobs.exact.sides import stable_roots
-from symobs.exact.smith_mcmillan import pole_and_zero_polynomial
-from symobs.exact.transfer import controller, transfer, transfer_matrix
+from symobs.exact.kernel.rational_matrix import matrix_of_numbers
+from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.linear_algebra.elimination import (
+    echelon,
+    independent_rows,
+    kernel,
+    modulo,
+    rank,
+    reduced_echelon,
+    unit_rows,
+)
+from symobs.exact.linear_algebra.smith_mcmillan import pole_and_zero_polynomial
+from symobs.exact.linear_algebra.transfer_function import controller, transfer, transfer_matrix
+from symobs.exact.sympy_bridge.stable_roots import stable_roots
+from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 
 __all__ = [
     "EIGENVALUE",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact.as_printed import decimals_in
+from symobs.exact.algebraic.rounded_decimals import decimals_in
 from symobs.expect.structure import relation, relations_agree
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def _implies(
     given: Iterable[tuple[Scalar, str]], wanted: Iterable[tuple[Scalar, str]], signs: Mapping[str, str]
 ) -> bool:
     """Tell whether relations follow from others: those not among them must be strict, and follow from the strict ones."""
-    from symobs.region.simplify import prove_value  # noqa: PLC0415 - only where two lists are not the same
+    from symobs.stability.inequalities.simplify import prove_value  # noqa: PLC0415 - only where two lists are not the same
 
     given = set(given)
     known = [value if operator == ">" else value**2 for value, operator in given if operator in {">", "!="}]

@@ -7,9 +7,9 @@ from typing import Any
 
 from symobs.errors import InputError
 from symobs.exact import Complex, Root, Scalar, root_of_pole
-from symobs.exact.as_printed import decimals_in, polynomial_of, rounds_to
-from symobs.exact.roots import polynomial_of_roots
-from symobs.expect.functions import functions_agree
+from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
+from symobs.exact.algebraic.rounded_decimals import decimals_in, polynomial_of, rounds_to
+from symobs.expect.time_functions import functions_agree
 from symobs.expression import parse_poles, parse_scalar
 from symobs.expression.source import shown
 

@@ -6,22 +6,23 @@ import operator
 from math import isqrt
 from typing import TYPE_CHECKING, Any
 
+from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded
-from symobs.exact import Complex, Scalar, functions
-from symobs.expression.budget import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
-from symobs.expression.parser import parse
-from symobs.expression.plain import plain_rows
+from symobs.exact import Complex, Scalar
+from symobs.exact.kernel import generators
+from symobs.expression.fast_path import plain_rows
+from symobs.expression.size_limits import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
 from symobs.expression.source import Source, shown
-from symobs.expression.tokens import Tokeniser
-from symobs.expression.tree import operands_first
-from symobs.record import dataclass
+from symobs.expression.syntax_parser import parse
+from symobs.expression.syntax_tree import operands_first
+from symobs.expression.tokenizer import Tokeniser
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import TypeAlias
 
     from symobs.expression.names import Scope
-    from symobs.expression.tree import Node
+    from symobs.expression.syntax_tree import Node
 
     Entry: TypeAlias = "Number | Grid"
 
@@ -151,9 +152,9 @@ class Evaluator:
             raise self.source.error(f"{name} of a complex number", place, "write it with sin and cos")
         try:
             if name != "sqrt":
-                return functions.function(name, argument)
-            return argument if argument.is_zero else functions.square_root(self._with_one_root(place, argument))
-        except functions.NotWritten as error:
+                return generators.function(name, argument)
+            return argument if argument.is_zero else generators.square_root(self._with_one_root(place, argument))
+        except generators.NotWritten as error:
             raise self.source.error(str(error), place, "declare a symbol for it") from None
         except ZeroDivisionError:
             instead = "write sin and cos of a real argument"

@@ -8,10 +8,10 @@ from dataclasses import field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs._dataclass import dataclass
 from symobs.errors import ExpressionError
-from symobs.expression.budget import Meter
+from symobs.expression.size_limits import Meter
 from symobs.expression.source import shown
-from symobs.record import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from symobs._dataclass import dataclass
 from symobs.errors import ExpressionError, InputError
-from symobs.record import dataclass
 
 MOST_SHOWN = 60
 #: An error that points into a text shows this much of it, more than half of it before the place.

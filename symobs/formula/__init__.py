@@ -1,7 +1,9 @@
 """Formulas: the tree, its evaluation, and terms (a formula with its exact value)."""
 
+from symobs.formula.arithmetic import Arithmetic, Signal
 from symobs.formula.comparison import agree, differ
-from symobs.formula.evaluate import Arithmetic, Environment, Exact, Modular, Signal, evaluate
+from symobs.formula.evaluate import Environment, Exact, Modular, evaluate
+from symobs.formula.modulo_ideal import Restricted
 from symobs.formula.nodes import (
     Apply,
     At,
@@ -34,8 +36,7 @@ from symobs.formula.nodes import (
     roots_written,
     with_children,
 )
-from symobs.formula.restricted import Restricted
-from symobs.formula.signs import Turned
+from symobs.formula.sign_changes import Turned
 
 __all__ = [
     "Apply",

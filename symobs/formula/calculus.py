@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import WrongKind
 from symobs.exact import Matrix, Scalar
-from symobs.exact.functions import derivative, substitute, symbols_in
+from symobs.exact.kernel.generators import derivative, substitute, symbols_in
 from symobs.formula.nodes import Integral
 
 if TYPE_CHECKING:
-    from symobs.formula.evaluate import Arithmetic
+    from symobs.formula.arithmetic import Arithmetic
     from symobs.formula.nodes import Formula
 
 TIME = "t"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar
-from symobs.formula.evaluate import Signal, add, scalar, times
+from symobs.formula.arithmetic import Signal, add, scalar, times
 
 if TYPE_CHECKING:
-    from symobs.formula.evaluate import Arithmetic
+    from symobs.formula.arithmetic import Arithmetic
 
 
 def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:

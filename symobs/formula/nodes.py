@@ -9,14 +9,14 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from symobs.exact.functions import all_roots
-from symobs.record import dataclass
+from symobs._dataclass import dataclass
+from symobs.exact.kernel.generators import all_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symobs.exact import Matrix, Root, Scalar
-    from symobs.exact.functions import Function
+    from symobs.exact.kernel.generators import Function
 
 
 @dataclass(frozen=True)

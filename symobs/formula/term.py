@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
+from symobs._dataclass import dataclass
 from symobs.exact import Matrix, Scalar
 from symobs.formula.evaluate import Environment, Exact, evaluate
 from symobs.formula.nodes import (
@@ -27,7 +28,6 @@ from symobs.formula.nodes import (
     Sum,
     Transpose,
 )
-from symobs.record import dataclass
 
 
 @dataclass(frozen=True)

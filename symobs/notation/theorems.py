@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symobs.record import dataclass
+from symobs._dataclass import dataclass
 
 
 @dataclass(frozen=True)

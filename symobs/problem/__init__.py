@@ -5,8 +5,8 @@ A file is never executed and never partly trusted: its size, its nesting and its
 
 from pathlib import Path
 
-from symobs.problem.keys import schema
-from symobs.problem.tables import MAX_BYTES, Decimal, parse
+from symobs.problem.file_tables import MAX_BYTES, Decimal, parse
+from symobs.problem.schema import schema
 from symobs.problem.validation import OPEN, Problem, validate
 
 __all__ = ["MAX_BYTES", "OPEN", "Decimal", "Problem", "parse", "read", "schema", "validate"]

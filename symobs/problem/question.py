@@ -10,17 +10,18 @@ import string
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.analysis.horizons import INFINITE, read_horizon
-from symobs.analysis.pages import formula_of_factored, given, state_signs
+from symobs._dataclass import dataclass
+from symobs.analysis.factored_form import formula_of_factored
+from symobs.analysis.page_parts import given, state_signs
+from symobs.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.derivation import Note, Section, translated
+from symobs.derivation.builder import Page, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
 from symobs.formula import Names, Roots
-from symobs.method import Document
-from symobs.page import Page, relation, sentence
-from symobs.phrases.questions import PHRASES, UNSAID
-from symobs.problem.keys import keys_of
-from symobs.record import dataclass
+from symobs.phrases.english.page.questions import PHRASES, UNSAID
+from symobs.problem.schema import keys_of
+from symobs.result import Document
 from symobs.specification import (
     desired_polynomial,
     parse_signal,
@@ -36,10 +37,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.derivation import Derivation, Sentence
+    from symobs.derivation.builder import Slot
     from symobs.formula.term import Term
-    from symobs.method import Task
-    from symobs.page import Slot
     from symobs.problem.validation import Problem
+    from symobs.result import Task
     from symobs.system import StateSpace
 
 #: Keywords whose matrices stand among the data, and the letters they have there.
@@ -196,7 +197,7 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
     """Return the parameters that the region is asked for where none are named."""
-    from symobs.analysis.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
+    from symobs.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
 
     asked = problem.specification
     gains = {"K": asked.get("K"), "L": asked.get("L")}

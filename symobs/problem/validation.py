@@ -10,19 +10,19 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 from unicodedata import category
 
+from symobs._dataclass import dataclass
 from symobs.convention import STANDARD, Convention, convention_named
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
-from symobs.method import Document, Result, Task, task_named, tasks
-from symobs.problem.keys import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
-from symobs.problem.tables import Decimal, came
-from symobs.record import dataclass
+from symobs.problem.file_tables import Decimal, came
+from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
+from symobs.result import Document, Result, Task, task_named, tasks
+from symobs.result.in_convention import Viewed, names_in
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
-from symobs.system.time import read_time
-from symobs.viewed import Viewed, names_in
+from symobs.system.time_domain import read_time
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,12 +1,12 @@
 """Plants and what they are read from."""
 
-from symobs.system.foreign import as_plant
-from symobs.system.fraction import realise
 from symobs.system.matrices import Matrices
-from symobs.system.plant import StateSpace
+from symobs.system.other_programs import as_plant
 from symobs.system.reading import read_complex, read_matrix, read_scalar
+from symobs.system.state_space import StateSpace
 from symobs.system.symbols import Symbols, is_sympy
-from symobs.system.time import Continuous, Discrete, TimeDomain
+from symobs.system.time_domain import Continuous, Discrete, TimeDomain
+from symobs.system.transfer_function_text import realise
 
 __all__ = [
     "Continuous",

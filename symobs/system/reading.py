@@ -31,7 +31,7 @@ def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[ob
     if isinstance(value, str):
         return parse_matrix(value, symbols.names, where=where, beside=beside)
     if is_sympy(value) and hasattr(value, "shape"):
-        from symobs.exact.sympy_border import matrix_from_sympy  # noqa: PLC0415
+        from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
         return matrix_from_sympy(value, where)
     if type(value).__module__.startswith("numpy"):
@@ -66,7 +66,7 @@ def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
     if isinstance(value, Scalar):
         return value
     if is_sympy(value):
-        from symobs.exact.sympy_border import scalar_from_sympy  # noqa: PLC0415
+        from symobs.exact.sympy_bridge.conversion import scalar_from_sympy  # noqa: PLC0415
 
         return scalar_from_sympy(value, where)
     return parse_scalar(value, symbols.names, where=where)
@@ -81,6 +81,6 @@ def _from_numpy(value: Any, where: str) -> object:
 
 def read_complex(value: object, where: str) -> Complex:
     """Return the exact complex number of a SymPy expression."""
-    from symobs.exact.sympy_border import complex_from_sympy  # noqa: PLC0415
+    from symobs.exact.sympy_bridge.conversion import complex_from_sympy  # noqa: PLC0415
 
     return complex_from_sympy(value, where)

@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
+from symobs._dataclass import dataclass
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
 from symobs.expression import declared_name
 from symobs.expression.names import NAME
 from symobs.expression.source import shown
 from symobs.notation import GREEK, symbol_latex
-from symobs.record import dataclass
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Symbols:
         found = {name: symbol for name, symbol in sympy_symbols(values).items() if name != variable}
         if not found:
             return self
-        from symobs.exact.sympy_border import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in
+        from symobs.exact.sympy_bridge.conversion import sign_from_assumptions  # noqa: PLC0415 - SymPy only where it came in
 
         for name, symbol in found.items():
             declared_name(name, "symbols")

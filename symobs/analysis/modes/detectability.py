@@ -1,0 +1,272 @@
+"""Detectability and stabilizability: whether the modes that stay hidden are stable.
+
+(C, A) is detectable exactly when the polynomial of the fixed modes, det(sI − X) with X = A on ker 𝒪, is stable; (A, B)
+is stabilizable exactly when (Bᵀ, Aᵀ) is detectable.  Under the weaker reading of S3 (Brogan) a fixed mode may lie on the
+boundary, if it does not grow: X must be stable in the sense of Lyapunov.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from symobs._dataclass import dataclass
+from symobs.analysis.modes.detectability_page import write_page
+from symobs.analysis.modes.modes import ModeResult, polynomial_of
+from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of, too_long
+from symobs.conditions import Condition
+from symobs.errors import InputError
+from symobs.exact import Scalar, product_of
+from symobs.result import Case, Result, choose, method, task
+from symobs.stability.criteria.stability import (
+    is_beyond,
+    is_marginal,
+    marginal_where,
+    meetings,
+    monic,
+    on_boundary,
+    stability,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.derivation.builder import Page
+    from symobs.specification import Name
+    from symobs.system import StateSpace
+
+MEANINGS = ("asymptotic", "lyapunov")
+
+
+class Hidden(NamedTuple):
+    """What is known of the fixed modes: the verdict, and what must hold where it is conditional."""
+
+    verdict: str
+    where: tuple[Condition, ...] = ()
+    annuls: Scalar | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HiddenStability(ModeResult):
+    """The modes, and whether the fixed ones are stable in the meaning asked for."""
+
+    meaning: str
+
+    @cached_property
+    def hidden(self) -> Hidden:
+        """The verdict on the fixed modes, the cases left aside."""
+        f: Scalar = self.answer["fixed_polynomial"]
+        plant = self.plant
+        found = stability(f, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        strict = tuple(Condition("existence", value, ">") for value in found.positive)
+        if self.meaning == "asymptotic" or found.verdict == "yes":
+            return Hidden(found.verdict, strict)
+        return self._in_the_sense_of_lyapunov(f, found.verdict, strict)
+
+    def _in_the_sense_of_lyapunov(self, f: Scalar, verdict: str, strict: tuple[Condition, ...]) -> Hidden:
+        """Decide X: no root beyond the boundary, and those on it simple in a polynomial that annuls X."""
+        plant, X = self.plant, self.test.answer["restricted"]
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        if is_beyond(f, variable, signs, discrete=discrete):
+            return Hidden("no")
+        smaller = [
+            monic(factor, variable) ** (power if _is_stable(factor, plant) else 1)
+            for factor, power in f.numerator.factors()[1]
+            if factor.degree(variable) > 0
+        ]
+        annuls = product_of(smaller)
+        if is_marginal(annuls, variable, signs, discrete=discrete, apart=self.meetings):
+            return Hidden("yes" if polynomial_of(annuls, variable, X).is_zero else "no", (), annuls)
+        bounds = marginal_where(f, variable, signs, discrete=discrete)
+        if bounds:
+            return Hidden("conditional", tuple(Condition("existence", bound, ">=") for bound in bounds))
+        return Hidden("conditional", strict) if verdict == "conditional" else Hidden("undecided")
+
+    @cached_property
+    def meetings(self) -> tuple[Scalar, ...]:
+        """What vanishes where two fixed modes on the boundary meet, under the weaker reading: they may grow there."""
+        plant = self.plant
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        factors = [factor for factor, _ in self.answer["fixed_polynomial"].numerator.factors()[1]]
+        marginal = [factor for factor in factors if on_boundary(factor, variable, signs, discrete=discrete)]
+        return meetings(marginal, variable, signs) if self.meaning == "lyapunov" else ()
+
+    @property
+    def verdict(self) -> str:
+        """That of the fixed modes where there are no cases, else what holds on all of them."""
+        verdicts = {self.hidden.verdict}
+        verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.deciding_cases}
+        if len(verdicts) == 1:
+            return verdicts.pop()
+        return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"
+
+    @cached_property
+    def rank_cases(self) -> tuple[Case, ...]:
+        """The fixed modes on the strata where the rank test has others."""
+        task_name, meaning, method_name = self.task, self.meaning, self.method
+        return self.cases_by(lambda plant: solve(plant, task_name, meaning, method_name))
+
+    @cached_property
+    def meeting_cases(self) -> tuple[Case, ...]:
+        """The modes where eigenvalues meet."""
+        task_name, meaning, method_name = self.task, self.meaning, self.method
+        further = [(value,) for value in self.meetings]
+        return self.meetings_by(lambda plant: solve(plant, task_name, meaning, method_name), *further)
+
+    @property
+    def deciding_cases(self) -> tuple[Case, ...]:
+        """The cases on which another verdict may hold.
+
+        Where eigenvalues meet the fixed modes are the same, and only the weaker reading asks for their eigenvectors: a
+        mode that grows in general may have as many as it should there, on strata that are told.
+        """
+        if self.hidden.annuls is None:
+            return self.rank_cases
+        return (*self.rank_cases, *(case for case in self.meeting_cases if case.when or self.hidden.verdict == "no"))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The cases of the rank test, where eigenvalues meet, and the boundary where the weaker reading leaves it open."""
+        strict = [c.expression for c in self.hidden.where if c.operator == ">"]
+        found = (*self.rank_cases, *self.meeting_cases)
+        found += tuple(Case((Condition("existence", value, "=="),), {}, None) for value in self._left_open)
+        if self.meaning == "asymptotic" or not strict:
+            return found
+        return (*found, Case((Condition("existence", product_of(strict), "=="),), {}, None))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The plant's domain, what makes the fixed modes stable, and the strata on which others are not."""
+        if self.hidden.verdict == "no":
+            return (*self.domain, *self._only_there)
+        if self.hidden.verdict == "undecided":
+            return self.domain
+        left = [(value,) for value in self._left_open]
+        lost = distances([*(system for system in self._lost if not too_long([system])), *left])
+        listed = {c.expression for c in self.domain}
+        others = (Condition("existence", expression) for expression in lost if expression not in listed)
+        return (*self.domain, *self.hidden.where, *others)
+
+    @cached_property
+    def _lost(self) -> tuple[tuple[Scalar, ...], ...]:
+        """The equations of the strata on which another verdict may hold."""
+        differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
+        return systems_of(differing) or ()
+
+    @cached_property
+    def _left_open(self) -> tuple[Scalar, ...]:
+        """What has to be kept from 0, and is left undecided where it is, since the strata in it take too long to tell."""
+        return too_long(self._lost) if self.hidden.verdict in {"yes", "conditional"} else ()
+
+    @property
+    def grows_where(self) -> tuple[Condition, ...]:
+        """What keeps away from the strata on which a mode that grows in general, under the weaker reading, may not."""
+        if self.hidden.annuls is None or self.hidden.verdict != "no":
+            return ()
+        return tuple(Condition("existence", value) for value in distances(systems_of(self.meeting_cases) or ()))
+
+    @property
+    def _only_there(self) -> tuple[Condition, ...]:
+        """What must vanish where fixed modes grow in general: some of these strata, where they do not."""
+        kept = [case for case in self.meeting_cases if case.result is None or case.result.verdict != "no"]
+        if not self.grows_where or not kept:
+            return ()
+        return (Condition("existence", product_of(distances(systems_of(kept) or ())), "=="),)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The modes, the polynomial of the fixed ones, and where it is stable."""
+        return {
+            "meaning": self.meaning,
+            "modes": self.modes_of(with_matrix=False),
+            "fixed_polynomial": self.answer["fixed_polynomial"],
+            "polynomial": self.answer["polynomial"],
+            "rank": self.test.answer["rank"],
+        }
+
+    def write(self, page: Page) -> None:
+        """Write the test at the eigenvalues that are not stable, or with parameters the hidden modes."""
+        write_page(page, self)
+
+
+def _is_stable(factor: Scalar, plant: StateSpace) -> bool:
+    found = stability(factor, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    return found.verdict == "yes"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Detectability(HiddenStability):
+    """Whether the unobservable modes are stable."""
+
+    task: ClassVar[str] = "detectability"
+
+    @property
+    def kind(self) -> str:
+        """The rank test below it."""
+        return "observability"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stabilizability(HiddenStability):
+    """Whether the uncontrollable modes are stable."""
+
+    task: ClassVar[str] = "stabilizability"
+
+    @property
+    def kind(self) -> str:
+        """The rank test below it."""
+        return "controllability"
+
+
+_KINDS = {"detectability": "observability", "stabilizability": "controllability"}
+
+
+def solve(plant: StateSpace, task_name: str, meaning: str, method_name: str) -> HiddenStability:
+    """Return the answer for a plant."""
+    result = Detectability if task_name == "detectability" else Stabilizability
+    return result(plant, method_name, ModeResult.answer_of(plant, _KINDS[task_name]), meaning)
+
+
+def _checked(meaning: str) -> str:
+    if meaning not in MEANINGS:
+        message = f"{str(meaning)[:40]!r} is not a meaning of stability"
+        raise InputError(message, where="specification.meaning", repair=f"write one of {', '.join(MEANINGS)}")
+    return meaning
+
+
+@method("detectability/fixed_modes", source="S0, section 4.4; S3, footnote 1")
+def detectability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
+    """Stability of the characteristic polynomial of A on ker 𝒪, without eigenvalues."""
+    return solve(plant, "detectability", meaning, "fixed_modes")
+
+
+@method("stabilizability/fixed_modes", source="dual of S0, section 4.4")
+def stabilizability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
+    """Stability of the characteristic polynomial of Aᵀ on the left kernel of 𝒞, without eigenvalues."""
+    return solve(plant, "stabilizability", meaning, "fixed_modes")
+
+
+@task
+def detectability(plant: StateSpace, *, meaning: Name = "asymptotic", method: Name = "auto") -> Result:
+    """Decide whether some L makes A − LC stable: whether all unobservable modes are stable.
+
+    plant    n states, p ≥ 1 outputs; B and D do not matter
+    meaning  "asymptotic", or "lyapunov": unobservable modes may lie on the boundary if they do not grow (S3, footnote 1)
+    Returns modes (list of eigenvalue, stable, observable, rank, with multiplicity), fixed_polynomial; with parameters the
+    conditions and cases.  Raises `InputError` where C is missing.  Source: S0, section 4.4.
+    """
+    plant.require("C", task="detectability")
+    return choose("detectability", method, "fixed_modes").solve(plant, _checked(meaning))
+
+
+@task
+def stabilizability(plant: StateSpace, *, meaning: Name = "asymptotic", method: Name = "auto") -> Result:
+    """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable.
+
+    plant    n states, m ≥ 1 inputs; C and D do not matter
+    meaning  "asymptotic", or "lyapunov": uncontrollable modes may lie on the boundary if they do not grow
+    Returns modes (list of eigenvalue, stable, controllable, rank, with multiplicity), fixed_polynomial; with parameters
+    the conditions and cases.  Raises `InputError` where B is missing.  Source: S0, section 4.4, by duality.
+    """
+    plant.require("B", task="stabilizability")
+    return choose("stabilizability", method, "fixed_modes").solve(plant, _checked(meaning))

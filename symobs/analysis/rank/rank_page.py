@@ -1,0 +1,141 @@
+"""Parts of pages that several tasks share: the data, and the determinant or rank that decides a test."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from symobs.analysis.page_parts import (
+    HIDDEN,
+    WRITTEN_UP_TO,
+    conditions_of,
+    determinant_form,
+    hidden,
+    hidden_polynomial,
+    undecided,
+)
+from symobs.analysis.rank.missing_measurements import in_words
+from symobs.conditions import vanishing_factors
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude, Equal, Step
+from symobs.derivation.builder import Page, relation, sentence, shows
+from symobs.derivation.wording_check import fits
+from symobs.exact import Matrix, roots_of, unit_rows
+from symobs.formula import Roots, Together
+from symobs.formula.term import block
+
+if TYPE_CHECKING:
+    from symobs.analysis.rank.rank_test import RankResult
+    from symobs.result import Case
+
+
+#: More sets of states are not named in one sentence.
+NAMED_SETS = 6
+
+
+def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
+
+    Factors of the determinant that can vanish become conditions from here on.
+    """
+    determinant, order = result.test_determinant, page.plant.order
+    if result.answer["rank"] < order:
+        _deficient(page, letter, result, kind)
+        return
+    if determinant is None:
+        key = "full_rank" if result.verdict == "yes" else "generic_rank"
+        page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
+        return
+    signs = page.plant.symbols.signs
+    if determinant.size > WRITTEN_UP_TO:
+        page.conclude(f"long_{kind}", count=str(determinant.numerator.size - 1))
+        return
+    det = page[letter].apply("det")
+    shown = determinant_form(page, determinant)
+    open_factors = vanishing_factors([determinant], signs)
+    if not open_factors:
+        page.equal(relation(det, shown, "!=", 0))
+        page.conclude(f"yes_{kind}")
+        return
+    page.equal(relation(det, shown))
+    page.assume(f"provided_{kind}", *open_factors)
+
+
+def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    """Say what rank and kernel are on every stratum where they are not the generic ones."""
+    page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
+
+
+def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
+    if case.result is None:
+        return undecided(page, case)
+    result = cast("RankResult", case.result)
+    answer, matrix = result.answer, page[letter] if kind == "observability" else page[letter].T
+    steps: list[Step] = []
+    if not answer["rank"]:
+        steps.append(Conclude(sentence("case_zero", {}), (relation(page[letter], page[letter].value * 0),)))
+    else:
+        rank = relation(page[letter].apply("rank"), answer["rank"])
+        steps.append(Conclude(sentence("case_rank", {"rank": rank})))
+    N, vectors = answer["kernel"], answer["kernel"].shape[1]
+    if answer["rank"] and vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], vectors)
+        words = sentence(f"kernel_{kind}" if vectors == 1 else f"kernel_basis_{kind}", {})
+        steps.append(Equal((relation(matrix @ page.value(N), zero),), words))
+    steps += repair(page, letter, result, kind)
+    return CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(steps))
+
+
+def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]:
+    """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
+    sets, order = result.repaired, page.plant.order
+    if not 0 < len(sets) <= NAMED_SETS:
+        return []
+    test, A = (page[letter], page["A"]) if kind == "observability" else (page[letter].T, page["A"].T)
+    facts = []
+    for numbers in sets:
+        rows = page.value(unit_rows(order, tuple(number - 1 for number in numbers)))
+        below = [[rows], *([rows @ A**k] for k in range(1, order))]
+        facts.append(relation(block([[test], *below]).apply("rank"), order))
+    if result.piece is not None:  # a rank on a stratum may be beyond what the check of a page can see
+        relations = result.piece.relations(c.expression for c in result.domain)
+        values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
+        e = page.environment.having(values=values | {"A": result.plant.matrices.A}).under(relations)
+        if not shows(facts, e):
+            return []
+    words = "one" if len(sets[0]) == 1 else "several"
+    return [Conclude(sentence(f"repair_{words}_{kind}", {"states": in_words(sets)}), tuple(facts))]
+
+
+def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
+    rank = result.answer["rank"]
+    told = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    key = "no" if not result.case_tree and fits(f"no_{kind}", told, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=told)
+    matrix = page[letter] if kind == "observability" else page[letter].T
+    for vector in result.kernel_vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], 1)
+        page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
+    page.steps += _outside_cases(result, repair(page, letter, result, kind))
+    letters = HIDDEN[kind]
+    page.set(letters[0], result.answer["kernel"])
+    page.set(letters[1], result.answer["restricted"])
+    polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
+    page.conclude(
+        f"modes_{kind}",
+        *hidden(page, kind == "observability", letters),
+        modes=Roots(
+            hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,
+            roots_of(polynomial, page.plant.variable),
+        ),
+    )
+
+
+def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds in general, where there are others; none where these are everywhere."""
+    from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
+
+    systems = systems_of(result.case_tree)
+    if not systems or not steps:
+        return steps if systems == () else []
+    apart = tuple(relation(distance, "!=", 0) for distance in distances(systems))
+    return [CaseStep(Together(apart), (), tuple(steps))]

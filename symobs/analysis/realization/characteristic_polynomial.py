@@ -1,0 +1,88 @@
+"""The characteristic polynomial  χ(s) = det(sI − A), its factors and its roots."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs._dataclass import dataclass
+from symobs.analysis.factored_form import formula_of_factored
+from symobs.analysis.page_parts import given, say_stability
+from symobs.certificate.claims import Claim
+from symobs.derivation.builder import Page, relation
+from symobs.exact import Factored, Scalar, factored, roots_of
+from symobs.formula import Environment, Roots
+from symobs.formula.term import Term, identity, letter
+from symobs.result import Result, choose, method, task
+from symobs.stability.criteria.stability import stability
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.specification import Name
+    from symobs.system import StateSpace
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CharacteristicPolynomial(Result):
+    """χ with det(sI − A) = χ(s) and the product of the factors equal to χ."""
+
+    task: ClassVar[str] = "characteristic_polynomial"
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield det(sI − A) = χ(s) = product of the factors."""
+        values = {"A": self.plant.matrices.A, "chi": self.answer["polynomial"]}
+        e = Environment(variable=self.plant.variable, values=values)
+        pencil = letter("s", e) @ identity(self.plant.order, e) - letter("A", e)
+        form: Factored = self.answer["factors"]
+        product = Term(formula_of_factored(form), e)
+        yield Claim(relation(pencil.apply("det"), letter("chi", e)), e)
+        yield Claim(relation(letter("chi", e), product), e, "chi = product of the factors")
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """Polynomial, factors, roots, stability."""
+        plant, polynomial = self.plant, self.answer["polynomial"]
+        found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        return {
+            "polynomial": polynomial,
+            "factors": [[factor, power] for factor, power in self.answer["factors"].factors],
+            "roots": roots_of(polynomial, plant.variable),
+            "stable": found.verdict,
+            "stable_if": found.inequalities(plant.symbols.signs),
+        }
+
+    def write(self, page: Page) -> None:
+        """Write the determinant, multiplied out and factored, and the roots."""
+        given(page)
+        polynomial: Scalar = self.answer["polynomial"]
+        with page.section("characteristic_polynomial"):
+            pencil = page.s @ page.identity(self.plant.order) - page["A"]
+            members = [pencil.apply("det"), pencil.shown.apply("det"), page.value(polynomial)]
+            form: Factored = self.answer["factors"]
+            if len(form.factors) > 1 or form.factors[0][1] > 1:
+                members.append(page.term(formula_of_factored(form)))
+            page.define("chi", *members, say="its_characteristic_polynomial", answer=True, closing=False)
+            roots = roots_of(polynomial, self.plant.variable)
+            if all(root.is_closed for root in roots):
+                page.conclude("its_roots", roots=Roots(page["chi"].formula, roots))
+            say_stability(page, page["chi"])
+
+
+@method("characteristic_polynomial/determinant", source="definition")
+def determinant(plant: StateSpace) -> CharacteristicPolynomial:
+    """Expand det(sI − A) by minors, or by FLINT where there is no parameter."""
+    polynomial = plant.matrices.A.characteristic_polynomial(plant.variable)
+    answer = {"polynomial": polynomial, "factors": factored(polynomial, plant.variable)}
+    return CharacteristicPolynomial(plant, "determinant", answer)
+
+
+@task
+def characteristic_polynomial(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Return χ(s) = det(sI − A), its factors and its roots with multiplicity.
+
+    plant    n states; only A matters
+    Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.
+    Source: S0, chapter 4.
+    """
+    return choose("characteristic_polynomial", method, "determinant").solve(plant)

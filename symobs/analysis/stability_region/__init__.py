@@ -1,0 +1,1 @@
+"""TODO symobs/analysis/stability_region."""

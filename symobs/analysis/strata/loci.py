@@ -1,0 +1,207 @@
+"""Where polynomials vanish: the common zeros of some polynomials, as few and as simple systems of equations.
+
+The parameters are real, have their declared signs, and keep the denominators of the plant from 0.  What cannot vanish
+there is struck out of every equation before a Gröbner basis is computed, an equation that factors branches, a sum that
+cannot vanish but term by term is replaced by its terms, and systems without a solution are dropped.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.conditions import FACTORED_UP_TO, real_consequences, vanishing_factors
+from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+#: The most systems that one question may branch into, and terms of the equations of a system that is worked on.
+_BRANCHES = 100
+_TERMS = 1_000
+#: The most terms of all the systems together that are worked on in one region.
+_WORK = 30_000
+#: The most terms of a sum of squares, before it is multiplied out.
+_SQUARED = 2_000
+
+
+class Work:
+    """The terms of equations that may still be worked on."""
+
+    def __init__(self) -> None:
+        """Start with all of them."""
+        self.left = _WORK
+
+    def spent(self, equations: tuple[Scalar, ...]) -> bool:
+        """Take what a system costs; return whether it is too long, or nothing is left."""
+        size = sum(equation.size for equation in equations)
+        self.left -= size
+        return self.left < 0 or (len(equations) > 1 and size > _TERMS)
+
+
+@dataclass(frozen=True)
+class Region:
+    """The parameters that are considered: real, with declared signs, on a locus, and none of `nonzero` vanishes."""
+
+    signs: Mapping[str, str]
+    nonzero: frozenset[Scalar] = frozenset()
+    work: Work = field(default_factory=Work, compare=False)
+    ideal: Ideal | None = None
+
+    @cached_property
+    def whole(self) -> Locus:
+        """All of them, as a locus."""
+        return EVERYWHERE if self.ideal is None else Locus.of(self.ideal)
+
+    def vanishing(self, value: Scalar) -> tuple[Scalar, ...]:
+        """Return the distinct irreducible factors of a numerator that can be 0 here."""
+        return tuple(f for f in vanishing_factors([value], self.signs) if f not in self.nonzero)
+
+    def simplest_first(self, values: Iterable[Scalar]) -> list[Scalar]:
+        """Sort polynomials so that those with few factors, which others contain, come first."""
+        return sorted(values, key=lambda value: (len(self.vanishing(value)), value.size))
+
+
+@dataclass(frozen=True)
+class Locus:
+    """The common zeros of some polynomials in a region; none of it is known where there is no ideal."""
+
+    equations: tuple[Scalar, ...]
+    ideal: Ideal | None = field(default=None, compare=False)
+
+    @staticmethod
+    def of(ideal: Ideal) -> Locus:
+        """Return the locus of an ideal: its equations are the reduced basis, or shorter ones where it is a few points.
+
+        Leading coefficients are positive.
+        """
+        basis = ideal.generators
+        if EIGENVALUE not in ideal.field.position and ideal.triangular:
+            basis = min(basis, ideal.triangular, key=lambda equations: sum(e.size for e in equations))
+        positive = [g if g.factors()[0].fraction() > 0 else -g for g in basis]
+        return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
+
+    def lies_in(self, other: Locus) -> bool:
+        """Tell whether the equations of another locus are seen to follow from those of this one."""
+        if self.ideal is None:
+            return set(other.equations) <= set(self.equations)
+        try:
+            return all(equation in self.ideal for equation in other.equations)
+        except TooLarge:
+            return False
+
+    @cached_property
+    def distance(self) -> Scalar:
+        """A polynomial that is 0 exactly on the locus: its equation, or the sum of the squares of its equations.
+
+        Raises `TooLarge` where that is too long.
+        """
+        if len(self.equations) > 1 and sum(equation.size**2 for equation in self.equations) > _SQUARED:
+            message = "the squares of the equations are too long"
+            raise TooLarge(message)
+        return distance_from(self.equations)
+
+
+def distance_from(equations: tuple[Scalar, ...]) -> Scalar:
+    """Return a polynomial that is 0 exactly where some equations hold: the only one, or the sum of their squares."""
+    return equations[0] if len(equations) == 1 else sum((equation**2 for equation in equations), Scalar.of(0))
+
+
+EVERYWHERE = Locus((), Ideal.of(()))
+
+
+def _simplicity(value: Scalar) -> tuple[int, int, str]:
+    return sum(value.degrees()), value.size, str(value) if value.size <= FACTORED_UP_TO else ""
+
+
+def loci(equations: Iterable[Scalar], region: Region) -> tuple[Locus, ...]:
+    """Return the common zeros of polynomials in a region as loci, none of which is seen to lie in another."""
+    budget = iter(range(_BRANCHES))
+    numerators = (equation.numerator for equation in equations)
+    return maximal(_branches((*numerators, *region.whole.equations), region, budget))
+
+
+def maximal(found: Iterable[Locus]) -> tuple[Locus, ...]:
+    """Return the loci that do not lie in another one, the simplest first."""
+    kept: list[Locus] = []
+    for locus in sorted(dict.fromkeys(found), key=lambda each: (len(each.equations), *_sizes(each))):
+        if not any(locus.lies_in(other) for other in kept):
+            kept.append(locus)
+    return tuple(kept)
+
+
+def _sizes(locus: Locus) -> tuple[int, str]:
+    total = sum(equation.size for equation in locus.equations)
+    return total, str(locus.equations) if total <= FACTORED_UP_TO else ""
+
+
+def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[int]) -> Iterator[Locus]:
+    """Yield the loci of a system, branching at the first equation that has several factors."""
+    if region.work.spent(equations):
+        yield Locus(equations)
+        return
+    simple: list[Scalar] = []
+    for index, equation in enumerate(equations):
+        if equation.is_zero:
+            continue
+        factors = region.vanishing(equation)
+        if len(factors) == 1:
+            simple.append(factors[0])
+            continue
+        if any(factor in simple for factor in factors):
+            continue
+        for factor in factors:
+            if next(budget, None) is None:
+                yield Locus((*simple, factor, *equations[index + 1 :]))
+                return
+            yield from _branches((*simple, factor, *equations[index + 1 :]), region, budget)
+        return
+    if any(equation.size > FACTORED_UP_TO for equation in simple):
+        yield Locus(tuple(simple))
+        return
+    try:
+        ideal = Ideal.of(simple)
+        news = _news(ideal, region)
+    except TooLarge:
+        yield Locus(tuple(simple))
+        return
+    if ideal.is_whole:
+        return
+    if news:
+        yield from _branches((*news, *ideal.generators), region, budget)
+    elif ideal.is_finite and ideal.dimension is None:  # among so many points some may be others than the most
+        yield Locus(tuple(simple))
+    else:
+        yield Locus.of(ideal)
+
+
+def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
+    """Return products and polynomials that vanish with the ideal, but are not seen to by its basis."""
+    news: list[Scalar] = []
+    for generator in ideal.generators:
+        factors = region.vanishing(generator)
+        stripped = math.prod(factors, start=Scalar.of(1))
+        consequences = real_consequences(generator, region.signs)
+        found = [value for value in (stripped, *consequences) if value not in ideal]
+        if len(factors) > 1 and not found:
+            found = [stripped]
+        news += found
+    return tuple(news) or _coordinates(ideal, region)
+
+
+def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
+    """Return, of finitely many points, polynomials in one parameter each that tell them apart or are simpler.
+
+    Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.
+    """
+    if EIGENVALUE in ideal.field.position or ideal.dimension is None:
+        return ()
+    for name in ideal.field.names:
+        found = ideal.minimal_polynomial(name)
+        stripped = math.prod(region.vanishing(found), start=Scalar.of(1))
+        if stripped not in ideal or len(region.vanishing(found)) > 1:
+            return (stripped,)
+    return ()

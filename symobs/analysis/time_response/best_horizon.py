@@ -1,0 +1,26 @@
+"""Where a variance is stationary in the horizon."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.conditions import never_zero
+from symobs.exact.kernel.generators import derivative, known
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Scalar
+
+
+def stationary(variance: Scalar, end: str, signs: Mapping[str, str]) -> str | None:
+    """Return `T**4 == 140*r/q` where the derivative vanishes at one power of the horizon, else None."""
+    if any(known(name) for name in variance.names):
+        return None
+    factors = [f for f, _ in derivative(variance, end).numerator.factors()[1] if not never_zero(f, signs)]
+    if len(factors) != 1:
+        return None
+    lead, *rest = factors[0].coefficients(end)
+    if any(not c.is_zero for c in rest[:-1]) or not rest:
+        return None
+    return f"{end}**{len(rest)} == {-rest[-1] / lead}"

@@ -1,0 +1,300 @@
+"""Gramians  W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt  in closed form, their determinant and kernel, and the finite sum beside them.
+
+The controllability Gramian is that of (Bᵀ, Aᵀ).  In discrete time W is the sum over the horizon's steps.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs._dataclass import dataclass
+from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
+from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
+from symobs.analysis.time_response.damping_cases import (
+    Branched,
+    Signs,
+    from_zero,
+    rate_of,
+    reject,
+    time_environment,
+    vanishing_denominators,
+)
+from symobs.analysis.time_response.gramian_page import write_gramian
+from symobs.analysis.time_response.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
+from symobs.analysis.time_response.matrix_exponential import TIME, closed_form, question_of, require_continuous
+from symobs.certificate.claims import Claim
+from symobs.conditions import Condition, vanishing_factors
+from symobs.derivation.builder import Page, relation
+from symobs.errors import InputError
+from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact.kernel.generators import symbols_in
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import (
+    Table,
+    determinant,
+    integral,
+    matrix_at,
+    product,
+    table_of,
+    transposed,
+)
+from symobs.formula import Literal
+from symobs.formula.calculus import since_start
+from symobs.formula.term import Term, identity, letter
+from symobs.result import Case, Result, choose, method, task
+from symobs.stability.criteria.stability import Stability, stability
+from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula import Environment
+    from symobs.specification import Horizon, Name
+
+KINDS_OF = ("observability", "controllability")
+#: Determinants of entries with more terms than this together are left out.
+_MOST_TERMS = 60
+#: Up to this order there is always one.
+_ALWAYS_WITH_DETERMINANT = 2
+
+
+def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
+    """Return (A, C), or (Aᵀ, Bᵀ) for controllability."""
+    m = plant.matrices
+    return (m.A, m.C) if of == "observability" else (m.A.T, m.B.T)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Gramian(Branched):
+    """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
+
+    task: ClassVar[str] = "gramian"
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds `of` and `horizon`."""
+        A, C = pair_of(plant, asked["of"])
+        found = rank_answer(A, C, plant.ideal)
+        O = found["matrix"]
+        shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
+        shared |= {"finite_sum": (O.T @ O).normal()}
+        if asked["horizon"] == INFINITE:
+            return cls(plant, method_name, {**shared, **infinite_gramian(plant, A, C, found)})
+        if plant.is_discrete:
+            return cls(plant, method_name, {**shared, **steps_gramian(A, C, asked["horizon"])})
+        try:
+            exponential, chosen = closed_form(StateSpace(A, symbols=plant.symbols), taken)
+        except NoClosedForm as error:
+            open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**shared, **open_answer})
+        table = exponential.table()
+        seen = product(table_of(C), table)
+        W = integral(product(transposed(seen), seen))
+        answer = {
+            "matrix": matrix_at(W, asked["horizon"]),
+            "determinant": _determinant(W, asked["horizon"]),
+            "function": matrix_at(W, TIME),
+            "exponential": matrix_at(table, TIME),
+        }
+        return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
+
+    def again(self, plant: StateSpace, taken: Signs) -> Self:
+        """Return the Gramian of another plant or with other signs."""
+        return type(self).of(plant, self.method, self.answer, taken)
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time, at the horizon too."""
+        names = ("matrix", "determinant", "function", "exponential")
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where an integral over all time does not exist, not even where less is seen."""
+        if not self.has_answer:
+            return "conditional" if self._kept else "no"
+        return super().verdict
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether what is seen in general decays, if it must."""
+        return self.decay.verdict != "no"
+
+    @cached_property
+    def _kept(self) -> tuple[Case, ...]:
+        """The cases in which there is an integral over all time, though what is seen in general does not decay."""
+        if self.has_answer:
+            return ()
+        return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
+
+    @cached_property
+    def decay(self) -> Stability:
+        """Whether what the output sees decays, on which an integral over all time stands."""
+        if "seen" not in self.answer:
+            return Stability("yes")
+        plant = self.plant
+        return stability(self.answer["seen"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Also the conditions for an integral over all time to exist."""
+        if self._kept:
+            there = product_of(distances(systems_of(self._kept) or ()))
+            return (*self.domain, Condition("existence", there, "=="))
+        exists = self.decay.positive if self.answer["matrix"] is not None else ()
+        beyond = [Condition("existence", value, ">") for value in exists]
+        return (*super().holds_where, *beyond)
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """What vanishes where the kernel grows: a minor of the test matrix of the order of its rank."""
+        found = self.answer["rank"]
+        minor = found["matrix"].select(found["rows"], found["columns"])
+        return (minor.determinant(),) if minor.shape[0] else ()
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Also those of what is seen: on a curve its coefficients may have poles, where it decays or not anew."""
+        divided = [*self.matrices, self.answer["seen"]] if "seen" in self.answer else self.matrices
+        return vanishing_denominators(divided, self.plant.symbols.signs)
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the kernel may be another one, and more of what grows unseen."""
+        return vanishing_factors(self.existence, self.plant.symbols.signs)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the integral, symmetry, determinant, finite sum, rank and kernel."""
+        yield from super().claims()
+        A, C = pair_of(self.plant, self.answer["of"])
+        found, W = self.answer["rank"], self.answer["matrix"]
+        e = rank_environment(self.plant, (A, C), found)
+        yield from rank_claims(found, e)
+        yield from minor_claim(found, e)
+        values: dict[str, Any] = {"A": A, "C": C, "M": self.answer["finite_sum"]}
+        plain = time_environment(self.plant, values)
+        a, c, m = letter("A", plain), letter("C", plain), letter("M", plain)
+        total = c.T @ c
+        for k in range(1, self.plant.order):
+            total = total + (a.T) ** k @ c.T @ c @ a**k
+        yield Claim(relation(m, total), plain, "finite_sum = sum of (A.T)**k*C.T*C*A**k, k < n")
+        kernel: Matrix = found["kernel"]
+        if kernel.shape[1]:
+            zero = Matrix.zeros(*kernel.shape)
+            yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain, "finite_sum*N = 0")
+        if self.answer["horizon"] == INFINITE:
+            yield from self._about_decay(e)
+        if W is None:
+            return
+        values |= {"W": W, **({"N": kernel} if kernel.shape[1] else {})}
+        if self.answer["determinant"] is None and self.plant.order <= _ALWAYS_WITH_DETERMINANT:
+            reject("the determinant of a small Gramian is missing")
+        if self.answer["determinant"] is not None:
+            values["determinant"] = self.answer["determinant"]
+        if "exponential" in self.answer:
+            values["exp_At"] = self.answer["exponential"]
+            values["primitive"] = self.answer["function"]
+        e = time_environment(self.plant, {**values, **_at_horizon(values, self.answer["horizon"])})
+        yield from self._about_gramian(e)
+
+    def _about_decay(self, e: Environment) -> Iterator[Claim]:
+        """Yield that what is seen is the plant without its hidden part; where it surely grows there is no integral."""
+        count, seen = self.answer["rank"]["restricted"].shape[0], Term(Literal(self.answer["seen"]), e)
+
+        def polynomial(name: str, order: int) -> Term:
+            return (letter("s", e) @ identity(order, e) - letter(name, e)).apply("det")
+
+        product = polynomial("X", count) * seen if count else seen
+        yield Claim(relation(polynomial("A", self.plant.order), product), e, "det(s*I - A) = seen*det(s*I - X)")
+        if self.answer["matrix"] is not None and self.decay.verdict not in {"yes", "conditional"}:
+            reject("an integral over all time of what does not decay is none")
+
+    def _about_gramian(self, e: Any) -> Iterator[Claim]:
+        W, A, C = letter("W", e), letter("A", e), letter("C", e)
+        horizon = self.answer["horizon"]
+        if "exponential" in self.answer:
+            Phi = letter("exp_At", e)
+            yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+            yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+            integrand = Phi.T @ C.T @ C @ Phi
+            yield from from_zero(["primitive"], e)
+            whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
+            yield Claim(relation(W, whole), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t) from 0 to the horizon")
+        elif horizon == INFINITE and self.plant.is_discrete:
+            yield Claim(relation(A.T @ W @ A - W + C.T @ C, Matrix.zeros(*A.value.shape)), e, "A.T*W*A - W = -C.T*C")
+        elif horizon == INFINITE:
+            yield Claim(relation(A.T @ W + W @ A + C.T @ C, Matrix.zeros(*A.value.shape)), e, "A.T*W + W*A = -C.T*C")
+        else:
+            total = C.T @ C
+            for k in range(1, int(horizon.fraction())):
+                total = total + (A.T) ** k @ C.T @ C @ A**k
+            yield Claim(relation(W, total), e, "W = sum over the steps of the horizon")
+        yield Claim(relation(W, W.T), e, "W = W.T")
+        if self.answer["determinant"] is not None:
+            yield Claim(relation(W.apply("det"), letter("determinant", e)), e, "det W")
+        if "N" in e.values:
+            yield Claim(relation(W @ letter("N", e), Matrix.zeros(*e.values["N"].shape)), e, "W*N = 0")
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """Matrix, determinant, finite sum, rank and kernel."""
+        kernel: Matrix = self.answer["rank"]["kernel"]
+        vectors = [list(kernel.select(range(kernel.shape[0]), [j]).entries) for j in range(kernel.shape[1])]
+        asked = self.answer.get("question")
+        found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
+        found |= {"rank": self.answer["rank"]["rank"], "kernel": vectors}
+        return {**found, **({"question": asked} if asked else {})}
+
+    def write(self, page: Page) -> None:
+        """Write e^{At}, the integral, the finite sum and the kernel."""
+        write_gramian(self, page)
+
+    def tell(self, page: Page) -> None:
+        """Write one branch."""
+        from symobs.analysis.time_response.gramian_page import tell_gramian  # noqa: PLC0415
+
+        tell_gramian(self, page)
+
+
+def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
+    """Return the functions of time at the horizon, so that their generators are known as well."""
+    if not isinstance(horizon, Scalar):
+        return {}
+    from symobs.exact.kernel.generators import substitute  # noqa: PLC0415
+
+    moving = {name: value for name, value in values.items() if "t" in symbols_in(value)}
+    return {f"{name} at T": substitute(value, {"t": horizon}) for name, value in moving.items()}
+
+
+def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
+    """Return det W as a sum of functions, None where it would be long."""
+    if len(W) > _ALWAYS_WITH_DETERMINANT and sum(len(entry.terms) for row in W for entry in row) > _MOST_TERMS:
+        return None
+    return determinant(W).value_at(horizon)
+
+
+@method("gramian/integral", source="S0, (4.8)")
+def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
+    """Integrate the entries of e^{Aᵀt} Cᵀ C e^{At} as sums of tⁿ e^{αt} cos βt and sin βt; over all time by Lyapunov."""
+    return Gramian.of(plant, "integral", {"of": of, "horizon": horizon}, {})
+
+
+@task
+def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observability", method: Name = "auto") -> Result:
+    """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt).
+
+    plant    n states; C (or B) must be given
+    horizon  T > 0, a symbol or a number ("T" if left out), or "inf"; in discrete time a number of steps (n if left out)
+    Returns matrix, determinant, finite_sum (Σ (Aᵀ)ᵏ Cᵀ C Aᵏ), rank, kernel; verdict no where the integral over all time
+    does not exist.  Raises `InputError` where the horizon is not one.
+    Source: S0, (4.8) and Proposition 4.1; S4, the finite sum.
+    """
+    if of not in KINDS_OF:
+        message = f"{of[:40]!r} is not a kind of Gramian"
+        raise InputError(message, where="specification.of", repair="write observability or controllability")
+    plant.require("C" if of == "observability" else "B", task="gramian")
+    end = read_horizon(plant, horizon)
+    if not plant.is_discrete:
+        require_continuous(plant, "gramian")
+    return over_horizon(lambda: choose("gramian", method, "integral").solve(plant, of, end))

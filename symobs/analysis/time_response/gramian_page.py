@@ -1,0 +1,206 @@
+"""The page of a Gramian, in the order of the document: e^{At}, C e^{At}, the integral, the finite sum, the kernel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.page_parts import HIDDEN, given, hidden, hidden_polynomial
+from symobs.analysis.time_response.horizons import INFINITE, lyapunov
+from symobs.analysis.time_response.matrix_exponential import (
+    closed_form,
+    tell_exponential,
+    tell_polynomial,
+    tell_question,
+)
+from symobs.conditions import vanishing_factors
+from symobs.derivation import Case as CaseStep
+from symobs.derivation import Conclude
+from symobs.derivation.builder import predicate, relation, sentence
+from symobs.exact import Matrix, Scalar
+from symobs.exact.kernel.generators import substitute
+from symobs.formula import Exactly, Literal, Quotient, Together
+from symobs.formula.calculus import since_start
+from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from symobs.analysis.time_response.gramian import Gramian
+    from symobs.derivation.builder import Page
+    from symobs.formula.term import Term
+
+#: Lyapunov's equation is shown beside the branches for plants of up to this order.
+_LYAPUNOV_UP_TO = 3
+
+
+def write_gramian(result: Gramian, page: Page) -> None:
+    """Write the whole page."""
+    horizon = result.answer["horizon"]
+    values = list(result.everything())
+    if isinstance(horizon, Scalar):
+        values += [substitute(value, {"t": horizon}) for value in values]
+    page.in_time(*values)
+    given(page)
+    is_dual = result.answer["of"] == "controllability"
+    if is_dual:
+        page.environment = page.environment.having(values={})
+    with page.section(f"gramian_{result.answer['of']}"):
+        if "exponential" in result.answer or result.answer.get("factor") is not None:
+            tell_polynomial(page)
+        if result.answer["chosen"]:
+            _tell_lyapunov(result, page)
+        result.tell_branches(page)
+    if result.answer["matrix"] is not None or result.decay.verdict == "no":
+        with page.section("finite_sum"):
+            _tell_finite_sum(result, page)
+
+
+def _letters(result: Gramian, page: Page) -> tuple[Term, Term]:
+    """Return the terms A and C of the pair: (Aᵀ, Bᵀ) for controllability."""
+    if result.answer["of"] == "observability":
+        return page["A"], page["C"]
+    return page["A"].T, page["B"].T
+
+
+def _square(row: Term) -> Term:
+    """Return CᵀC, or BBᵀ where the row is Bᵀ."""
+    formula = row.formula
+    inner = getattr(formula, "operand", None)
+    return (row._with(inner) if inner is not None else row.T) @ row  # noqa: SLF001
+
+
+def _transposed(term: Term) -> Term:
+    inner = getattr(term.formula, "operand", None)
+    return term._with(inner) if inner is not None else term.T  # noqa: SLF001
+
+
+def _tell_lyapunov(result: Gramian, page: Page) -> None:
+    """Define P where Lyapunov's equation has one solution: it serves every branch."""
+    if result.plant.order > _LYAPUNOV_UP_TO:
+        return
+    A, C = _letters(result, page)
+    P = lyapunov(A.value, C.value, discrete=False)
+    if P is None:
+        return
+    page.set("P_l", P)
+    letter = page["P_l"]
+    equation = relation(_transposed(A) @ letter + letter @ A, -_square(C))
+    page.equal(relation(letter, P), say="lyapunov", equation=equation)
+    if vanishing_factors([P.common_denominator()], result.plant.symbols.signs):
+        page.remark("lyapunov_denominator")
+
+
+def tell_gramian(result: Gramian, page: Page) -> None:
+    """Write one branch: e^{At}, what the output sees of it, the integral."""
+    answer = result.answer
+    A, C = _letters(result, page)
+    if answer.get("question") is not None:
+        if answer["horizon"] == INFINITE:
+            page.remark("gramian_open", question=answer["question"])
+        else:
+            tell_question(page, answer["factor"])
+        return
+    if answer["horizon"] == INFINITE:
+        _tell_infinite(result, page, A, C)
+        return
+    if "exponential" not in answer:
+        total = _square(C)
+        for k in range(1, int(answer["horizon"].fraction())):
+            total = total + _transposed(A) ** k @ _square(C) @ A**k
+        page.define("W", total, say="gramian_steps", answer=True, steps=str(answer["horizon"]))
+        return
+    pair = StateSpace(result.plant.matrices.A, symbols=result.plant.symbols)
+    found, _ = closed_form(pair, {**answer["taken"], **answer["chosen"]})
+    is_dual = answer["of"] == "controllability"
+    shown = answer["exponential"].T if is_dual else answer["exponential"]
+    tell_exponential(page, found, shown)
+    Phi = page["exp_At"]
+    seen = Phi @ page["B"] if is_dual else page["C"] @ Phi
+    page.equal(relation(seen, seen.shown), say="input_through_exponential" if is_dual else "output_of_exponential")
+    integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
+    whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
+    W: Matrix = answer["matrix"]
+    if page.knows("P_l") and not is_dual:
+        over = page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
+        page.set("W", W)
+        page.equal(relation(page["W"], whole, page["P_l"] - over.T @ page["P_l"] @ over), say="gramian_by_lyapunov")
+        page.equal(relation(page["W"], W), say="gramian_in_case", answer=True)
+    else:
+        page.define("W", whole, W, say="gramian_integral", answer=True, closing=False)
+    if answer["determinant"] is not None:
+        page.equal(relation(page["W"].apply("det"), answer["determinant"]), say="gramian_determinant")
+
+
+def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
+    """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
+    answer = result.answer
+    seen = define_seen(result, page)
+    if result.decay.verdict == "no":
+        page.conclude(f"gramian_diverges_{answer['of']}", predicate("unstable", seen))
+        return
+    page.set("W", answer["matrix"])
+    W = page["W"]
+    moved = _transposed(A) @ W @ A - W if result.plant.is_discrete else _transposed(A) @ W + W @ A
+    equation = relation(moved, -_square(C))
+    where = result.decay.positive
+    if where:
+        found = [as_inequality(value, result.plant.symbols.signs) for value in where]
+        listed = tuple(relation(left, operator, right) for left, operator, right in found)
+        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", seen), listed))
+    else:
+        page.conclude(f"gramian_infinite_{answer['of']}", predicate("stable", seen))
+    count = answer["rank"]["kernel"].shape[1]
+    if count:
+        nothing = relation(W @ page[HIDDEN[answer["of"]][0]], answer["rank"]["kernel"] * 0)
+        page.conclude("lyapunov_with_kernel", nothing, equation=equation, nothing=nothing)
+    else:
+        page.conclude("lyapunov_alone", equation=equation)
+    page.equal(relation(W, answer["matrix"]), answer=True)
+    page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
+
+
+def define_seen(result: Gramian, page: Page) -> Term:
+    """Return χ, or its part that the output sees (the input moves): the quotient by the polynomial of the other modes."""
+    kernel, of = result.answer["rank"]["kernel"], result.answer["of"]
+    tell_polynomial(page)
+    if not kernel.shape[1]:
+        return page["chi"]
+    letters = HIDDEN[of]
+    page.set(letters[0], kernel)
+    X = page.set(letters[1], result.answer["rank"]["restricted"])
+    page.conclude_silently(*hidden(page, of == "observability", letters))
+    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0], letters[1]).formula))
+    shown = relation(seen, result.answer["seen"]), relation(page[letters[0]], kernel)
+    page.equal(*shown, say=f"part_{of}")
+    return seen
+
+
+def _tell_finite_sum(result: Gramian, page: Page) -> None:
+    """Write Σ (Aᵀ)ᵏ Cᵀ C Aᵏ and the kernel with its vector, or that there is none."""
+    A, C = _letters(result, page)
+    total = _square(C)
+    for k in range(1, result.plant.order):
+        total = total + _transposed(A) ** k @ _square(C) @ A**k
+    M = page.define("M", total, say="finite_sum_is")
+    kernel: Matrix = result.answer["rank"]["kernel"]
+    if not kernel.shape[1]:
+        value = M.value.determinant()
+        key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
+        is_somewhere = result.answer["horizon"] == INFINITE and bool(result.decay.positive)
+        key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere else key
+        says = Conclude(sentence(key, {"determinant": relation(M.apply("det"), value)}), (relation(value, "!=", 0),))
+        factors = vanishing_factors([value], result.plant.symbols.signs)
+        apart = Together(tuple(relation(factor, "!=", 0) for factor in factors))
+        page.steps.append(CaseStep(apart, (), (says,)) if factors else says)
+        return
+    if result.answer["matrix"] is None or result.answer["of"] == "controllability":
+        return
+    several = kernel.shape[1] > 1
+    v = page["N"] if several and page.knows("N") else page.set("N" if several else "v", kernel)
+    zero = Matrix.zeros(page["C"].value.shape[0], kernel.shape[1])
+    nothing = Matrix.zeros(*kernel.shape)
+    page.equal(relation(v, v.value), say="kernel_shared")
+    if page.knows("exp_At"):
+        unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
+        page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
+    shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
+    page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")

@@ -1,0 +1,245 @@
+"""The matrix exponential e^{At} in closed form: exponentials, cosines, sines, cosh, sinh, powers of t; never complex."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs._dataclass import dataclass
+from symobs.analysis.factored_form import formula_of_factored
+from symobs.analysis.page_parts import given
+from symobs.analysis.time_response.damping_cases import Branched, Signs, rate_of, time_environment, with_signs
+from symobs.certificate.claims import Claim
+from symobs.conditions import vanishing_factors
+from symobs.derivation.builder import Page, relation
+from symobs.errors import InputError
+from symobs.exact import Matrix, Scalar, factored
+from symobs.exact.kernel.generators import known
+from symobs.exact.time_functions.matrix_exponential import (
+    MOST_STATES_WITH_PARAMETERS,
+    Exponential,
+    Mode,
+    NoClosedForm,
+    exponential,
+)
+from symobs.exact.time_functions.root_sum import RootSum
+from symobs.formula import Identity, Letter, Literal, Negative, Power, Product, Sum
+from symobs.formula.term import identity, letter
+from symobs.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula import Formula
+    from symobs.formula.term import Term
+    from symobs.specification import Name
+    from symobs.system import StateSpace
+
+TIME = Scalar.symbol("t")
+#: Sums of up to this many matrices are shown before the entries.
+_SHOWN_SUM = 4
+#: Derivatives of matrices of up to this order are shown.
+_SHOWN_RATE = 3
+
+
+def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple[Exponential, Signs]:
+    """Return e^{At} and the signs that were chosen, with `sums` over roots if need be.  Raises `NoClosedForm`."""
+    return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
+
+
+def question_of(error: NoClosedForm) -> str:
+    """Return what would have to be known."""
+    if error.factor is None:
+        return f"the exponential of a matrix of more than {MOST_STATES_WITH_PARAMETERS} states"
+    return f"the roots of {error.factor}"
+
+
+def require_continuous(plant: StateSpace, task_name: str) -> None:
+    """Raise `InputError` in discrete time, and where t is a parameter."""
+    if plant.is_discrete:
+        message = f"{task_name} belongs to continuous time"
+        raise InputError(
+            message, where="plant.dt", repair="leave dt out; in discrete time the powers of A take its place"
+        )
+    if "t" in plant.field.names and "t" in plant.matrices.A.names:
+        message = "t is the time and cannot be a parameter of the plant"
+        raise InputError(message, where="plant.A", repair="give the parameter another name")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MatrixExponential(Branched):
+    """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
+
+    task: ClassVar[str] = "matrix_exponential"
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, taken: Signs) -> Self:
+        """Return the result for a plant."""
+        try:
+            found, chosen = closed_form(plant, taken, sums=not plant.equations)
+        except NoClosedForm as error:
+            answer = {"matrix": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
+        return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
+
+    def again(self, plant: StateSpace, taken: Signs) -> Self:
+        """Return e^{At} of another plant or with other signs."""
+        return type(self).of(plant, self.method, taken)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the differential equation and the start."""
+        yield from super().claims()
+        if self.answer["matrix"] is None:
+            return
+        e = time_environment(self.plant, {"A": self.plant.matrices.A, "exp_At": self.answer["matrix"]})
+        Phi = letter("exp_At", e)
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Beside those of the entries, the discriminants of polynomials over whose roots a sum goes."""
+        if self.answer["matrix"] is None:
+            return ()
+        sums = [f for f in _functions(self.answer["matrix"]) if isinstance(f, RootSum)]
+        found = vanishing_factors([f.discriminant for f in sums], self.plant.symbols.signs)
+        return tuple(dict.fromkeys((*super().denominators, *found)))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The matrix in t; where there is none, the question that is open."""
+        asked = self.answer.get("question")
+        return {"matrix": self.answer["matrix"], **({"question": asked} if asked else {})}
+
+    def write(self, page: Page) -> None:
+        """Write the characteristic polynomial, the sum of functions and matrices, the entries, the check."""
+        page.in_time(*self.everything())
+        given(page)
+        with page.section("matrix_exponential"):
+            tell_polynomial(page)
+            self.tell_branches(page)
+
+    def tell(self, page: Page) -> None:
+        """Write one branch."""
+        if self.answer["matrix"] is None:
+            tell_question(page, self.answer["factor"])
+            return
+        signs = {**self.answer["taken"], **self.answer["chosen"]}
+        found, _ = closed_form(self.plant, signs, sums=not self.plant.equations)
+        tell_exponential(page, found, self.answer["matrix"], answer=True)
+        Phi = page["exp_At"]
+        if found.is_closed and not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
+            page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
+        start = relation(Phi.at("t", 0), page.identity(self.plant.order))
+        page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
+
+
+def tell_polynomial(page: Page) -> None:
+    """Write the characteristic polynomial with its factors."""
+    polynomial = page.plant.matrices.A.characteristic_polynomial(page.plant.variable)
+    form = factored(polynomial, page.plant.variable)
+    pencil = page.s @ page.identity(page.plant.order) - page["A"]
+    members = [pencil.apply("det"), page.value(polynomial)]
+    if len(polynomial.terms()) > 1 and (len(form.factors) > 1 or form.factors[0][1] > 1):
+        members.append(page.term(formula_of_factored(form)))
+    page.define("chi", *members, say="exponential_modes", closing=False)
+
+
+def tell_question(page: Page, factor: Scalar | None) -> None:
+    """Say what is not decided."""
+    if factor is None:
+        page.remark("too_many_states", order=str(page.plant.order))
+    else:
+        page.remark("no_closed_form", factor=factor, degree=str(factor.degree(page.plant.variable)))
+
+
+def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
+    """Define e^{At}: the sum over the modes where it is short, then the entries; then what the roots stand for."""
+    count = sum(len(own) for _, _, own in found.parts)
+    is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
+    members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
+    say = "exponential_sum" if members else "exponential_here"
+    if found.is_closed:
+        members.append(matrix)
+    page.define("exp_At", *members, say=say, answer=answer, closing=False)
+    tell_roots(page, matrix)
+
+
+def tell_roots(page: Page, *values: Matrix) -> None:
+    """Say what the letters of square roots stand for."""
+    for name in page.forms:
+        used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)
+        root = known(name)
+        if used and root is not None:
+            square = page.term(Power(Literal(Scalar.symbol(name)), 2))
+            page.conclude("root_named", root=relation(square, page.term(_term_by_term(root.argument))))
+
+
+def _term_by_term(value: Scalar) -> Formula:
+    """Return ω² − b²/4, a sum of its terms."""
+    terms: list[Formula] = []
+    for coefficient, powers in sorted(value.terms(), key=lambda term: term[0] < 0):
+        monomial = Scalar.of(abs(coefficient)) / value.denominator
+        for name, power in powers:
+            monomial = monomial * Scalar.symbol(name) ** power
+        terms.append(Negative(Literal(monomial)) if coefficient < 0 else Literal(monomial))
+    return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
+
+
+def _functions(value: Matrix) -> list[Any]:
+    return [f for name in value.names if (f := known(name)) is not None]
+
+
+def _sum_of_modes(found: Exponential) -> Formula:
+    """Return Σ function · matrix; a single pair on two states in the letters A and I."""
+    mode = found.parts[0][0]
+    if found.order == 2 and len(found.parts) == 1 and isinstance(mode, Mode) and len(mode.start) == 2:
+        still = Mode(Scalar.of(0), mode.discriminant, mode.oscillates)
+        C, S = still.values(0, TIME)
+        shifted = _shifted(mode.rate)
+        inside = Sum((Product((Literal(C), Identity(2))), Product((Literal(S), shifted))))
+        rate = found_rate(mode.rate)
+        return inside if rate is None else Product((rate, inside))
+    terms = []
+    for mode, power, matrices in found.parts:
+        for value, matrix in zip(mode.values(power, TIME), matrices, strict=True):
+            if matrix.is_zero:
+                continue
+            terms.append(Literal(matrix) if value.is_one else Product((Literal(value), Literal(matrix))))
+    return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
+
+
+def found_rate(rate: Scalar) -> Formula | None:
+    """Return e^{σt}, None where it is 1."""
+    from symobs.exact.kernel.generators import function  # noqa: PLC0415
+
+    return None if rate.is_zero else Literal(function("exp", rate * TIME))
+
+
+def _shifted(rate: Scalar) -> Formula:
+    """Return A − σI."""
+    if rate.is_zero:
+        return Letter("A")
+    negative = rate.terms()[0][0] > 0
+    amount: Formula = Product((Literal(rate if negative else -rate), Identity(2)))
+    return Sum((Letter("A"), Negative(amount) if negative else amount))
+
+
+@method("matrix_exponential/derivatives", source="derivatives at 0 of the functions of the characteristic roots")
+def derivatives(plant: StateSpace) -> MatrixExponential:
+    """Solve Σᵢ fᵢ⁽ᵏ⁾(0) Mᵢ = Aᵏ for the matrices of e^{At} = Σ fᵢ(t) Mᵢ."""
+    return MatrixExponential.of(plant, "derivatives", {})
+
+
+@task
+def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t.
+
+    plant    n states, continuous time; only A matters
+    Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
+    branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
+    Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
+    Source: S0, section 4.1; S4, pendulum.
+    """
+    require_continuous(plant, "matrix_exponential")
+    return choose("matrix_exponential", method, "derivatives").solve(plant)

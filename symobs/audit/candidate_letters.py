@@ -1,0 +1,75 @@
+"""Which letters may have been meant where another one is printed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.audit.differences import wrong_entries
+from symobs.audit.equations.evaluation import as_printed, value_of
+from symobs.audit.equations.letter_values import HIDDEN, INSTANTS
+from symobs.audit.equations.matrix_functions import Misfit, Unknown
+from symobs.audit.equations.reading import Reading
+from symobs.audit.equations.sizes import Flexible, is_signal, shape
+from symobs.exact import Matrix
+from symobs.exact.algebraic.rounded_decimals import decimals_in
+from symobs.expression.syntax_tree import Node
+
+if TYPE_CHECKING:
+    from symobs.formula import Environment
+
+    Kind = tuple[bool, tuple[int, int] | None] | None
+
+
+@dataclass(frozen=True)
+class Letters:
+    """The letters of an environment: no names of `fields` of an answer, nothing kept for ourselves.
+
+    Where the sizes `fit` as printed, only letters of the same size may have been meant.
+    """
+
+    environment: Environment
+    fields: frozenset[str]
+    fit: bool = True
+
+    def offered(self, name: str, *, primed: bool) -> list[str]:
+        """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
+        environment = self.environment
+        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
+        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN, name} and not n.endswith("'")]
+        kinds = {other: self._kind(other) for other in known}
+        if primed:
+            kinds = {other: _turned(kind) for other, kind in kinds.items() if kind is not None and any(kind)}
+        wanted = self._kind(name)
+        return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
+
+    def is_signal(self, name: str) -> bool:
+        """Whether a letter is a signal."""
+        return name in self.environment.signals
+
+    def rounded(self, block: Node) -> str | None:
+        """Return the letter whose value a bracket of decimals is, rounded."""
+        printed = as_printed(block, Reading(self.environment))
+        if not isinstance(printed, Matrix) or not decimals_in(printed):
+            return None
+        known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]
+        alike = ((name, value) for name, value in known if value.shape == printed.shape)
+        return next((name for name, value in alike if not wrong_entries(printed, value)), None)
+
+    def _kind(self, name: str) -> Kind:
+        """Return whether a letter is a signal, and its size; numbers and 1x1 matrices are one kind."""
+        try:
+            found = value_of(Node("letter", text=name), Reading(self.environment))
+        except (Misfit, Unknown):
+            return None
+        if isinstance(found, Flexible):
+            return None
+        size = shape(found)
+        return is_signal(found), None if size == (1, 1) else size
+
+
+def _turned(kind: Kind) -> Kind:
+    """Return the kind of the transpose of a matrix, or of the derivative of a signal."""
+    if kind is None or kind[0] or kind[1] is None:
+        return kind
+    return kind[0], (kind[1][1], kind[1][0])

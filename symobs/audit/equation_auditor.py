@@ -1,0 +1,395 @@
+"""One convention's desk: every printed equation is evaluated there, and where it fails, what is wrong with it is found."""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from itertools import chain, combinations, pairwise, product
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.audit import differences
+from symobs.audit.candidate_letters import Letters
+from symobs.audit.equations.evaluation import as_printed, holds, is_rounded, value_of
+from symobs.audit.equations.grammar import read_relation
+from symobs.audit.equations.letter_values import INSTANTS, values
+from symobs.audit.equations.matrix_functions import Misfit, Unknown
+from symobs.audit.equations.reading import Gap, Reading, Where, exceptions, text
+from symobs.audit.equations.signals import signals
+from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
+from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
+from symobs.audit.printed_entries import Statement, parted
+from symobs.audit.slips import found_slip
+from symobs.conditions import vanishing_factors
+from symobs.errors import BudgetExceeded, CertificateRejected, UnknownName
+from symobs.exact import Matrix, Scalar
+from symobs.expression.syntax_tree import Node, letters_of
+from symobs.formula import Environment, Signal
+from symobs.formula.term import Term
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.audit.slips import Patience
+    from symobs.convention import Convention
+    from symobs.problem import Problem
+    from symobs.result import Result
+
+_MOST_LETTERS = 3
+#: The signs of so many factors under roots are tried both ways.
+_MOST_SQUARES = 3
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is right in place of an equation that is not plainly true, and why; `holds` says where it is true."""
+
+    right: str
+    reason: str
+    holds: str = ""
+
+
+@dataclass()
+class Desk:
+    """One convention's letters, and the equations found true so far, whose sides later ones may lack."""
+
+    problem: Problem
+    results: Sequence[Result]
+    convention: Convention
+    patience: Patience
+    known: list[Node] = field(default_factory=list)
+    notes: dict[str, None] = field(default_factory=dict)
+    values: Mapping[str, Scalar | Matrix] = field(init=False)
+    let: Mapping[str, Node] = field(init=False, default_factory=dict)
+    where: Where = field(init=False, default_factory=Where)
+    environments: dict[object, Environment] = field(init=False, default_factory=dict)
+    gaps: list[Gap] = field(init=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.values = values(self.problem.plant, self.results, self.convention)
+
+    @property
+    def symbols(self) -> Mapping[str, str]:
+        """The file's own symbols and their signs; they shadow every other meaning of a letter."""
+        return self.problem.plant.symbols.signs
+
+    def read(self, entry: Statement) -> Iterator[tuple[str, Verdict]]:
+        """Yield the equations of an entry that are not plainly true."""
+        self.environments, self.gaps, self.where = {}, [], entry.condition
+        self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
+        for left, right in pairwise(self._members(entry.relation)):
+            verdict = self._checked(left, right)
+            if verdict is None:
+                self.known += [left, right]
+            else:
+                if not verdict.holds:
+                    verdict = replace(verdict, right=self._confirmed(verdict.right))
+                yield self._under(f"{left} = {right}"), verdict
+
+    def _members(self, equation: str) -> tuple[Node, ...]:
+        """Return the members of an equation; letters whose value depends on the variable may have an argument."""
+        variable = self.problem.plant.variable
+        functions = {name for name, value in self.values.items() if variable in value.names}
+        return read_relation(equation, "", functions, {*self.symbols, variable, *INSTANTS})
+
+    def _under(self, equation: str, *needed: str) -> str:
+        """Return an equation with its conditions, and others that it needs."""
+        conditions = ", ".join(filter(None, (self.where.text, *needed)))
+        return f"{equation} where {conditions}" if conditions else equation
+
+    def _confirmed(self, right: str) -> str:
+        """Return what is said to be right, read as if it were printed: it must be true.  Too long a text is left out.
+
+        Where it is true in general only, its conditions are said with it, and it is read again.
+        """
+        before, equation = self.where, right
+        if not right:
+            return ""
+        try:
+            equation, self.where = parted(right, self.symbols, "") if " where " in right else (right, before)
+            for pair in pairwise(self._members(equation)):
+                verdict = self._checked(*pair)
+                if verdict is not None and verdict.holds and verdict.right != right:
+                    return self._confirmed(verdict.right)
+                if verdict is not None:
+                    message = f"the equation {right} does not hold"
+                    raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=right)
+        except BudgetExceeded:
+            return ""
+        finally:
+            self.where = before
+        return right
+
+    # -- one equation -------------------------------------------------------------------------------------------------
+
+    def environment(self, left: Node, right: Node) -> Environment:
+        """Return what the letters mean in an equation: signals depend on which of them it speaks of."""
+        inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
+        own = frozenset(self.symbols)
+        mentioned = (frozenset([*letters_of(left, right), *inside]) - own, frozenset(letters_of(right)) - own)
+        if mentioned not in self.environments:
+            made = signals(self.problem.plant, self.results, self.convention, *mentioned)
+            environment = made.having(values=dict(self.values), signs=dict(self.symbols))
+            for name, meaning in self.let.items():
+                environment = self._with_let(environment, name, meaning)
+            self.environments[mentioned] = environment
+        self._note_shadows([*letters_of(left, right), *inside], self.environments[mentioned])
+        return self.environments[mentioned]
+
+    def _note_shadows(self, letters: Sequence[str], environment: Environment) -> None:
+        """Say which letters of an equation are the file's own symbols and something else besides."""
+        for name in letters:
+            if name in self.symbols and (name in {*self.values, *INSTANTS} or name in environment.signals):
+                note = f"{name} is the file's own symbol wherever it is printed, not the {name} of the convention "
+                self.notes[note + self.convention.name] = None
+
+    def reading(self, left: Node, right: Node, turned: Sequence[Scalar] = ()) -> Reading:
+        """Return a reading of an equation."""
+        reading = Reading(self.environment(left, right), self.where, turned=frozenset(turned))
+        reading.gaps += self.gaps
+        return reading
+
+    def true(self, left: Node, right: Node) -> bool:
+        """Tell whether an equation holds in general."""
+        return self._true(left, right, self.reading(left, right))
+
+    def _true(self, left: Node, right: Node, reading: Reading) -> bool:
+        try:
+            return holds(*spectral(left, right, self.problem.plant.variable), reading)
+        except Misfit:
+            return False
+
+    def _checked(self, printed_left: Node, printed_right: Node) -> Verdict | None:
+        """Return what is right in place of an equation that is not plainly true, None of a true one."""
+        reading = self.reading(printed_left, printed_right)
+        environment = reading.environment
+        try:
+            left, right = spectral(printed_left, printed_right, environment.variable)
+            sides = [self._value(side, reading) for side in (left, right)]
+            pair = common(sides[0], sides[1], environment)
+        except Misfit as misfit:
+            return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
+        if equal(*pair):
+            return self._where_it_holds(printed_left, printed_right, reading)
+        turned = self._turned(printed_left, printed_right, reading)
+        if turned is not None:
+            return turned
+        rounded = [is_rounded(side, reading) for side in (left, right)]
+        if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
+            left, right, pair = right, left, (pair[1], pair[0])
+        spectra = (left, right) != (printed_left, printed_right) and (right, left) != (printed_left, printed_right)
+        if is_signal(pair[0]):
+            return Verdict(*self._signals(left, right, pair, environment))
+        found = self._values(left, right, pair, reading, spectra=spectra)
+        if found is None:  # only rounding parts them
+            return self._where_it_holds(printed_left, printed_right, reading)
+        return Verdict(*found)
+
+    def _where_it_holds(self, left: Node, right: Node, reading: Reading) -> Verdict | None:
+        """Return what a true equation needs to be true, None where that is nothing."""
+        turned = self._turned(left, right, reading)
+        if turned is not None:
+            return turned
+        values = [value for name in letters_of(left, right) if (value := self.values.get(name)) is not None]
+        nonzero = vanishing_factors([value.common_denominator() for value in values], reading.where.signs)
+        needed, reasons = exceptions(reading, nonzero)
+        if not needed:
+            return None
+        return Verdict(
+            self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
+        )
+
+    def _turned(self, left: Node, right: Node, reading: Reading) -> Verdict | None:
+        """Return for which signs of what is squared under a root an equation is true, where that is not for all or none."""
+        squares = reading.squares[:_MOST_SQUARES]
+        choices = list(chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1)))
+        true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
+        if not true or len(true) == len(choices):
+            return None
+        needed = [f"{text(factor)} {'<=' if factor in true[0] else '>='} 0" for factor in squares]
+        return Verdict(
+            self._under(f"{left} = {right}", *needed), f"a root is not negative: true only where {' and '.join(needed)}"
+        )
+
+    def _value(self, node: Node, reading: Reading) -> Printed:
+        try:
+            return value_of(node, reading)
+        except Unknown as unknown:
+            raise self._unknown(unknown.name, reading.environment) from None
+
+    def _unknown(self, name: str, environment: Environment) -> UnknownName:
+        from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+        known = [*environment.values, *environment.signals]
+        near = get_close_matches(name, known, 1)
+        repair = f'did you mean "{near[0]}"?' if near else "declare it in [symbols], or say in let what it stands for"
+        message = (
+            f'the letter "{name}" means nothing in the convention {self.convention.name}, with the tasks of this file'
+        )
+        return UnknownName(message, repair=repair, name=name)
+
+    def _with_let(self, environment: Environment, name: str, meaning: Node) -> Environment:
+        """Return the environment in which a letter of the entry stands for a value or a signal."""
+        reading = Reading(environment, self.where)
+        try:
+            found = value_of(meaning, reading)
+        except (
+            Misfit,
+            Unknown,
+        ):  # it is another equation that uses this letter, or the letter is reported where it stands
+            return environment
+        self.gaps += [gap for gap in reading.gaps if gap not in self.gaps]
+        if isinstance(found, Flexible):
+            return environment
+        if is_signal(found):
+            return environment.having(signals={name: found.formula})
+        others = {key: formula for key, formula in environment.signals.items() if key != name}
+        return replace(environment, signals=others, values={**environment.values, name: found.value})
+
+    # -- what is wrong ------------------------------------------------------------------------------------------------
+
+    def _slip(self, left: Node, right: Node, environment: Environment, *, fit: bool = True) -> tuple[str, str] | None:
+        fields = {name for result in self.results for name in result.fields if name[0].islower()}
+        matrices = {f"{result.task}_matrix" for result in self.results}
+        alphabet = Letters(environment, frozenset(fields | matrices), fit=fit)
+        found = found_slip(left, right, self.patience.asks(self.true), alphabet)
+        return None if found is None else (f"{found[0]} = {found[1]}", found[2])
+
+    def _misfit(self, left: Node, right: Node, message: str, environment: Environment) -> tuple[str, str]:
+        slip = self._slip(left, right, environment, fit=False)
+        if slip is not None:
+            return slip[0], f"{message}; {slip[1]}"
+        for side, other in ((left, right), (right, left)):
+            try:
+                value = self._value(side, Reading(environment, self.where))
+                if is_spectrum(side) and isinstance(value, Term):
+                    return spectrum_text(side, value.value, environment.variable), message
+                self._value(other, Reading(environment, self.where))
+            except Misfit:
+                continue
+            if isinstance(value, Term) and letters_of(side) and not is_signal(value):
+                return f"{side} = {differences.value_text(value.value)}", message
+        return "", message
+
+    def _values(
+        self, left: Node, right: Node, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
+    ) -> tuple[str, str] | None:
+        """Return what is wrong with a value, or with a formula for one; None where only rounding parts them."""
+        environment = reading.environment
+        exact, printed = (differences.as_matrix(term.value) for term in pair)
+        rounded = as_printed(right, reading) if is_rounded(right, reading) else None
+        if (
+            rounded is not None and differences.as_matrix(rounded).shape == exact.shape
+        ):  # else it is a 0 of another size
+            printed = differences.as_matrix(rounded)
+        wrong = differences.wrong_entries(printed, exact)
+        if not wrong:
+            return None
+        variable = environment.variable
+        reason = ""
+        if exact.shape == (1, 1):
+            reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], variable)
+        numbers = self._is_written_out(right, environment)
+        plain = bool(reason) and "; " not in reason and not spectra
+        if not numbers or not (plain or _is_evident(left, exact, printed, len(wrong))):
+            slip = self._slip(left, right, environment)
+            if slip is not None:
+                return slip
+        if spectra:
+            return spectrum_text(left, exact[0, 0], variable), "the eigenvalues are others"
+        factor = None if numbers else self._missing_factor(left, right)
+        if factor is not None:
+            return factor
+        whole = differences.reasons(printed, exact, str(left))
+        value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1].value, Scalar) else (exact, printed)
+        return f"{left} = {differences.value_text(value, alike)}", reason or whole
+
+    def _is_written_out(self, node: Node, environment: Environment) -> bool:
+        """Whether a side has no letters but the problem's own symbols."""
+        plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
+        return set(letters_of(node)) <= plain
+
+    def _missing_factor(self, left: Node, right: Node) -> tuple[str, str] | None:
+        """Return the equation with a factor before its left side that an equation above has as a side."""
+        for node in reversed(self.known):
+            if node.kind == "block" and self.true(Node("product", (node, left)), right):
+                fixed = Node("product", (node, left))
+                return f"{fixed} = {right}", f"the factor {node} before {left} is missing"
+        return None
+
+    def _signals(self, left: Node, right: Node, pair: tuple[Term, Term], environment: Environment) -> tuple[str, str]:
+        exact, printed = (self._coefficients(term) for term in pair)
+        names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
+        wrong = {
+            name: differences.wrong_entries(printed[name], exact[name])
+            for name in names
+            if name in exact and name in printed
+        }
+        single = len(names) == 1 and len(wrong.get(names[0], ())) == 1
+        if not single:
+            slip = self._slip(left, right, environment)
+            if slip is not None:
+                return slip
+        term = self._missing_term(left, right, exact, printed, environment)
+        if term is not None:
+            return term
+        reasons = []
+        for name in names:
+            if name not in printed:
+                reasons.append(f"the term {differences.term_text(exact[name], name)} is missing")
+            elif name not in exact:
+                reasons.append(f"the term {differences.term_text(printed[name], name)} does not belong there")
+            else:
+                whole = f"the coefficient of {name}"
+                why = differences.reasons(printed[name], exact[name], whole)
+                reasons.append(why if why.startswith(whole) else f"in {whole} {why}")
+        terms = (
+            " + ".join(differences.term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
+        )
+        return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
+
+    def _coefficients(self, term: Term) -> dict[str, Matrix]:
+        value = term.value
+        assert isinstance(value, Signal)  # noqa: S101 - an invariant of the caller
+        return {name: part for name, part in value.coefficients.items() if not part.is_zero}
+
+    def _missing_term(
+        self,
+        left: Node,
+        right: Node,
+        exact: Mapping[str, Matrix],
+        printed: Mapping[str, Matrix],
+        environment: Environment,
+    ) -> tuple[str, str] | None:
+        """Return the equation with one more term, a product of letters of the equation and one signal."""
+        names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
+        if len(names) != 1 or self._has_numbers(right):
+            return None
+        true, written = self.patience.asks(self.true), self._matrices(letters_of(left, right), environment)
+        offered = self._matrices([*written, *environment.values], environment)
+        for letters, most in ((written[:6], _MOST_LETTERS), (offered[:16], 2)):
+            for chosen in (each for count in range(1, most + 1) for each in product(letters, repeat=count)):
+                term = Node("product", tuple(Node("letter", text=name) for name in (*chosen, names[0])))
+                terms = right.parts if right.kind == "sum" else (right,)
+                for last in (term, Node("negative", (term,))):
+                    fixed = Node("sum", (*terms, last))
+                    if true(left, fixed):
+                        return f"{left} = {fixed}", f"the term {last} is missing"
+        return None
+
+    def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
+        values = environment.values
+        return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
+
+    def _has_numbers(self, node: Node) -> bool:
+        return node.kind == "number" or any(map(self._has_numbers, node.parts))
+
+
+def _is_evident(left: Node, exact: Matrix, printed: Matrix, wrong: int) -> bool:
+    """Whether it is the numbers on the right that are wrong: a value of a letter, one entry among several, one number.
+
+    A single number says too little to tell which letter was meant instead of another.
+    """
+    if left.kind == "letter" or (left.kind == "call" and left.text == "size"):
+        return True
+    alone = exact.shape == (1, 1)
+    return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)

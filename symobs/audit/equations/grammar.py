@@ -1,0 +1,135 @@
+"""From the text of a printed equation to its trees.
+
+The tokens and the tree are those of every other expression (`symobs.expression`), and three tokens more: `'` after an operand,
+its transpose or, behind a signal, its derivative; `=`; and the argument of a function, `P(s)`.  A name is a letter, and is
+not evaluated here: letters do not commute.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from symobs.errors import BudgetExceeded
+from symobs.exact import VARIABLES
+from symobs.expression.names import Scope
+from symobs.expression.source import Source
+from symobs.expression.syntax_parser import parse
+from symobs.expression.syntax_tree import every, exponent_of
+from symobs.expression.tokenizer import Tokeniser
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from symobs.expression.syntax_tree import Node
+
+FUNCTIONS = (
+    ("det", 1),
+    ("adj", 1),
+    ("trace", 1),
+    ("rank", 1),
+    ("size", 1),
+    ("eigenvalues", 1),
+    ("rref", 1),
+    ("ctrb", 2),
+    ("obsv", 2),
+    ("place", 3),
+    ("Phi", 2),
+    ("integral", 4),
+    *((name, 1) for name in ("sqrt", "exp", "sin", "cos", "sinh", "cosh")),
+)
+_ARGUMENTS = dict(FUNCTIONS)
+MOST_CHARACTERS = 2_000
+MOST_NODES = 200
+MOST_EXPONENT = 12
+#: `x(t)` and `P(s)` are x and P whatever they are.
+_OF_ITS_VARIABLE = re.compile(rf"\([ ]*({'|'.join(VARIABLES)})[ ]*\)")
+
+
+def read_relation(
+    text: str, where: str, functions: Collection[str] = (), symbols: Collection[str] = ()
+) -> tuple[Node, ...]:
+    """Return the members of a printed equation `a = b = …`; raises ExpressionError with the place of the fault.
+
+    A letter of `functions` directly before "(" is applied to what stands there; before `(s)`, `(z)` or `(t)` any letter is
+    but `symbols`, which are numbers.
+    """
+    source = Source(text, where)
+    if len(text) > MOST_CHARACTERS:
+        message = f"the equation has {len(text)} characters, more than {MOST_CHARACTERS}"
+        raise source.error(message, 0, "print it in parts", kind=BudgetExceeded)
+    members = parse(_Printed(source, functions, symbols).run(), source, "_EQUAL")
+    parts = [part for member in members for part in every(member)]
+    if len(parts) > MOST_NODES:
+        raise source.error(f"the equation has more than {MOST_NODES} parts", 0, "print it in parts", BudgetExceeded)
+    for part in parts:
+        _require_known(part, source)
+    return members
+
+
+def _require_known(part: Node, source: Source) -> None:
+    """Refuse exponents that are no integers, and functions of another number of arguments."""
+    if part.kind == "power":
+        exponent = exponent_of(part)
+        if exponent is None or abs(exponent) > MOST_EXPONENT:
+            message = f"an exponent is an integer up to {MOST_EXPONENT}"
+            raise source.error(message, part.places[0], "write A^-1 for the inverse, A' for the transpose")
+    if part.kind == "call" and len(part.parts) != _ARGUMENTS[part.text]:
+        count = _ARGUMENTS[part.text]
+        message = f"{part.text} takes {count} argument{'s' if count > 1 else ''}"
+        raise source.error(message, part.places[0], "set them apart by commas")
+
+
+class _Printed(Tokeniser):
+    """Cuts a printed equation into tokens; a letter is a VALUE without a value."""
+
+    pattern = re.compile(
+        r"(?P<NUMBER>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+        r"|(?P<NAME>[A-Za-z][A-Za-z0-9_]*)"
+        r"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/])|(?P<ADD>[+-])"
+        r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
+        r"|(?P<PRIME>')|(?P<EQUAL>=)"
+        r"|(?P<SPACE>[ \t\r\n]+)"
+    )
+
+    def __init__(self, source: Source, functions: Collection[str], symbols: Collection[str]) -> None:
+        super().__init__(source, Scope.of(None, None, source.where))
+        self.applied = functions
+        self.numbers = symbols
+
+    def _take(self, kind: str, text: str, at: int) -> None:
+        if kind == "EQUAL" and self.open:
+            raise self.source.error('"=" stands inside brackets', at, "close them first")
+        if kind == "EQUAL" or (kind == "COMMA" and self.open and not self._in_brackets()):
+            self.spaced = False
+            self._add("_EQUAL" if kind == "EQUAL" else "_COMMA", text, at)
+        else:
+            super()._take(kind, text, at)
+
+    def _imply(self, kind: str, at: int) -> None:
+        if kind == "OPEN" and self._is_applied(at):
+            self._add("APPLY", "", at)
+        else:
+            super()._imply(kind, at)
+
+    def _is_applied(self, at: int) -> bool:
+        """Whether the "(" that begins here holds the argument of the letter before it."""
+        letter = next((token for token in reversed(self.tokens) if token.type != "PRIME"), None)
+        if (
+            self.spaced
+            or letter is None
+            or letter.type != "VALUE"
+            or letter.value is not None
+            or letter in self.numbers
+        ):
+            return False
+        return letter in self.applied or _OF_ITS_VARIABLE.match(self.text, at) is not None
+
+    def _name(self, name: str, at: int) -> None:
+        called = self.text.startswith("(", at + len(name))
+        if name in _ARGUMENTS and called:
+            self._add("FUNCTION", name, at)
+        elif len(name) > 64:
+            raise self.source.error("a letter has more than 64 characters", at, "shorten it")
+        else:
+            self._add("VALUE", name, at)

@@ -1,0 +1,92 @@
+"""The `[[printed]]` entries of a file: where something is printed, and what."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.audit.equations.grammar import FUNCTIONS, read_relation
+from symobs.audit.equations.reading import Where
+from symobs.convention import Convention, conventions
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expression import declared_name
+from symobs.expression.source import shown
+from symobs.expression.syntax_tree import letters_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_MOST_LETS = 20
+_WHERE = " where"
+_FUNCTIONS = {name for name, _ in FUNCTIONS}
+
+
+@dataclass(frozen=True)
+class Statement:
+    """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
+
+    place: str
+    where: str
+    erratum: str
+    convention: Convention
+    relation: str = ""
+    condition: Where = field(default_factory=Where)
+    let: Mapping[str, str] = field(default_factory=dict)
+    expect: Mapping[str, Any] = field(default_factory=dict)
+
+
+def statements(
+    entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
+) -> list[Statement]:
+    """Return the entries of a file, which can be read; raises `ProblemErrors` with every one that cannot be.
+
+    `signs` are those of the file's own symbols, of which conditions speak.
+    """
+    found, errors = [], []
+    for i, entry in enumerate(entries):
+        try:
+            found.append(_statement(entry, f"printed[{i}]", convention, signs))
+        except SymobsError as error:
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return found
+
+
+def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> Statement:
+    name = entry.get("convention", convention.name)
+    known = {**conventions(), convention.name: convention} if name != convention.name else {name: convention}
+    if name not in known:
+        message = f'"{shown(name, 40)}" is not a convention'
+        raise InputError(message, where=f"{place}.convention", repair=f"use one of {', '.join(known)}")
+    let = _lets(entry.get("let", {}), f"{place}.let")
+    relation, condition = parted(entry.get("relation", ""), signs, f"{place}.relation")
+    if "relation" in entry and len(read_relation(relation, f"{place}.relation")) < 2:
+        repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
+        raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
+    where, erratum = entry.get("where", ""), entry.get("erratum", "")
+    return Statement(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
+
+
+def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, Where]:
+    """Return an equation and the conditions that stand behind it: `rank(O) = 2 where c != 0`."""
+    equation, found, condition = text.partition(_WHERE)
+    return equation, Where.of(condition, signs, place) if found else Where(signs=signs)
+
+
+def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:
+    """Return what the entry's own letters stand for."""
+    if len(table) > _MOST_LETS:
+        raise InputError(f"more than {_MOST_LETS} letters", where=where, repair="print less at once")
+    found: dict[str, str] = {}
+    for name, text in table.items():
+        place = f"{where}.{shown(name, 40)}"
+        declared_name(name, place)
+        members = read_relation(text, place)
+        if len(members) != 1:
+            raise InputError("one expression is expected", where=place, repair='leave "=" out')
+        if name in _FUNCTIONS or name in letters_of(*members):
+            raise InputError(f"{name} cannot stand for this", where=place, repair="take another letter")
+        found[name] = text
+    return found

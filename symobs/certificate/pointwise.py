@@ -1,0 +1,127 @@
+"""What holds at every real point where some polynomials vanish: values that are never 0 together, and ranks (trusted)."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import never_zero, real_consequences, vanishing_factors
+from symobs.errors import NotShown
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.exact.kernel.generators import all_roots
+from symobs.formula import Restricted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from symobs.formula import Environment
+
+#: The most minors of one order that are looked at.
+_MINORS = 100
+
+
+def never_together_zero(
+    values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
+) -> bool:
+    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+
+    Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
+
+    With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
+    an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
+    relations are reduced by what follows from the values alone, which keeps long ones short.
+    """
+    values = list(values)
+    relations = _without_other_roots(tuple(relations), values)
+    known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
+    if known is None:
+        return True
+    together = [*(known.remainder(relation) for relation in relations), *known.generators]
+    return _implied(together, signs, nonzero) is None
+
+
+def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """Leave out what is said of square roots that the values know nothing of.
+
+    Roots of q and of −q may stand on one page, each in a case of its own: taken as real together they leave no point, and
+    of no point everything is true.
+    """
+    others = {root.name for root in all_roots(*relations)} - {root.name for root in all_roots(*values)}
+    return tuple(relation for relation in relations if others.isdisjoint(relation.names))
+
+
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Ideal | None:
+    """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
+
+    None where that is nowhere.
+    """
+    ideal = Ideal.of(equations)
+    while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
+        implied = (c for g in ideal.generators for c in (_stripped(g, signs, nonzero), *real_consequences(g, signs)))
+        news = [value for value in implied if value not in ideal]
+        if not news:
+            return ideal
+        ideal = ideal.having(*news)
+    return None
+
+
+def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Scalar:
+    """Return the product of the distinct factors of a value that can vanish."""
+    factors = (factor for factor in vanishing_factors([value], signs) if factor not in nonzero)
+    return math.prod(factors, start=Scalar.of(1))
+
+
+def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+    """Yield the rows and the columns of every square part of an order."""
+    return itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
+
+
+class Pointwise(Restricted):
+    """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
+
+    def __init__(self, environment: Environment) -> None:
+        """Keep the signs, and what is known not to vanish."""
+        super().__init__(environment)
+        self.signs = environment.signs
+        self.nonzero = (*environment.assumed, *environment.domain)
+
+    def apply(self, function: str, value: Matrix) -> Any:
+        """Return det, adj, or the rank: r where r×r minors never vanish together and none is higher.
+
+        That it is not higher a kernel of dimension n − r shows, or that all larger minors vanish where they are few.
+
+        Raises TypeError where that cannot be shown.
+        """
+        at_number = self.relations and all(relation.names == {EIGENVALUE} for relation in self.relations)
+        if function != "rank" or at_number:
+            return super().apply(function, value)
+        columns, vectors = echelon(value, self.ideal)
+        kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))
+        sent_to_zero = all(entry in self.ideal for entry in (value @ kernel).entries)
+        rows = independent_rows(value.select(range(value.shape[0]), columns), self.ideal)
+        if not self._has_minor(value, len(columns), (rows, columns)) or not (
+            (sent_to_zero and self._has_minor(kernel, len(vectors))) or self._has_none(value, len(columns) + 1)
+        ):
+            message = "the rank is not seen to be the same everywhere"
+            raise NotShown(message)
+        return Scalar.of(len(columns))
+
+    def _has_minor(
+        self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
+    ) -> bool:
+        """Tell whether at every point a minor of some order is not zero; a likely one may be tried first."""
+        if not order or (first is not None and self._never_zero([matrix.select(*first)])):
+            return True
+        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
+
+    def _has_none(self, matrix: Matrix, order: int) -> bool:
+        """Tell whether all minors of some order vanish; of many that is not asked."""
+        if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
+            return False
+        return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))
+
+    def _never_zero(self, parts: Iterable[Matrix]) -> bool:
+        minors = (part.determinant() for part in parts)
+        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs, self.nonzero)

@@ -1,0 +1,68 @@
+"""The command `audit`: what is wrong among the equations a source prints."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symobs.audit import REPORTS, audit, report
+from symobs.cli.common import EXIT_NO, _place, _read, _run, _say
+from symobs.cli.options import LIMITS, options
+from symobs.cli.outcome import Outcome
+from symobs.cli.output import check_target
+from symobs.errors import ProblemErrors, SymobsError, UsageError
+from symobs.problem import read
+
+if TYPE_CHECKING:
+    from symobs.audit import Audited
+    from symobs.cli.outcome import Tell
+
+
+@click.command("audit")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown or json.")
+@click.option("-o", "target", metavar="PATH", help="Write to PATH.")
+@options(*LIMITS)
+def audit_command(
+    files: tuple[str, ...], format_name: str, target: str | None, timeout: float | None, memory: float | None
+) -> None:
+    """Recompute what a source prints: every FILE's [[printed]] equations.
+
+    Lists those that are wrong, with what is right and the reason. Exit code 4 where there are some.
+    """
+    if format_name not in REPORTS:
+        raise UsageError(f"{format_name[:40]!r} is not a format of the audit", repair=f"take {', '.join(REPORTS)}")
+    check_target(target)
+    chosen = tuple(dict.fromkeys(files))
+
+    def work(tell: Tell) -> Outcome:
+        found = _audited(chosen, tell)
+        wrong = any(each.wrong for each in found.values())
+        return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
+
+    _run(work, timeout, memory, _place(chosen[0]) if len(chosen) == 1 else "")
+
+
+def _audited(files: tuple[str, ...], tell: Tell) -> dict[str, Audited]:
+    """Return what each file's audit found; the errors of all files are raised together."""
+    found: dict[str, Audited] = {}
+    errors: list[SymobsError] = []
+    several = len(files) > 1
+    shows = several and sys.stderr is not None and sys.stderr.isatty()
+    for number, file in enumerate(files, start=1):
+        tell(_place(file) if several else None)
+        if shows:
+            _say(f"{number}/{len(files)} {file} …")
+        try:
+            found[file] = audit(read(_read(file), file, Path(file).parent))
+        except SymobsError as raised:
+            all_of_it = raised.errors if isinstance(raised, ProblemErrors) else (raised,)
+            errors += all_of_it
+            for error in all_of_it if several else ():
+                error.where = error.where if error.where.startswith(file) else f"{file}, {error.where}"
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return found

@@ -1,0 +1,106 @@
+"""TODO symobs/cli/common.py."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symobs.cli.options import quoted
+from symobs.cli.output import binary, write_all
+from symobs.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from symobs.cli.outcome import Outcome, Tell
+
+
+EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
+
+
+NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
+
+
+def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
+    """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
+    if timeout is None and memory is None:
+        outcome = work(lambda _: None)
+    else:
+        from symobs.cli.outcome import bounded  # noqa: PLC0415 - it is there already, with the work
+
+        outcome = bounded(work, timeout, memory, where)
+    write_all(outcome.outputs)
+    for line in outcome.messages:
+        _say(line)
+    sys.exit(outcome.code)
+
+
+def _say(text: str) -> None:
+    """Write to standard error; where nobody can read it, the exit code says enough."""
+    with suppress(OSError):
+        click.echo(text, err=True)
+
+
+def _progress(found: Any, tell: Tell) -> Tell:
+    """Return `tell`, which on a terminal shows the task being run where there are several."""
+    if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
+        return tell
+
+    def shown(reached: object) -> None:
+        if isinstance(reached, str):
+            _say(f"{reached} …")
+        tell(reached)
+
+    return shown
+
+
+def _format_of(format_name: str | None, target: str | None) -> str:
+    """Return the format asked for, or the one the target's suffix names, or LaTeX."""
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.cli.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
+    from symobs.result import format_named  # noqa: PLC0415
+
+    suffix = Path(target).suffix if target is not None else ""
+    if format_name is None and suffix:
+        known = format_suffixes(symobs.FORMAT_PACKAGE)
+        named = [name for name in known if known[name] == suffix]
+        if not named:
+            repair = f"give --format one of {', '.join(known)}"
+            raise UsageError(f"the suffix {quoted(suffix)} names no output format", where="-o", repair=repair)
+        format_name = "latex" if "latex" in named else named[0]
+    return str(format_named(format_name or "latex").name)
+
+
+def _place(file: str) -> str:
+    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+
+    return shown(file, 200) if file != "-" else "standard input"
+
+
+def _read(file: str) -> str:
+    """Return the text of a file or of standard input, bounded in size."""
+    from symobs.problem import MAX_BYTES  # noqa: PLC0415
+
+    where = _place(file)
+    try:
+        if file == "-":
+            raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)
+        else:
+            with Path(file).open("rb") as stream:
+                raw = stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        reason = getattr(error, "strerror", None) or str(error)
+        repair = "give the path of a problem file, or - for standard input"
+        raise InputError(reason, where=where, repair=repair) from None
+    if len(raw) > MAX_BYTES:
+        message = f"the file is larger than {MAX_BYTES // 1024} kB"
+        raise InputError(message, where=where, repair="keep one problem to a file")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        message = f"byte {error.start} is not UTF-8"
+        raise InputError(message, where=where, repair="save the file as UTF-8 text") from None

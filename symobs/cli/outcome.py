@@ -1,0 +1,127 @@
+"""What a command leaves behind, worked out before anything is written: so nothing is left of a run that fails."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.cli.output import check_target
+from symobs.errors import OutOfBudget, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now.
+    Tell = Callable[[object], None]
+
+#: Exit codes of the contract.
+EXIT_NO, EXIT_UNDECIDED = 4, 5
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What is to be written where, what is to be said besides, and the exit code."""
+
+    outputs: tuple[tuple[str | bytes, str | None], ...]
+    messages: tuple[str, ...] = ()
+    code: int = 0
+
+
+def convention_of(name: str | None) -> Any:
+    """Return the convention asked for, None for the file's own."""
+    if name is None:
+        return None
+    from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
+
+    return convention_named(name)
+
+
+def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
+    """Return how the page is to be told and set; raises `UsageError` for what does not exist."""
+    from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
+
+    if templates is None:
+        return {"detail": detail_named(detail)}
+    from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
+    from symobs.result import format_named, formats  # noqa: PLC0415
+
+    if not hasattr(format_named(format_name), "template"):
+        having = ", ".join(sorted(found.name for found in formats().values() if hasattr(found, "template")))
+        message = f"the format {format_name} has no LaTeX template"
+        raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
+    check_folder(Path(templates))
+    return {"detail": detail_named(detail), "templates": Path(templates)}
+
+
+def check_targets(target: str | None, plot: str | None) -> None:
+    """Say at once that the result or its picture cannot be written."""
+    check_target(target)
+    if plot is not None:
+        from symobs.render.plots.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
+
+        check_picture(plot)
+        check_target(plot)
+        if target is not None and Path(plot).resolve() == Path(target).resolve():
+            raise UsageError("the result is written to that file", where="--plot", repair="name another file")
+
+
+def solved(
+    found: Any,
+    format_name: str,
+    target: str | None,
+    plot: str | None,
+    convention: Any,
+    tell: Tell,
+    *,
+    some: bool = False,
+    **page: Any,
+) -> Outcome:
+    """Solve a problem and return its document, its picture, and what the contract says of them.
+
+    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
+    is put into the document.  `tell` is told which task begins, and what is to be left behind where the work is ended.
+    """
+    from symobs.expect import applicable, mismatches  # noqa: PLC0415
+    from symobs.result import render  # noqa: PLC0415
+
+    if format_name == "json":
+        from symobs.render.formats.json import given_up  # noqa: PLC0415 - only with --format json
+
+        names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
+        undecided = given_up(found.title, names, method, found.plant.symbols.signs, convention or found.convention)
+        tell(Outcome(((undecided, target),), (), EXIT_UNDECIDED))
+    results = found.solve(tell)
+    viewed = found.viewed(results)
+    expect = applicable(viewed, found.expect) if some else found.expect
+    unmet = mismatches(viewed, expect)
+    tell("the page")
+    outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
+    if plot is not None:
+        from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
+
+        tell("the picture")
+        try:
+            outputs.append((picture_file(results, plot), plot))
+        except UsageError as error:  # there is none: the result stands all the same
+            return Outcome(tuple(outputs), (str(error),), error.exit_code)
+    if expect:
+        return Outcome(tuple(outputs), tuple(unmet), EXIT_NO if unmet else 0)
+    verdicts = {result.verdict for result in results}
+    messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
+    code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0
+    return Outcome(tuple(outputs), (*unmet, *messages), code)
+
+
+def bounded(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
+    """Return what the work leaves behind, or what was left of it when its budget was used up."""
+    from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+
+    try:
+        return within(Budget(timeout, memory), work, where)
+    except OutOfBudget as error:
+        left = error.facts["left"]
+        if not isinstance(left, Outcome):
+            raise
+        return replace(left, messages=(str(error),))

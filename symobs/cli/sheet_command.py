@@ -1,0 +1,249 @@
+"""The command `sheet`: several problems on one sheet, of which one that fails loses no other."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from symobs._dataclass import dataclass
+from symobs.cli.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, _format_of, _place, _read, _say
+from symobs.cli.options import LIMITS, options
+from symobs.cli.outcome import convention_of, page_of
+from symobs.cli.output import check_target, write
+from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
+from symobs.expect import mismatches
+from symobs.expression.source import shown
+from symobs.phrases import PHRASES
+from symobs.problem import parse, validate
+from symobs.problem.question import question_of
+from symobs.render.page.sheet import Entry, Sheet
+from symobs.result import format_named, formats, tasks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.cli.outcome import Tell
+    from symobs.result import Document
+
+_LONGEST_TITLE = 300
+_WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """What was asked for on the command line."""
+
+    format: Any
+    questions: bool
+    solutions: bool
+    detail: str
+    templates: Path | None = None
+    convention: Any = None
+    timeout: float | None = None
+    memory: float | None = None
+
+
+@click.command()
+@click.argument("files", nargs=-1, metavar="FILE...")
+@options("format", "target")
+@click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
+@click.option("--questions", is_flag=True, help="The questions only.")
+@click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
+@options("detail", "templates", "convention", *LIMITS)
+def sheet(
+    files: tuple[str, ...],
+    target: str | None,
+    format_name: str | None,
+    title: str,
+    questions: bool,  # noqa: FBT001 - click's signature
+    solutions: bool,  # noqa: FBT001
+    detail: str,
+    templates: str | None,
+    convention_name: str | None,
+    timeout: float | None,
+    memory: float | None,
+) -> None:
+    """Put several problem FILEs on one sheet: all questions first, then all solutions.
+
+    A problem that cannot be worked out keeps its place on the sheet, which says so; the reasons go to standard error.
+    --timeout and --memory are for each problem: one that takes more loses no other.
+    """
+    if questions and solutions:
+        raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
+    chosen = _sheet_format(format_name, target)
+    told = page_of(detail, templates, chosen.name)
+    wanted = _Wanted(
+        chosen,
+        not solutions,
+        not questions,
+        convention=convention_of(convention_name),
+        timeout=timeout,
+        memory=memory,
+        **told,
+    )
+    check_target(target)
+    texts = _texts(files)
+    if timeout is not None or memory is not None:
+        tasks()  # what all problems need is imported once, not in the process of each
+    entries: list[Entry] = []
+    codes: set[int] = set()
+    progress = _Progress(len(texts))
+    for number, (file, text) in enumerate(texts, 1):
+        progress.show(number, Path(file).stem)
+        name = _place(file)
+        entry, code, messages = _bounded_entry(number, file, text, wanted)
+        entries.append(entry)
+        codes.add(code)
+        progress.clear()
+        for message in messages:
+            _say(message if message.startswith(f"{name}, ") else f"{name}: {message}")
+    progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
+    whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
+    progress.clear()
+    write(whole, target)
+    sys.exit(next((code for code in _WORST_FIRST if code in codes), 0))
+
+
+# -- before work starts -----------------------------------------------------------------------------------------------
+
+
+def _sheet_format(name: str | None, target: str | None) -> Any:
+    """Return the format; raises `UsageError` for one that has no sheets."""
+    found = format_named(_format_of(name, target))
+    if not hasattr(found, "sheet"):
+        having = ", ".join(sorted(each.name for each in formats().values() if hasattr(each, "sheet")))
+        raise UsageError(f"the format {found.name} is for one problem", where="--format", repair=f"use one of {having}")
+    return found
+
+
+def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the text of every file; raises all errors together, before work starts."""
+    if not files:
+        raise UsageError("no problem file is named", repair="write for example `symobs sheet *.toml -o sheet.pdf`")
+    if list(files).count("-") > 1:
+        raise UsageError("standard input stands twice", repair="name - once")
+    texts: list[tuple[str, str]] = []
+    errors: list[SymobsError] = []
+    for file in files:
+        try:
+            texts.append((file, _read(file)))
+        except InputError as error:
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return texts
+
+
+# -- one problem ------------------------------------------------------------------------------------------------------
+
+
+def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+    """Return what `_entry` does, and where that takes more than it may, as much as there was by then."""
+    if wanted.timeout is None and wanted.memory is None:
+        return _entry(number, file, text, wanted, lambda _: None)
+    from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+
+    try:
+        budget = Budget(wanted.timeout, wanted.memory)
+        return within(budget, lambda tell: _entry(number, file, text, wanted, tell))
+    except OutOfBudget as error:
+        left: Any = error.facts["left"] or _empty(number, file)
+        return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
+
+
+def _empty(number: int, file: str) -> Entry:
+    return Entry(number, file, Path(file).stem if file != "-" else "")
+
+
+def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+    """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
+    entry = _empty(number, file)
+    try:
+        return _worked_out(entry, text, wanted, tell)
+    except Exception as error:  # noqa: BLE001 - whatever fails here, the other problems are not lost
+        return _failed(entry, error, wanted)
+
+
+def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+    """Return the entry with its parts; a solution that fails leaves the question where there is one."""
+    data = parse(text, entry.file)
+    entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
+    try:
+        problem = validate(data, folder=Path(entry.file).parent)
+        if wanted.questions:
+            entry = replace(entry, question=_part(question_of(problem), wanted))
+        tell(entry)
+        results = problem.solve()
+        if wanted.solutions:
+            entry = replace(entry, solution=_part(problem.document(results), wanted))
+    except Exception as error:  # noqa: BLE001 - as above
+        return _failed(entry, error, wanted)
+    try:
+        unmet = mismatches(problem.viewed(results), problem.expect)
+    except SymobsError as error:  # what is expected cannot be read: the solution stands all the same
+        return entry, *_failure(error)
+    if problem.expect:
+        return entry, EXIT_NO if unmet else 0, unmet
+    verdicts = [(result.task, result.verdict) for result in results if result.verdict in {"no", "undecided"}]
+    messages = [f"{task}: {verdict}" for task, verdict in verdicts]
+    codes = [EXIT_NO if verdict == "no" else EXIT_UNDECIDED for _, verdict in verdicts]
+    return entry, min(codes, default=0), messages
+
+
+def _part(document: Document, wanted: _Wanted) -> Any:
+    """Return what the format will want of a question or a solution."""
+    convention = wanted.convention or document.convention
+    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
+    return wanted.format.part(told)
+
+
+def _failed(entry: Entry, error: Exception, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+    """Return the entry of a problem that failed; one that has used up its memory is told of where that is bounded."""
+    if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
+        raise error
+    phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
+    return replace(entry, failure=PHRASES[phrase]), *_failure(error)
+
+
+def _failure(error: Exception) -> tuple[int, list[str]]:
+    """Return the exit code of what failed, and its messages; TeX that is missing fails for all."""
+    if isinstance(error, TypesettingError):
+        raise error
+    if isinstance(error, MemoryError):
+        return EXIT_UNDECIDED, [NOT_ENOUGH_MEMORY]
+    if isinstance(error, SymobsError):
+        several = error.errors if isinstance(error, ProblemErrors) else (error,)
+        return max(found.exit_code for found in several), str(error).split("\n")
+    return EXIT_BUG, [f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this"]
+
+
+# -- what a terminal shows --------------------------------------------------------------------------------------------
+
+
+class _Progress:
+    """One line on a terminal, written over again and again; nothing where standard error is none."""
+
+    def __init__(self, total: int) -> None:
+        self.total = total
+        self.shows = sys.stderr.isatty()
+
+    def show(self, number: int, name: str) -> None:
+        """Say which problem is being worked on."""
+        self.say(f"{number}/{self.total} {name}")
+
+    def say(self, text: str) -> None:
+        """Write the line, no longer than any terminal is wide."""
+        if self.shows:
+            with suppress(OSError):
+                click.echo(f"\r\x1b[K{shown(text, 70)}", nl=False, err=True)
+
+    def clear(self) -> None:
+        """Take the line away."""
+        if self.shows:
+            with suppress(OSError):
+                click.echo("\r\x1b[K", nl=False, err=True)

@@ -1,0 +1,365 @@
+"""Writing a derivation: a `Page` collects steps and hands out terms, so that code reads like the textbook's page."""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.certificate.claims import can_be_shown, verify
+from symobs.derivation.check import Derivation
+from symobs.derivation.convention_signs import set_apart
+from symobs.derivation.steps import (
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Sentence,
+    Step,
+    Tabulate,
+)
+from symobs.errors import SymobsWarning
+from symobs.exact import Matrix, Scalar, rounded
+from symobs.exact.kernel.generators import identities, known, roots_in
+from symobs.formula import (
+    Decimals,
+    Derivative,
+    Environment,
+    Exactly,
+    Fact,
+    Formula,
+    Identity,
+    Letter,
+    Literal,
+    Names,
+    Predicate,
+    Relation,
+    Roots,
+    Shown,
+    Together,
+)
+from symobs.formula.plain_text import plain_relation
+from symobs.formula.term import Term
+from symobs.notation import LETTERS, printed_alike
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from symobs.figures.plot import Picture
+    from symobs.stability.criteria.routh_table import RouthTable
+    from symobs.system import StateSpace
+
+#: What a slot of a sentence may hold besides formulas and words.
+FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
+
+Member: TypeAlias = Term | Scalar | Matrix | int
+Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
+
+
+def left_out(what: str) -> None:
+    """Warn that a page lacks something since its check failed, which is a bug."""
+    message = f"{what} is left out: its check failed; please report this: it is a bug of symobs"
+    warnings.warn(message, SymobsWarning, stacklevel=3)
+
+
+def shows(facts: Iterable[Relation], environment: Environment) -> bool:
+    """Tell whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
+    for fact in facts:
+        if verify(fact, environment)[0]:
+            continue
+        if can_be_shown(fact, environment):
+            left_out(f"the line {plain_relation(fact, environment.variable)}")
+        return False
+    return True
+
+
+def formula_of(member: Member) -> Formula:
+    """Return the formula of a term, or a value written out."""
+    if isinstance(member, Term):
+        return member.formula
+    return Literal(Scalar.of(member) if isinstance(member, int) else member)
+
+
+def relation(*members: Member | str) -> Relation:
+    """Return a chain: members joined by `=`, or by an operator that stands between them as a text."""
+    formulas: list[Formula] = []
+    operators: list[str] = []
+    for member in members:
+        if isinstance(member, str):
+            operators.append(member)
+            continue
+        if formulas and len(operators) < len(formulas):
+            operators.append("=")
+        formulas.append(formula_of(member))
+    return Relation(tuple(formulas), tuple(operators))
+
+
+def predicate(name: str, subject: Member) -> Predicate:
+    """Return the fact that a property holds."""
+    return Predicate(name, formula_of(subject))
+
+
+def sentence(key: str, slots: Mapping[str, Slot]) -> Sentence:
+    """Return a phrase with its slots filled."""
+    filled = tuple(
+        (
+            name,
+            slot if isinstance(slot, (str, *FACTS)) else formula_of(slot),
+        )
+        for name, slot in slots.items()
+    )
+    return Sentence(key, filled)
+
+
+#: What a square root of a sum is written as, where it stands in an argument.
+_ROOTS = (r"\nu", r"\mu", r"\kappa", r"\eta")
+
+
+def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
+    """Return the names of the roots whose radicand is a sum, those of cosines and sines among the others."""
+    found: dict[str, None] = {}
+    for value in values:
+        for name in sorted(value.names):
+            function = known(name)
+            inner = roots_in(function.argument) if function and function.kind != "sqrt" else ()
+            roots = [function] if function and function.kind == "sqrt" else inner
+            found |= {root.name: None for root in roots if root.argument.numerator.size > 2}
+    return list(found)
+
+
+class Page:
+    """A derivation in the making: the steps so far and the environment they establish."""
+
+    def __init__(self, plant: StateSpace, further: Mapping[str, int] | None = None) -> None:
+        """Start with the free signals x, x̂, u of the plant, further ones with their sizes, and the declared signs."""
+        others = dict(further or {})
+        self.plant = plant
+        self.start = Environment(
+            variable=plant.variable,
+            signals={"x": None, "x_hat": None, "u": None} | dict.fromkeys(others),
+            sizes={"x": plant.order, "x_hat": plant.order, "u": max(plant.inputs, 1)} | others,
+            signs=plant.symbols.signs,
+            relations=plant.relations,
+        )
+        self.environment = self.start
+        self.steps: list[Step] = []
+        self.forms: dict[str, str] = {}
+
+    def with_roots(self, *values: Scalar | Matrix) -> None:
+        """Let the page speak of these square roots: that each squared is its radicand is known from the start."""
+        vanishing = identities(values)[1]
+        self.start, self.environment = self.start.under(vanishing), self.environment.under(vanishing)
+
+    def in_time(self, *values: Scalar | Matrix) -> None:
+        """Let the page speak of these functions of time: how they depend on each other is known from the start."""
+        self.in_time_by(*identities(values))
+        taken = {*self.plant.symbols.signs, *self.plant.field.names}
+        letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
+        for root in _roots_of_sums(values):
+            self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
+
+    def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
+        """Let the page speak of functions of time that depend on each other in this way."""
+        self.start = replace(self.start, coefficients=meanings).under(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
+
+    def derivation(self) -> Derivation:
+        """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
+        letters = {*self.environment.values, *self.environment.signals}
+        parameters = set(self.plant.field.names) - self.plant.symbols.latex.keys()
+        shared = printed_alike(letters, LETTERS, parameters)
+        written = Derivation(
+            tuple(self.steps), self.start, {**self.plant.symbols.latex, **self.forms}, self.plant.is_discrete
+        )
+        return set_apart(written, shared)
+
+    # -- terms --------------------------------------------------------------------------------------------------------
+
+    def term(self, formula: Formula) -> Term:
+        """Return a term in what is established now."""
+        return Term(formula, self.environment)
+
+    def __getitem__(self, names: str) -> Term:
+        return self.term(Letter(names))
+
+    def value(self, value: Scalar | Matrix | int) -> Term:
+        """Return a value written out."""
+        return self.term(formula_of(value))
+
+    def decimals(self, value: Scalar | Matrix) -> tuple[str, Term] | tuple[()]:
+        """Return what shows a value in decimals at the end of a chain; nothing where they would not help a reader."""
+        near = rounded(value)
+        if near is None:
+            return ()
+        return "=" if near == value else "≈", self.term(Decimals(near))
+
+    def identity(self, order: int) -> Term:
+        """Return I."""
+        return self.term(Identity(order))
+
+    @property
+    def s(self) -> Term:
+        """The variable."""
+        return self.term(Letter("s"))
+
+    def resolvent(self, matrix: Term, order: int) -> Term:
+        """Return sI − M for a sum M, its signs turned."""
+        return self.s @ self.identity(order) - matrix
+
+    def knows(self, name: str) -> bool:
+        """Whether a letter is established."""
+        return self.environment.knows(name)
+
+    # -- steps --------------------------------------------------------------------------------------------------------
+
+    def given(self, *relations: Relation, silent: bool = False) -> None:
+        """State data."""
+        self.steps.append(Given(relations, silent=silent))
+
+    def assume(self, key: str, *values: Scalar) -> None:
+        """State that polynomials are not zero from here on."""
+        factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
+        self.environment = replace(self.environment, assumed=(*self.environment.assumed, *factors))
+        conditions = tuple(relation(value, "!=", 0) for value in values)
+        self.steps.append(Given(conditions, sentence(key, {"condition": Together(conditions)})))
+
+    def set(self, name: str, value: Scalar | Matrix) -> Term:
+        """Establish a letter by its value, without a display."""
+        self.steps.append(Given((relation(self[name], value),), silent=True))
+        self.environment = self.environment.having(values={name: value})
+        return self[name]
+
+    def define(
+        self,
+        name: str,
+        *members: Member | str,
+        say: str = "",
+        answer: bool = False,
+        silent: bool = False,
+        closing: bool = True,
+        **slots: Slot,
+    ) -> Term:
+        """Introduce a letter by a formula; its value is shown last unless `closing` is False, decimals behind it."""
+        chain = [self.value(m) if not isinstance(m, (Term, str)) else m for m in members]
+        exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
+        value = exact[-1].value
+        if closing and len(exact) == len(chain) and not isinstance(exact[-1].formula, Literal):
+            chain.append(exact[-1].shown)
+        because = sentence(say, slots) if say else None
+        self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
+        self.environment = self.environment.having(values={name: value})
+        return self[name]
+
+    def in_decimals(self, name: str) -> None:
+        """Show a letter's value in decimals, where they help a reader."""
+        shown = self.decimals(self[name].value)
+        if shown:
+            self.equal(relation(self[name], *shown), say="in_decimals")
+
+    def define_transposed(self, name: str, *members: Term, say: str, **slots: Slot) -> Term:
+        """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""
+        value = members[-1].value.T
+        self.steps.append(Given((relation(self[name], value),), silent=True))
+        self.environment = self.environment.having(values={name: value})
+        rows = relation(self[name].T, *members, members[-1].shown)
+        self.equal(rows, relation(self[name], value), say=say, answer=True, **slots)
+        return self[name]
+
+    def conclude_silently(self, *facts: Fact) -> None:
+        """Hold the page to facts that need no words."""
+        self.steps.append(Conclude(None, facts))
+
+    def name_coefficient(self, name: str, meaning: Scalar) -> Scalar:
+        """Let a generator stand for a longer scalar from here on, without a display."""
+        symbol = Scalar.symbol(name)
+        self.steps.append(Define(relation(symbol, meaning), silent=True))
+        self.environment = self.environment.having(coefficients={name: meaning})
+        return symbol
+
+    def signal(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
+        """Define a signal by others; a free signal ceases to be free."""
+        because = sentence(say, slots) if say else None
+        self.steps.append(Define(relation(self[name], formula), because, silent=silent))
+        self.environment = self.environment.having(signals={name: formula.formula})
+        return self[name]
+
+    def dynamics(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
+        """Give the derivative (shift) of a free signal."""
+        because = sentence(say, slots) if say else None
+        target = self.term(Derivative(Letter(name)))
+        self.steps.append(Define(relation(target, formula), because, silent=silent))
+        self.environment = self.environment.having(dynamics={name: formula.formula})
+
+    def equal(self, *relations: Relation, say: str = "", answer: bool = False, **slots: Slot) -> None:
+        """Show relations on one display."""
+        self.steps.append(Equal(relations, sentence(say, slots) if say else None, answer))
+
+    def verified(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Show the check of an answer."""
+        self.steps.append(Conclude(sentence(key, slots), facts, verified=True))
+
+    def conclude(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """State a finding."""
+        self.steps.append(Conclude(sentence(key, slots), facts))
+
+    def caution(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Warn as an expert would."""
+        self.steps.append(Note(sentence(key, slots), facts, caution=True))
+
+    def remark(self, key: str, *facts: Fact, **slots: Slot) -> None:
+        """Remark."""
+        self.steps.append(Note(sentence(key, slots), facts))
+
+    def diagram(self, name: str, say: str = "", **labels: Member | Together) -> None:
+        """Draw a figure of `flow` with these gains; its signals have their own letters unless others are given."""
+        from symobs.figures.block_diagram import with_signals  # noqa: PLC0415 - only pages with a diagram pay for it
+
+        given = {key: label if isinstance(label, Together) else formula_of(label) for key, label in labels.items()}
+        because = sentence(say, {}) if say else None
+        self.steps.append(Diagram(name, tuple(with_signals(name, given).items()), because))
+
+    def tabulate(
+        self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot
+    ) -> RouthTable:
+        """Show Routh's table of a polynomial, in another variable than the page's where one is named.
+
+        What the table says is told below it, unless `tell` is False.
+        """
+        from symobs.derivation.routh_check import findings_of  # noqa: PLC0415 - only pages of regions pay for it
+        from symobs.stability.criteria.routh_table import routh_table  # noqa: PLC0415
+
+        variable = variable or self.environment.variable
+        coefficients = polynomial.value.coefficients(variable)
+        table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
+        findings = findings_of(table, coefficients, variable, self.environment.signs) if tell else ()
+        because = sentence(say, slots) if say else None
+        self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
+        return table
+
+    def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
+        """Show where a polynomial is stable, or how its roots move: the picture is held against it.
+
+        One that is not faithful is left out with a `SymobsWarning`.
+        """
+        from symobs.derivation.figures.plot_check import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
+
+        discrete = self.plant.is_discrete
+        if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):
+            left_out(f"a picture of kind {type(picture).__name__}")
+            return
+        self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
+
+    @contextmanager
+    def section(self, key: str, **slots: Slot) -> Iterator[None]:
+        """Write the steps inside under a title."""
+        outer, self.steps = self.steps, []
+        try:
+            yield
+        finally:
+            inner, self.steps = self.steps, outer
+            self.steps.append(Section(sentence(key, slots), tuple(inner)))

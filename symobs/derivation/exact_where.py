@@ -1,0 +1,55 @@
+"""Whether inequalities say exactly where a polynomial has a property (trusted)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from symobs.certificate.claims import as_scalar
+from symobs.derivation.facts.properties import is_criterion
+from symobs.formula import Exact, evaluate
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+    from symobs.formula import Environment, Exactly
+
+
+def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
+    """Tell whether a polynomial has a property exactly where some inequalities hold.
+
+    They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
+    """
+    environment = _with_signs(environment)
+    arithmetic, name = Exact(environment), fact.property.name
+    said: list[tuple[Scalar, str]] = []
+    for relation in fact.where:
+        values = [as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members]
+        for (left, right), operator in zip(pairwise(values), relation.operators, strict=True):
+            said.append((right - left if operator[0] == "<" else left - right, operator))
+    allowed = {">", "<", "!="} if name == "stable" else {">=", "<="}
+    if not {operator for _, operator in said} <= allowed:
+        return False
+    positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
+    if is_criterion(name, polynomial, positive, environment, discrete):
+        return True
+    if name != "stable" or not said:
+        return False
+    from symobs.derivation.region_check import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.stability.criteria.stability_conditions import is_stable_where  # noqa: PLC0415 - the same
+
+    region = region_of(polynomial, environment, discrete=discrete)
+    where = tuple((value, "!=" if operator == "!=" else ">") for value, operator in said)
+    if region is not None and holds_exactly(region, where):
+        return True
+    return is_stable_where(polynomial, environment.variable, positive, environment.signs, discrete=discrete)
+
+
+def _with_signs(environment: Environment) -> Environment:
+    """Return the environment with what is known to be above 0 as a sign, where it is a symbol or minus one."""
+    signs = dict(environment.signs)
+    for value in environment.above:
+        for sign, symbol in (("positive", value), ("negative", -value)):
+            if str(symbol) in symbol.names:
+                signs[str(symbol)] = sign
+    return replace(environment, signs=signs)

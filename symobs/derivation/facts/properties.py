@@ -1,0 +1,132 @@
+"""Properties that no equation states: stable, strictly proper, never zero (trusted)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.certificate.claims import as_scalar
+from symobs.conditions import never_zero, sign_of
+from symobs.errors import WrongKind
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, remainder
+from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
+from symobs.stability.criteria.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from symobs.exact import Root
+    from symobs.formula import Environment
+
+
+def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial, and what is one where the relations hold, and of another rational function the denominator."""
+    found = _divided(value, environment)
+    return found[0] if found is not None and found[1].is_zero else value.denominator
+
+
+def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:
+    """Return quotient and remainder of numerator and denominator where the relations hold; None if that is not known."""
+    variable = environment.variable
+    if value.is_polynomial_in(variable):
+        return value, Scalar.of(0)
+    if not environment.relations:
+        return value, Scalar.of(1)  # in lowest terms a fraction stays one
+    try:
+        ideal = Ideal.of(environment.relations)
+        if value.denominator.coefficients(variable)[0].numerator in ideal:
+            return None
+        quotient, rest = remainder(value.numerator, value.denominator, variable)
+        return ideal.simplified(quotient), ideal.simplified(rest)
+    except TooLarge:
+        return None
+
+
+def _divides(value: Scalar, environment: Environment) -> bool | None:
+    """Tell whether a rational function is a polynomial, None if that is not known."""
+    found = _divided(value, environment)
+    return None if found is None else found[1].is_zero
+
+
+def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
+    polynomial = polynomial_of(value, environment)
+    return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
+
+
+def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
+    return value.degree(environment.variable), value.denominator.degree(environment.variable)
+
+
+def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environment) -> bool:
+    """Tell whether these are the roots of a monic polynomial where the relations hold."""
+    product = polynomial_of_roots(environment.variable, values)
+    if product is None or product == polynomial:
+        return product is not None
+    try:
+        ideal = Ideal.of(environment.relations)
+        divides_by_zero = any(part.denominator in ideal for part in (product, polynomial))
+        return not divides_by_zero and (product - polynomial).numerator in ideal
+    except TooLarge:
+        return False
+
+
+def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
+    """Return what a property is asked of: a scalar, all entries of a matrix, or what holds the poles of all.
+
+    Raises TypeError for a matrix without poles: a constant matrix would be stable whatever its eigenvalues.
+    """
+    if not isinstance(value, Matrix) or value.shape == (1, 1):
+        return (as_scalar(value),)
+    if name == "strictly_proper":
+        return value.entries
+    denominator = value.common_denominator()
+    if name not in {"stable", "unstable"} or denominator.degree(variable) < 1:
+        message = f"{name} is no property of this matrix"
+        raise WrongKind(message)
+    return (denominator,)
+
+
+def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
+    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
+    variable, signs = environment.variable, environment.signs
+    if name == "marginal":
+        return marginal_where(polynomial, variable, signs, discrete=discrete)
+    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
+def is_criterion(
+    name: str,
+    polynomial: Scalar,
+    said: Sequence[Scalar],
+    environment: Environment,
+    discrete: bool,  # noqa: FBT001
+) -> bool:
+    """Tell whether what is said is what the criterion asks for, each up to a factor positive by the declared signs."""
+    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
+    if not said:
+        return False
+    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
+    return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
+
+
+#: What each property asks of a scalar, of the environment, and of discrete time.
+PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
+    "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
+    "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
+    "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
+    "polynomial": lambda value, environment, _: _divides(value, environment) is True,
+    "not_polynomial": lambda value, environment, _: _divides(value, environment) is False,
+    "no_stable_compensator": lambda value, environment, discrete: (
+        not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
+    "marginal": lambda value, environment, discrete: is_marginal(
+        value,
+        environment.variable,
+        environment.signs,
+        discrete=discrete,
+        apart=(*environment.assumed, *environment.domain),
+    ),
+    "beyond": lambda value, environment, discrete: is_beyond(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
+}

@@ -1,0 +1,239 @@
+"""The observer-based compensator  x̂' = (A − BK − LC + LDK) x̂ + L y,  u = −K x̂,  in transfer form U = −F(s) Y."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Self
+
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import Claim
+from symobs.derivation.builder import Page, relation
+from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
+from symobs.design.full_order.observer import ObserverDesign
+from symobs.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.design.gain.gain_design import letters_of
+from symobs.errors import CertificateRejected, InputError, together
+from symobs.exact import Matrix, Scalar, controller, modulo, transfer
+from symobs.formula import Environment
+from symobs.formula.term import identity, letter
+from symobs.result import Result, choose, method, task
+from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText, desired_polynomial
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
+    from symobs.system import StateSpace
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CompensatorDesign(OutputFeedback):
+    """Both gains and F: det(sI − A + BK) = φ_c, det(sI − A + LC) = φ_o, F(s) = K (sI − A + BK + LC − LDK)⁻¹ L."""
+
+    estimator: ObserverDesign
+
+    @classmethod
+    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
+        """Return the compensator for these polynomials."""
+        feedback = StateFeedbackDesign.of(plant, control, "ackermann")
+        estimator = ObserverDesign.of(plant, observer, "ackermann")
+        return cls.of(feedback, estimator, name)
+
+    @classmethod
+    def of(cls, feedback: StateFeedbackDesign, estimator: ObserverDesign, method_name: str) -> Self:
+        """Return the compensator of two designs for one plant."""
+        plant = feedback.plant
+        K, L = feedback.answer["K"], estimator.answer["L"]
+        F: Scalar | Matrix | None = None
+        if K is not None and L is not None and plant.inputs == plant.outputs == 1:
+            numerator, denominator = own_transfer(feedback, estimator)
+            F = plant.simplified(numerator / denominator)
+        elif K is not None and L is not None:
+            F = realised(plant, K, L).function(plant.variable)
+        return cls(plant, method_name, {"K": K, "L": L, "F": F}, feedback, estimator)
+
+    def _environment(self) -> Environment:
+        values = letters_of(self.plant) | {name: self.answer[name] for name in ("K", "L", "F")}
+        values["D"] = self.plant.matrices.D
+        return Environment(variable=self.plant.variable, values=values)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield: K and L are the certified gains of the two designs; F is K times the resolvent times L."""
+        if self.exists != (self.feedback.answer["K"] is not None and self.estimator.answer["L"] is not None):
+            message = "there is a compensator exactly where there are both gains"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        e = self._environment()
+        yield from self.certified(e)
+        if self.exists:
+            A, B, C, D, K, L, F = (letter(name, e) for name in "ABCDKLF")
+            moved = letter("s", e) @ identity(self.plant.order, e) - A + B @ K + L @ C
+            if self.plant.matrices.has_feedthrough:
+                moved = moved - L @ D @ K
+            yield Claim(relation(F, K @ moved.inverse @ L), e)
+
+    @property
+    def coupling(self) -> Matrix:
+        """K."""
+        K: Matrix = self.answer["K"]
+        return K
+
+    @cached_property
+    def realisation(self) -> Realisation:
+        """A − BK − LC + LDK, L, K, 0."""
+        return realised(self.plant, self.answer["K"], self.answer["L"])
+
+    @cached_property
+    def own_transfer(self) -> tuple[Scalar, Scalar]:
+        """The compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
+        return own_transfer(self.feedback, self.estimator)
+
+    @cached_property
+    def error_coordinates(self) -> Matrix:
+        """[A − BK, BK; 0, A − LC] in (x, e)."""
+        m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
+        zero = Matrix.zeros(self.plant.order, self.plant.order)
+        return Matrix.block([[m.A - m.B @ K, m.B @ K], [zero, m.A - L @ m.C]])
+
+    @cached_property
+    def estimate_coordinates(self) -> Matrix:
+        """[A, −BK; LC, A − BK − LC] in (x, x̂)."""
+        m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
+        return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
+
+    def write(self, page: Page) -> None:
+        """Write the page."""
+        from symobs.design.compensator.compensator_page import write_compensator  # noqa: PLC0415 - the page stands on this type
+
+        write_compensator(page, self)
+
+
+def realised(plant: StateSpace, K: Matrix, L: Matrix) -> Realisation:
+    """Return F in state space: A − BK − LC + LDK, L, K, 0."""
+    m = plant.matrices
+    matrix = m.A - m.B @ K - L @ m.C
+    whole = matrix + L @ (m.D @ K) if m.has_feedthrough else matrix
+    return Realisation(whole.normal(), L, K, Matrix.zeros(plant.inputs, plant.outputs))
+
+
+def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tuple[Scalar, Scalar]:
+    """Return the compensator's numerator and det(sI − A + BK + LC − LDK), nothing cancelled between them."""
+    m, K, L = feedback.plant.matrices, feedback.answer["K"], estimator.answer["L"]
+    if feedback.plant.equations:  # the gains place the poles on the stratum only
+        own = modulo(realised(feedback.plant, K, L).A, feedback.plant.ideal)
+        return transfer(own, L, K, Scalar.of(0), feedback.plant.variable)
+    closed = feedback.answer["polynomial"] * estimator.answer["polynomial"]
+    return controller(m.A, m.B, m.C, m.D[0, 0], K, L, closed, feedback.plant.variable)
+
+
+@method("compensator/separation", source="S0, section 4.3: separation principle, (4.23)-(4.29)")
+def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
+    """Design K as if x were known, design the observer of order n, use x̂ for x."""
+    return CompensatorDesign.designed(plant, control, observer, "separation")
+
+
+@method("compensator/duality", source="S1, pole placement for observer and state feedback side by side (before 14:53)")
+def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
+    """Place the eigenvalues of Aᵀ − CᵀLᵀ and of A − BK side by side, transpose; then use x̂ for x."""
+    if not plant.inputs == plant.outputs == 1:
+        message = f"the method duality needs one input and one output, the plant has {plant.inputs} and {plant.outputs}"
+        raise InputError(message, where="specification.method", repair="leave the method out, or write separation")
+    return CompensatorDesign.designed(plant, control, observer, "duality")
+
+
+@method("compensator/minimal_order", source="S0, section 4.6: compensator with a minimal-order observer")
+def minimal_order(
+    plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
+) -> MinimalOrderCompensator:
+    """Design K as if x were known, estimate only what the outputs do not show, use x̂ for x."""
+    from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator  # noqa: PLC0415 - paid for where used
+
+    return MinimalOrderCompensator.designed(plant, control, observer, "minimal_order")
+
+
+#: The method of each kind of observer.
+_METHODS = {"full": "separation", "minimal": "minimal_order"}
+
+
+@task
+def compensator(
+    plant: StateSpace,
+    *,
+    control_poles: Poles = None,
+    control_polynomial: PolynomialText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    observer: Name = "full",
+    method: Name = "auto",
+) -> Result:
+    """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p.
+
+    full      F(s) = K (sI − A + BK + LC − LDK)⁻¹ L, strictly proper
+    minimal   F(s) = W [K₂ (sI − F + G W K₂)⁻¹ (H − G W N) + N],  N = K₁ + K₂ L,  W = (I − N D)⁻¹,  [K₁ K₂] = K T⁻¹, for
+              ż = F z + G u + H y; proper, its direct term W N
+
+    plant                                   n states, m inputs, p outputs, D allowed
+    control_poles or control_polynomial     the n poles of A − BK
+    observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of F
+    observer                                `full` or `minimal`
+    Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop ((I + PF)⁻¹ P, F in the return path),
+    closed_loop_matrix in (x, e) or (x, e₂) and closed_loop_matrix_estimate in (x, x̂) or (x, z).  Where I − N D is
+    singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
+    Source: S0, section 4.3, (4.23)-(4.29), and section 4.6.
+    """
+    control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
+    found = observer_based(
+        plant, task="compensator", control=control, estimate=estimate, observer=observer, method_name=method
+    )
+    return found.asked(method)
+
+
+def observer_based(
+    plant: StateSpace,
+    *,
+    task: str,
+    control: tuple[object, object],
+    estimate: tuple[object, object],
+    observer: str,
+    method_name: str = "auto",
+) -> OutputFeedback:
+    """Return the compensator for what a task was given as poles or polynomial of each loop."""
+    plant = plant.knowing(*control, *estimate)
+    plant.require("B", "C", task=task)
+
+    def wanted(loop: str, given: tuple[object, object], degree: int) -> DesiredPolynomial | None:
+        return desired_polynomial(plant, *given, names=(f"{loop}_poles", f"{loop}_polynomial"), degree=degree)
+
+    def of_observer() -> DesiredPolynomial | None:
+        try:
+            return wanted("observer", estimate, estimated) if observer in _METHODS else None
+        except InputError as error:
+            other, orders = "full" if minimal else "minimal", (plant.order, plant.order - plant.outputs)
+            if error.facts.get("given") == orders[not minimal]:
+                error.repair += f', or write observer = "{other}"'
+            raise
+
+    minimal = "minimal" in (observer, method_name.removesuffix("_order"))
+    estimated = plant.order - (plant.outputs if minimal else 0)
+    _, chosen, control_wish, observer_wish = together(
+        lambda: _require_kind(observer, plant, method_name),
+        lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
+        lambda: wanted("control", control, plant.order),
+        of_observer,
+    )
+    found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
+    return found
+
+
+def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
+    """Raise `InputError` where there is no such kind of observer, another one was asked for, or it has nothing to do."""
+    if observer not in _METHODS:
+        message = f"{observer[:40]!r} is not a kind of observer"
+        raise InputError(message, where="specification.observer", repair='write "full" or "minimal"')
+    if observer == "minimal" and method_name in {"separation", "duality"}:
+        message = f"the method {method_name} has an observer of full order"
+        raise InputError(
+            message, where="specification.method", repair='leave the method out, or write observer = "full"'
+        )
+    if "minimal" in (observer, method_name.removesuffix("_order")) and plant.order == plant.outputs:
+        message = "the outputs show the whole state, nothing is left to estimate"
+        raise InputError(message, where="specification.observer", repair="use state_feedback with x = C⁻¹ (y − D u)")

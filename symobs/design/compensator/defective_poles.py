@@ -1,0 +1,69 @@
+"""A repeated control pole, which a matrix with fewer eigenvectors than places for it makes defective."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.factored_form import formula_of_factored
+from symobs.derivation.builder import Page, relation
+from symobs.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.design.gain.gain_page import FEEDBACK, closed_loop_matrix
+from symobs.exact import Factored, Scalar, rank, roots_of
+from symobs.formula import Roots
+from symobs.specification import DesiredPolynomial
+from symobs.stability.criteria.stability import monic
+
+if TYPE_CHECKING:
+    from symobs.design.compensator.output_feedback import OutputFeedback
+    from symobs.formula import Relation
+
+#: For this order the matrix itself says that it is not a multiple of I.
+_SHOWN = 2
+
+
+def caution_repeated(page: Page, design: OutputFeedback) -> None:
+    """Warn of a repeated control pole that is defective: its exponential alone does not bound x."""
+    plant = design.plant
+    desired = design.feedback.desired
+    if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
+        return
+    for factor, power in desired.grouped():
+        if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
+            pole = -factor.coefficients(plant.variable)[1]
+            closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
+            length = abs(pole.fraction())
+            shift = size if length == 1 else page.value(Scalar.of(length)) @ size
+            offset = closed + shift if pole.fraction() < 0 else closed - shift
+            found = rank(offset.value)
+            if plant.order - found >= power:
+                continue
+            held = relation(offset.apply("rank"), found)
+            single = page["phi_c"] / page.value(desired.polynomial / factor)
+            instead = _with_distinct_poles(page, desired)
+            page.caution(
+                "defective" if instead is None else "defective_instead",
+                held,
+                pole=Roots(single.formula, roots_of(factor, plant.variable)),
+                matrix=relation(offset, offset.shown) if plant.order == _SHOWN else held,
+                **({} if instead is None else {"instead": instead}),
+            )
+            return
+
+
+def _with_distinct_poles(page: Page, desired: DesiredPolynomial) -> Relation | None:
+    """Return det(sI − A + BK) = φ for the poles asked for, repeated ones moved further in, where a gain places them."""
+    plant, variable = page.plant, page.plant.variable
+    further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
+    factors: dict[Scalar, None] = {}
+    for factor in desired.factors:
+        moved = factor
+        while moved in factors:
+            moved = monic(moved.substitute({variable: further_in}), variable)
+        factors[moved] = None
+    distinct = DesiredPolynomial(variable, tuple(factors))
+    gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
+    if gain is None:
+        return None
+    pencil = page.s @ page.identity(plant.order) - page["A"] + page["B"] @ page.value(gain)
+    product = Factored(Scalar.of(1), tuple((factor, 1) for factor in factors))
+    return relation(pencil.apply("det"), page.term(formula_of_factored(product)))

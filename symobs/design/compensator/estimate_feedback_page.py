@@ -1,0 +1,42 @@
+"""What pages of laws that use the estimate begin with: both gains, and whether the law can be solved for the input."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.page_parts import given
+from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
+from symobs.design.compensator.minimal_order_compensator_page import write_control_law
+from symobs.design.full_order.observer import write_observer
+from symobs.design.gain.gain_page import FEEDBACK, OBSERVER, write_gain
+from symobs.design.gain.page_style import page_style
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.design.reduced_order.reduced_order_observer_page import write_observer_of_rest
+
+if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
+    from symobs.design.compensator.output_feedback import OutputFeedback
+
+
+def write_both_gains(page: Page, loop: OutputFeedback) -> None:
+    """Write the data, the feedback and the observer."""
+    plant = page.plant
+    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
+    with page.section("state_feedback"):
+        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+    if isinstance(loop.estimator, ReducedOrderObserver):
+        write_observer_of_rest(page, loop.estimator)
+        return
+    with page.section("observer"):
+        write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+        if loop.answer["L"] is not None:
+            write_observer(page)
+
+
+def is_ill_posed(page: Page, loop: OutputFeedback) -> bool:
+    """Write that both gains exist but the law cannot be solved for u, where that is so, and tell whether it is."""
+    if loop.exists or None in (loop.answer["K"], loop.answer["L"]) or not isinstance(loop, MinimalOrderCompensator):
+        return False
+    with page.section("compensator"):
+        write_control_law(page, loop, large=False)
+    return True

@@ -1,0 +1,69 @@
+"""The modes of a compensator's own state that cancel in F: F may be stable where the law by itself is not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.derivation.builder import predicate, relation
+from symobs.exact import Matrix, Scalar, pole_and_zero_polynomial, roots_of
+from symobs.formula import Exactly, Literal, Quotient, Roots
+from symobs.stability.criteria.stability import monic, stability
+from symobs.stability.inequalities.written_form import as_inequality
+
+if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
+    from symobs.design.compensator.output_feedback import OutputFeedback
+
+#: A polynomial of more terms is not decided.
+_TERMS = 400
+#: The most inputs, or outputs, from all of whose minors the poles of F are found.
+_MOST = 3
+
+
+def hidden_modes(loop: OutputFeedback) -> tuple[Scalar, Scalar] | None:
+    """Return the poles' polynomial of F, and that of the modes which F does not show; None where they are too long."""
+    F, variable = loop.answer["F"], loop.plant.variable
+    if isinstance(F, Matrix):
+        if F.size > _TERMS or max(F.shape) > _MOST:
+            return None
+        poles = pole_and_zero_polynomial(F, variable)[0]
+    else:
+        poles = F.denominator
+    if poles.size > _TERMS:
+        return None
+    own = loop.own_matrix.characteristic_polynomial(variable)
+    return poles, monic((own / poles).numerator, variable)
+
+
+def law_stability(loop: OutputFeedback) -> str:
+    """Return whether the compensator by itself is stable, with the modes that F does not show."""
+    found, plant = hidden_modes(loop), loop.plant
+    if found is None:
+        return "undecided"
+    hidden = stability(found[1], plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
+    if "no" in (hidden, loop.own_stability):
+        return "no"
+    return loop.own_stability if hidden == "yes" else hidden
+
+
+def caution_hidden(page: Page, loop: OutputFeedback) -> None:
+    """Warn where a mode that cancels in F is not stable, surely or for some parameters."""
+    plant, found = page.plant, hidden_modes(loop)
+    if found is None or found[1].degree(plant.variable) < 1:
+        return
+    poles, hidden = found
+    told = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if told.verdict == "yes":
+        return
+    own = (page.s @ page.identity(loop.own_matrix.shape[0]) - page["A_c"]).apply("det")
+    rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
+    if rest.value != hidden:
+        return
+    modes = Roots(rest.formula, roots_of(hidden, plant.variable))
+    time = "discrete" if plant.is_discrete else "continuous"
+    if told.verdict == "no":
+        page.caution(f"hides_{time}", predicate("unstable", rest), relation(rest, hidden), modes=modes)
+        return
+    solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+    where = Exactly(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
+    page.caution("some_hidden", relation(rest, hidden), modes=modes, where=where)

@@ -1,0 +1,376 @@
+"""What compensators with either observer have in common: the two designs they are made of, and the closed loop."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+from symobs._dataclass import dataclass
+from symobs.analysis.strata.strata import carried, strata
+from symobs.certificate.claims import Certificate, Claim, check
+from symobs.conditions import sign_of, vanishing_factors
+from symobs.derivation.builder import relation
+from symobs.design.gain.gain_design import letters_of
+from symobs.errors import CertificateRejected
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer, transfer_matrix
+from symobs.formula import Environment
+from symobs.formula.term import Term, identity, letter
+from symobs.result import Case, Result
+from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.conditions import Condition
+    from symobs.design.full_order.observer import ObserverDesign
+    from symobs.design.full_order.state_feedback import StateFeedbackDesign
+    from symobs.design.gain.gain_design import GainDesign
+    from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+    from symobs.specification import DesiredPolynomial
+    from symobs.system import StateSpace
+
+#: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
+_DECIDABLE_TERMS = 400
+#: What an answer has none of where there is no loop.
+_OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+
+
+class Realisation(NamedTuple):
+    """A system in state space."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+    def function(self, variable: str) -> Matrix:
+        """Return C (sI − A)⁻¹ B + D."""
+        numerators, characteristic = transfer_matrix(*self, variable)
+        return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
+
+
+def closed(plant: Realisation, returned: Realisation) -> Realisation:
+    """Return the plant with another system in the return path, negative feedback: u = v − (C₂ x₂ + D₂ y)."""
+    A, B, C, D = plant
+    through = (Matrix.identity(B.shape[1]) + returned.D @ D).inverse()
+    v, state, own = through, through @ returned.D @ C, through @ returned.C
+    output, fed = C - D @ state, D @ own
+    return Realisation(
+        Matrix.block([[A - B @ state, -(B @ own)], [returned.B @ output, returned.A - returned.B @ fed]]).normal(),
+        Matrix.block([[B @ v], [returned.B @ D @ v]]).normal(),
+        Matrix.block([[output, -fed]]).normal(),
+        (D @ v).normal(),
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputFeedback(Result):
+    """U = −F(s) Y from a state feedback and an observer, each with its own claims.
+
+    Where one of the two is impossible there is no F.
+    """
+
+    feedback: StateFeedbackDesign
+    estimator: ObserverDesign | ReducedOrderObserver
+
+    task: ClassVar[str] = "compensator"
+
+    # -- what a subclass says ----------------------------------------------------------------------------------------
+
+    @classmethod
+    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
+        """Return the compensator for these polynomials."""
+        raise NotImplementedError
+
+    @classmethod
+    def of(cls, feedback: StateFeedbackDesign, estimator: Any, method_name: str) -> Self:
+        """Return the compensator of two designs for one plant."""
+        raise NotImplementedError
+
+    @cached_property
+    def realisation(self) -> Realisation:
+        """F in state space."""
+        raise NotImplementedError
+
+    @property
+    def coupling(self) -> Matrix:
+        """What multiplies the estimation error in u: K, or K₂ with an observer of minimal order."""
+        raise NotImplementedError
+
+    @cached_property
+    def error_coordinates(self) -> Matrix:
+        """The loop in (x, e) or (x, e₂)."""
+        raise NotImplementedError
+
+    @cached_property
+    def estimate_coordinates(self) -> Matrix:
+        """The loop in (x, x̂) or (x, z)."""
+        raise NotImplementedError
+
+    @cached_property
+    def own_transfer(self) -> tuple[Scalar, Scalar]:
+        """F as numerator over denominator, normalised so that χ · denominator + n · numerator is φ_c φ_o for P = n/χ.
+
+        For one input and one output.
+        """
+        raise NotImplementedError
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the compensator with another gain, and with the F that follows from it."""
+        if name not in {"K", "L"}:
+            return super().with_answer(name, value)
+        feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
+        estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
+        return type(self).of(feedback, estimator, self.method).asked(self.page_method)
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a compensator."""
+        return self.answer["F"] is not None
+
+    def certified(self, environment: Environment) -> Iterator[Claim]:
+        """Yield that K and L are the certified gains of the two designs, which are for this plant."""
+        for design in (self.feedback, self.estimator):
+            if design.plant is not self.plant and letters_of(design.plant) != letters_of(self.plant):
+                message = f"{design.letter} is a gain for another plant"
+                raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            own, certified = self.answer[design.letter], design.answer[design.letter]
+            if own is not certified:
+                yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of both gains and of F."""
+        return (*self.feedback.certificates, *self.estimator.certificates, *self.certificates)
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def verdict(self) -> str:
+        """`no` where either gain does not exist; `undecided` where other gains may do what these do not."""
+        if not self.exists:
+            return "undecided" if self.other_gains_may_do else "no"
+        return super().verdict
+
+    @property
+    def other_gains_may_do(self) -> bool:
+        """Whether only the gains that were chosen, of many with the same poles, leave the law unsolved for u."""
+        return False
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of both gains."""
+        both = [*self.feedback.holds_where, *self.estimator.holds_where]
+        return tuple({c.expression: c for c in both}.values())
+
+    @cached_property
+    def gain_strata(self) -> tuple[Case, ...]:
+        """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
+        return carried(self.plant, (*self.feedback.case_tree, *self.estimator.case_tree), self.on)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, and those where an unstable F may lose poles."""
+        cancelled = strata(self.plant, self._cancelling, self.on) if self._may_lose_poles else ()
+        return tuple({frozenset(case.when): case for case in (*self.gain_strata, *cancelled)}.values())
+
+    @property
+    def _may_lose_poles(self) -> bool:
+        """Whether F is said to be unstable, and is so only where none of its poles cancels."""
+        return self.exists and self._own_stability == "no" and not self._is_unavoidably_unstable
+
+    @cached_property
+    def _cancelling(self) -> tuple[Scalar, ...]:
+        """What vanishes where poles of F cancel against its zeros; of a matrix that is not asked."""
+        F, variable = self.answer["F"], self.plant.variable
+        if not self.is_single or self.plant.equations or not F:
+            return ()
+        return vanishing_factors([resultant(F.numerator, F.denominator, variable)], self.plant.symbols.signs)
+
+    def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        """Return the compensator on a stratum."""
+        control, observer = self.feedback.desired, self.estimator.desired
+        assert control is not None and observer is not None  # noqa: S101, PT018 - cases belong to desired polynomials
+        return type(self).designed(plant, control.substitute(values), observer.substitute(values), self.method)
+
+    @property
+    def is_single(self) -> bool:
+        """Whether there are one input and one output."""
+        return self.plant.inputs == self.plant.outputs == 1
+
+    @property
+    def own_matrix(self) -> Matrix:
+        """The matrix of the compensator's own state."""
+        return self.realisation.A
+
+    @cached_property
+    def plant_transfer(self) -> tuple[Scalar, Scalar]:
+        """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled; single only."""
+        m = self.plant.matrices
+        return transfer(m.A, m.B, m.C, m.D[0, 0], self.plant.variable)
+
+    @cached_property
+    def plant_function(self) -> Scalar | Matrix:
+        """P(s)."""
+        if self.is_single:
+            numerator, characteristic = self.plant_transfer
+            return numerator / characteristic
+        m = self.plant.matrices
+        return Realisation(m.A, m.B, m.C, m.D).function(self.plant.variable)
+
+    @cached_property
+    def loop(self) -> Factored | tuple[tuple[Factored, ...], ...]:
+        """(I + PF)⁻¹ P: the plant with F in the return path, checked against its definition."""
+        return self.single_loop if self.is_single else self.loop_of_several
+
+    @cached_property
+    def loop_of_several(self) -> tuple[tuple[Factored, ...], ...]:
+        """The entries of (I + PF)⁻¹ P, from the loop in state space."""
+        m, variable = self.plant.matrices, self.plant.variable
+        whole = closed(Realisation(m.A, m.B, m.C, m.D), self.realisation).function(variable)
+        values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
+        e = Environment(variable=variable, values=values)
+        P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.under(self.plant.relations)))
+        return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
+
+    @cached_property
+    def single_loop(self) -> Factored:
+        """P/(1 + PF)."""
+        numerator, characteristic = self.plant_transfer
+        P, F = numerator / characteristic, self.answer["F"]
+        _, own = self.own_transfer
+        polynomial = self.loop_polynomial
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
+        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
+        e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
+        P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
+        return form
+
+    @cached_property
+    def unity_loop(self) -> Factored:
+        """PF/(1 + PF): from the reference to y with F before the plant and unity feedback; one input, one output."""
+        numerator, _ = self.plant_transfer
+        own, _ = self.own_transfer
+        polynomial, variable = self.loop_polynomial, self.plant.variable
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
+        e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
+        P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
+        return _cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
+
+    @cached_property
+    def loop_polynomial(self) -> Factored:
+        """φ_c φ_o, with the factors that were asked for."""
+        factors: dict[Scalar, int] = {}
+        for design in (self.feedback, self.estimator):
+            for factor, power in _factors_of(design):
+                factors[factor] = factors.get(factor, 0) + power
+        return Factored(Scalar.of(1), tuple(factors.items()))
+
+    @property
+    def own_stability(self) -> str:
+        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`.
+
+        An unstable pole may cancel: where that is no case of its own, nothing is said.
+        """
+        F, found = self.answer["F"], self._own_stability
+        untold = self.plant.equations or (not self.is_single and F.names != {self.plant.variable})
+        return "undecided" if untold and self._may_lose_poles else found
+
+    @cached_property
+    def _own_stability(self) -> str:
+        """Whether F in general is stable."""
+        plant, F = self.plant, self.answer["F"]
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        if self._is_unavoidably_unstable:
+            return "no"
+        denominator = F.common_denominator()
+        if F.size <= _DECIDABLE_TERMS:
+            verdict = stability(denominator, variable, signs, discrete=discrete).verdict
+            if verdict != "conditional":
+                return verdict
+        met = stable_somewhere(denominator, variable, signs, discrete=discrete)
+        return "conditional" if len(met) == 2 else "undecided"
+
+    @cached_property
+    def law_stability(self) -> str:
+        """Whether the compensator by itself is stable, with the modes that F does not show."""
+        from symobs.design.compensator.hidden_modes import law_stability  # noqa: PLC0415 - gains in a loop of many are not asked
+
+        return law_stability(self)
+
+    @cached_property
+    def _is_unavoidably_unstable(self) -> bool:
+        """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
+        plant = self.plant
+        signs = plant.symbols.signs
+        if plant.is_discrete or not self.is_single:
+            return False
+        wanted = (c for factor, _ in self.loop_polynomial.factors for c in factor.coefficients(plant.variable))
+        numerator, characteristic = self.plant_transfer
+        return all(sign_of(c, signs) == "positive" for c in wanted) and no_stable_compensator(
+            numerator / characteristic, plant.variable, signs
+        )
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract."""
+        answers = {name: self.answer[name] for name in ("K", "L", "F")}
+        if not self.exists:
+            fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
+            return answers | dict.fromkeys(_OF_A_LOOP) | fixed
+        return {
+            **answers,
+            "F_stable": self.own_stability,
+            "compensator_stable": self.law_stability,
+            "compensator_matrix": self.own_matrix,
+            "closed_loop_polynomial": self.loop_polynomial,
+            "closed_loop": self.loop,
+            "closed_loop_unity": self.unity_loop if self.is_single else None,
+            "closed_loop_matrix": self.error_coordinates,
+            "closed_loop_matrix_estimate": self.estimate_coordinates,
+            "family": self.families,
+        }
+
+    @property
+    def families(self) -> Mapping[str, Any] | None:
+        """The general gains where they are not unique."""
+        found = {d.letter: d.gain_family for d in (self.feedback, self.estimator) if d.gain_family is not None}
+        return found or None
+
+
+def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar, int], ...]:
+    if design.desired is not None:
+        return design.desired.grouped()
+    return factored(design.answer["polynomial"], design.plant.variable).factors
+
+
+def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
+    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    unit, above = numerator.factors()
+    sign = _sign(own)
+    below = tuple((factor, -power) for factor, power in polynomial.factors)
+    return Factored(unit * sign, (*above, (own * sign, 1), *below))
+
+
+def _sign(polynomial: Scalar) -> int:
+    """Return the sign that a polynomial is printed with, as a factor."""
+    return -1 if polynomial.factors()[0].fraction() < 0 else 1
+
+
+def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
+    """Return the same, with the parameters that `own` divides by cancelled against those in front of the numerator."""
+    form = _over(numerator, own, polynomial)
+    if own.denominator.is_constant:
+        return form
+    unit, above = numerator.factors()
+    whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
+    number, below = whole.denominator.factors()
+    rest = ((factor, power) for factor, power in above if variable in factor.names)
+    sign = _sign(whole.numerator)
+    parts = (*rest, (whole.numerator * sign, 1), *((factor, -power) for factor, power in below))
+    return Factored(unit * sign / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))

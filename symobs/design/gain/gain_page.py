@@ -1,0 +1,364 @@
+"""The pages of gain design: canonical form (S0, Example 4.1) and Ackermann's formula, on either side of duality."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.analysis.factored_form import factored_form, formula_of_factored
+from symobs.analysis.page_parts import (
+    HIDDEN,
+    determinant_form,
+    hidden,
+    hidden_polynomial,
+    say_stability,
+    stratum_of,
+    undecided,
+)
+from symobs.analysis.rank.rank_page import square_test
+from symobs.derivation import Case as CaseStep
+from symobs.derivation.builder import Page, predicate, relation
+from symobs.design.gain.gain_design import GainDesign
+from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
+from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
+from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
+from symobs.design.page_parts.pole_cautions import caution_poles
+from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
+from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
+from symobs.exact.kernel.generators import all_roots
+from symobs.formula import Literal, Roots, Shown
+from symobs.formula.term import Term, block
+from symobs.result import choose
+from symobs.specification import DesiredPolynomial
+
+if TYPE_CHECKING:
+    from symobs.result import Case
+
+#: A coefficient of φ with more terms than this gets a letter of its own on the page.
+_PLAIN_TERMS = 4
+#: The degree of the factor of a conjugate pair.
+_PAIR = 2
+
+
+@dataclass(frozen=True)
+class Side:
+    """The words and letters of one side: observers look at (C, A), state feedback at (A, B)."""
+
+    kind: str
+    gain: str
+    matrix: str
+    test: str
+    index: str
+    coefficient: str
+
+    @property
+    def hidden(self) -> tuple[str, str]:
+        """The letters of the hidden subspace: a page may speak of both sides."""
+        return HIDDEN[self.test]
+
+    @property
+    def phi(self) -> str:
+        """The letter of the polynomial asked for."""
+        return f"phi_{self.index}"
+
+
+OBSERVER = Side("observer", "L", "O", "observability", "o", "beta_")
+FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")
+
+
+def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
+    """Write how the gain is found, in the style of a method, and the check the reader is shown."""
+    if design.desired is None:
+        _given_gain(page, design, side)
+        return
+    _test(page, design, side, style)
+    if design.answer[side.gain] is None:
+        _impossible(page, design, side)
+        if not design.zero or not design.divides:
+            for case in design.case_tree:
+                write_case(page, case, side)
+        return
+    if not design.fixed_polynomial.is_one:
+        _with_fixed_modes(page, design, side)
+    else:
+        desired = name_coefficients(page, design, side)
+        (choose(design.task, style, style).page or _write_gain_alone)(page, design, side, desired)
+    page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
+    page.in_decimals(side.gain)
+    _verified(page, design, side)
+    for case in design.case_tree:
+        write_case(page, case, side)
+
+
+def _write_gain_alone(page: Page, design: GainDesign, side: Side, _: DesiredPolynomial) -> None:
+    """State the gain of a method without a page of its own; the check below is what shows it."""
+    page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+
+
+def write_reduction(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write the row-reduced echelon method where its matrices can be read, else Ackermann's formula."""
+    (write_row_reduction if readable(design) else write_ackermann)(page, design, side, desired)
+
+
+def write_ackermann(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
+    is_of_family = design.chart is not None or all_roots(design.answer[side.gain])
+    (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
+
+
+def write_member(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
+    if all_roots(design.answer[side.gain]):
+        page.with_roots(design.answer[side.gain])
+        page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
+    else:
+        write_sylvester(page, design, side, desired)
+
+
+def closed_loop_matrix(page: Page, side: Side) -> Term:
+    """Return A − LC or A − BK."""
+    return page["A"] - (page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"])
+
+
+def error_determinant(page: Page, side: Side) -> Term:
+    """Return det(sI − A + LC) or det(sI − A + BK)."""
+    moved = page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"]
+    return (page.s @ page.identity(page.plant.order) - page["A"] + moved).apply("det")
+
+
+def define_test_matrix(page: Page, side: Side) -> None:
+    """Define 𝒪 or 𝒞 block by block."""
+    A, order = page["A"], page.plant.order
+    if side.gain == "L":
+        blocks = [[page["C"] @ A**k if k else page["C"]] for k in range(order)]
+    else:
+        blocks = [[A**k @ page["B"] if k else page["B"] for k in range(order)]]
+    page.define(side.matrix, block(blocks), say=f"{side.test}_matrix")
+
+
+def _is_canonical(page: Page) -> bool:
+    """Whether (A, B) is in controllable canonical form."""
+    m, order = page.plant.matrices, page.plant.order
+    chi = m.A.characteristic_polynomial(page.plant.variable)
+    return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
+
+
+def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
+    if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
+        _say_canonical(page)
+        return
+    if not page.knows(side.matrix):
+        define_test_matrix(page, side)
+        square_test(page, side.matrix, design.test, side.test)
+    elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
+        return
+    if design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
+        page.conclude(f"assignable_{side.kind}")
+
+
+def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPolynomial:
+    """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
+    desired = design.desired
+    assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
+    variable, coefficients = desired.variable, desired.coefficients
+    grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
+    plain = page.value(desired.polynomial)
+    members = [plain] if desired.is_expanded else [grouped, plain]
+    if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
+        if not desired.poles and desired.is_expanded and page.knows(side.phi):
+            return desired
+        page.define(side.phi, *members, say=f"asks_{side.kind}")
+        return desired
+    taken = {*taken_names(page), *desired.polynomial.field.names}
+    names = fresh_names(side.coefficient, len(coefficients), taken)
+    symbols = [Scalar.symbol(name) for name in names]
+    named = from_coefficients([Scalar.of(1), *symbols], variable)
+    for name, meaning in zip(names, coefficients, strict=True):
+        page.name_coefficient(name, meaning)
+    page.define(side.phi, grouped, page.value(named), say=f"asks_{side.kind}")
+    page.equal(*(relation(s, m) for s, m in zip(symbols, coefficients, strict=True)), say="coefficients")
+    return DesiredPolynomial(variable, (named,))
+
+
+def _say_canonical(page: Page) -> None:
+    """Say that (A, B) is in controllable canonical form already."""
+    order, variable = page.plant.order, page.plant.variable
+    chi = page.plant.matrices.A.characteristic_polynomial(variable)
+    page.remark(
+        "already_canonical",
+        relation(page["A"], companion(chi.coefficients(variable)[1:])),
+        relation(page["B"], Matrix.unit(order, order - 1)),
+        chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
+    )
+
+
+def name_entries(page: Page, gain: str) -> None:
+    """Give the entries of a gain letters of their own, in which the page goes on."""
+    value = page[gain].value
+    names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
+    letters = [page.name_coefficient(name, entry) for name, entry in zip(names, value.entries, strict=True)]
+    columns = value.shape[1]
+    named = Matrix.of([letters[k : k + columns] for k in range(0, len(letters), columns)])
+    page.equal(relation(page[gain], named), say="named_entries")
+    page.set(gain, named)
+
+
+def write_canonical(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+    """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
+    plant, order = page.plant, page.plant.order
+    variable = plant.variable
+    wanted = [page.value(c) for c in reversed(desired.coefficients)]
+    if side.gain == "K" and _is_canonical(page):
+        found = plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
+        page.define("K", _difference(page, wanted, list(found)), answer=True)
+        return
+    A = page["A"].T if side.gain == "L" else page["A"]
+    matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
+    chi = plant.matrices.A.characteristic_polynomial(variable)
+    found = chi.coefficients(variable)[1:]
+    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
+    hankel = page.value(hankel_of(found))
+    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
+    page.equal(
+        relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
+    )
+    row = _difference(page, wanted, list(found))
+    if side.gain == "L":
+        page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")
+    else:
+        page.define("K", row @ V.inverse, row.shown @ V.inverse.shown, say="row_state_feedback", answer=True)
+
+
+def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
+    entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
+    return block([entries])
+
+
+def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
+    """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
+    variable = page.plant.variable
+    polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
+    assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
+    page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
+    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    roots = Roots(fixed.formula, roots_of(polynomial, variable))
+    divides = predicate("polynomial", page[side.phi] / fixed)
+    page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), divides, roots=roots)
+    if design.chart is not None:
+        write_hidden_family(page, design, side)
+        return
+    gain = page.define(side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}", answer=True)
+    free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
+    general = gain + (free if side is OBSERVER else free.T)
+    page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
+
+
+def _impossible(page: Page, design: GainDesign, side: Side) -> None:
+    """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
+    if design.zero and design.divides:
+        write_no_gain(page, design, side, lambda: error_determinant(page, side))
+        return
+    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    page.conclude(
+        f"impossible_{side.kind}",
+        *hidden(page, side is OBSERVER, side.hidden),
+        predicate("not_polynomial", page[side.phi] / fixed),
+        fixed=Shown(fixed.formula, Literal(design.fixed_polynomial)),
+        polynomial=Shown(page[side.phi].formula, Literal(page[side.phi].value)),
+    )
+
+
+def _fixed(page: Page, side: Side, kernel: Matrix, restricted: Matrix) -> Term:
+    """Introduce N and X, and return the polynomial of the modes that no gain moves."""
+    for name, value in zip(side.hidden, (kernel, restricted), strict=True):
+        page.set(name, value)
+    return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
+
+
+def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
+    """A gain is given: find its polynomial and say whether it is stable."""
+    gain = page.set(side.gain, design.answer[side.gain])
+    page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
+    closed = closed_loop_matrix(page, side)
+    page.equal(relation(closed, closed.shown), say="closed_matrix")
+    polynomial = design.answer["polynomial"]
+    shown = factored_form(page, polynomial)
+    members = [error_determinant(page, side), page.value(polynomial)]
+    if len(polynomial.factors()[1]) > 1:
+        members.append(shown)
+    page.equal(relation(*members), say="its_polynomial", answer=True)
+    say_stability(page, error_determinant(page, side))
+
+
+def _verified(page: Page, design: GainDesign, side: Side) -> None:
+    desired = design.desired
+    assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
+    polynomial = page[side.phi].value
+    grouped = desired.grouped()
+    members = [error_determinant(page, side), page.value(polynomial)]
+    if not desired.is_expanded and polynomial == desired.polynomial:
+        members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
+    say_as_required(page, desired, *members)
+    caution_poles(page, desired, side.phi, side.kind)
+    if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
+        say_stability(page, error_determinant(page, side))
+
+
+def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
+    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves.
+
+    A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
+    """
+    pairs = any(factor.degree(desired.variable) == _PAIR for factor in desired.factors)
+    if not pairs or not desired.poles or not desired.is_numeric or members[0].value != members[1].value:
+        page.verified("as_required", check=relation(*members))
+        return
+    roots = Roots(members[0].formula, tuple(root_of_pole(pole, desired.variable) for pole in desired.poles))
+    page.verified("roots_as_required", check=relation(*members), roots=roots)
+
+
+def write_case(page: Page, case: Case, side: Side) -> None:
+    """Say what is true on a stratum."""
+    if not isinstance(case.result, GainDesign):
+        page.steps.append(undecided(page, case))
+        return
+    result = case.result
+    if result._pair.is_observable and result.answer[side.gain] is not None:  # noqa: SLF001 - the witness of the stratum
+        page.steps.append(another_gain(page, case, side, lambda: error_determinant(page, side), "case_another_gain"))
+        return
+    outer, environment = page.steps, page.environment
+    page.steps = []
+    try:
+        _on_stratum(page, case, result, side)
+    finally:
+        inside, steps = page.environment, page.steps
+        page.steps, page.environment = outer, environment
+    anew = [name for name in side.hidden if page.knows(name) and inside.values[name] != environment.values[name]]
+    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
+
+
+def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
+    """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
+    own, gain = design_gain_on(case, page, side), result.answer[side.gain]
+    fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
+    modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
+    wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
+    kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
+    key = "case_no" if gain is None else kept if own else "case_other"
+    page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
+    if gain is None:
+        return
+    if not own:
+        page.define(side.gain, gain)
+    page.conclude_silently(relation(error_determinant(page, side), page[side.phi]))
+
+
+def design_gain_on(case: Case, page: Page, side: Side) -> bool:
+    """Whether there is a gain in the main line that is still finite on the stratum."""
+    if not page.knows(side.gain):
+        return False
+    try:
+        moved = page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
+    except ZeroDivisionError:
+        return False
+    return case.result is not None and case.result.plant.admits(moved)

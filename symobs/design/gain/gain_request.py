@@ -1,0 +1,54 @@
+"""What the tasks of both gains have in common: reading what is asked for, and the choice of the method."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.errors import InputError
+from symobs.result import choose
+from symobs.specification import desired_polynomial, read_entries, read_gain, reject_both
+
+if TYPE_CHECKING:
+    from symobs.design.gain.gain_design import GainDesign
+    from symobs.result import Result
+    from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
+    from symobs.system import StateSpace
+
+#: The members of the family of gains that can be asked for by name.
+MEMBERS = ("simple", "decoupled")
+
+
+def designed(
+    kind: type[GainDesign],
+    plant: StateSpace,
+    *,
+    poles: Poles,
+    polynomial: PolynomialText,
+    given: GainText,
+    zero: Entries,
+    member: Name,
+    method: Name,
+) -> Result:
+    """Return the design of a kind: with a given gain, with zeros, the member of the family asked for, or by a method."""
+    if member not in MEMBERS:
+        message = f"{member[:40]!r} is no member of the family that has a name"
+        raise InputError(message, where="specification.member", repair=f"write one of {', '.join(MEMBERS)}")
+    gain, is_observer = kind.letter, kind.letter == "L"
+    plant = plant.knowing(poles, polynomial, given)
+    plant.require("C" if is_observer else "B", task=kind.task)
+    reject_both(gain, given, poles, polynomial)
+    reject_both(gain, given, zero, None, other="zero")
+    reject_both(gain, given, None if member == "simple" else member, None, other="member")
+    several = plant.outputs if is_observer else plant.inputs
+    shape = (plant.order, several) if is_observer else (several, plant.order)
+    if given is not None:
+        return kind.of_given(plant, read_gain(given, plant, gain, shape))
+    desired = desired_polynomial(plant, poles, polynomial)
+    assert desired is not None  # noqa: S101 - required
+    chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
+    if member != "simple":
+        reject_both("member", member, zero, None, other="zero")
+        return kind.of(plant, desired, chosen.name, decoupled=True).asked(method)
+    if zero is not None:
+        return kind.of(plant, desired, chosen.name, read_entries(zero, "zero", shape)).asked(method)
+    return chosen.solve(plant, desired).asked(method)

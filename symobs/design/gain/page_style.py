@@ -1,0 +1,22 @@
+"""TODO symobs/design/gain/page_style.py."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from symobs.system import StateSpace
+
+
+def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
+    """Return whose page is written: canonical form for small plants unless a method was asked for."""
+    if method_name != "auto":
+        return method_name
+    if several:
+        return "sylvester"
+    readable = _CANONICAL_PAGES if not plant.field.names else _PARAMETRIC_CANONICAL_PAGES
+    return "canonical_form" if plant.order <= readable else "ackermann"
+
+
+#: Up to these orders the matrices of the canonical form are easier to read than Ackermann's formula.
+_CANONICAL_PAGES, _PARAMETRIC_CANONICAL_PAGES = 4, 2

@@ -1,0 +1,45 @@
+"""What an expert would warn of beside poles that were asked for: an error that grows, or stays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.derivation.builder import predicate
+from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
+
+if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
+    from symobs.exact import Scalar
+    from symobs.specification import DesiredPolynomial
+
+
+def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> None:
+    """Warn where the polynomial asked for, which the letter `phi` means, is surely not stable; of: observer or control."""
+    plant, signs = page.plant, page.plant.symbols.signs
+    polynomial, discrete = desired.polynomial, page.plant.is_discrete
+    if page[phi].value != polynomial or stability(polynomial, plant.variable, signs, discrete=discrete).verdict != "no":
+        return
+    time, subject = "discrete" if discrete else "continuous", page[phi]
+    facts = [predicate("unstable", subject)]
+    if is_beyond(polynomial, plant.variable, signs, discrete=discrete):
+        facts.append(predicate("beyond", subject))
+        key = "grows"
+    elif is_marginal(polynomial, plant.variable, signs, discrete=discrete):
+        facts.append(predicate("marginal", subject))
+        key = "stays"
+        moved = page.s - page.value(1) if discrete else page.s
+        rest = subject / moved
+        if of == "state_feedback" and _is_stable(rest.scalar, page):
+            facts.append(predicate("stable", rest))
+            key = "drifts"
+    else:
+        key = "lasts"
+    page.caution(f"{key}_{of}_{time}", *facts)
+
+
+def _is_stable(rest: Scalar, page: Page) -> bool:
+    """Tell whether what is left of a polynomial is one and surely stable."""
+    plant = page.plant
+    if not rest.is_polynomial_in(plant.variable):
+        return False
+    return stability(rest, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "yes"

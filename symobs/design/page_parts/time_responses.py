@@ -1,0 +1,138 @@
+"""Courses over time on pages: how the estimate converges, where the plant has numbers and a picture can show it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, lcm, log
+from operator import mul
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix
+from symobs.figures.plot import Course, TimeResponse
+from symobs.formula import Letter
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.derivation.builder import Page
+    from symobs.figures.plot import Interval
+    from symobs.formula.term import Term
+
+#: Modes that differ in speed by more cannot be seen in one picture; with more courses none can be told from another.
+_SPREAD, _COURSES = 15.0, 6
+#: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
+_TIMES = 6.0
+#: In discrete time: the radius below which all modes are dead at once, and how many instants are drawn.
+_DEAD, _FEWEST, _SAMPLES = 1e-9, 5, 30
+_STEPS, _PARTS = 400, 10**6
+_ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
+
+
+def plot_error(page: Page, name: str, matrix: Term) -> None:
+    """The estimation error from the start x = (1, …, 1), x̂ = 0, for ė = matrix e."""
+    size = matrix.value.shape[0]
+    _plot(page, (name,), matrix, [(name, Matrix.identity(size), False)], "plot_error")
+
+
+def plot_estimate(page: Page, error: str, matrix: Term, unseen: Matrix) -> None:
+    """State and estimate of the closed loop from that start: x̂ = x − (unseen) · error."""
+    order = page.plant.order
+    state = Matrix.block([[Matrix.identity(order), Matrix.zeros(order, unseen.shape[1])]])
+    estimate = Matrix.block([[Matrix.identity(order), -unseen]])
+    _plot(page, ("x", error), matrix, [("x", state, False), ("x_hat", estimate, True)], "plot_estimate")
+
+
+def _plot(
+    page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
+) -> None:
+    """Plot, unless the page has parameters or a picture would show nothing."""
+    value = matrix.value
+    courses = sum(table.shape[0] for _, table, _ in signals)
+    if value.names or page.plant.relations or courses > _COURSES:
+        return
+    if page.plant.is_discrete:
+        _plot_samples(page, states, matrix, signals, say)
+        return
+    from symobs.exact.time_functions.state_response import rates, response  # noqa: PLC0415 - only pages with courses pay for it
+
+    slowest, fastest = rates(value)
+    if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
+        return
+    end = _rounded(_TIMES / -slowest)
+    try:
+        states_there = response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
+    except ArithmeticError:
+        return
+    made = tuple(
+        Course(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
+        for name, table, dashed in signals
+        for index, row in enumerate(_rows(table), 1)
+    )
+    page.plot(TimeResponse(states, _starts(page, states), made, _window(end, made, _PARTS), _PARTS), matrix, say=say)
+
+
+def _plot_samples(
+    page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
+) -> None:
+    """Plot the exact values at 0, 1, 2, …, until they are small, unless that takes too many."""
+    from symobs.exact.time_functions.state_response import radius  # noqa: PLC0415 - only pages with courses pay for it
+
+    largest, size = radius(matrix.value), matrix.value.shape[0]
+    last = size + 1 if largest < _DEAD else ceil(_TIMES / -log(largest)) if largest < 1 else _SAMPLES + 1
+    if last > _SAMPLES:
+        return
+    table, state = _rows(matrix.value), (Fraction(1),) * size
+    states_there = []
+    for _ in range(max(last, _FEWEST) + 1):
+        states_there.append(state)
+        state = tuple(sum(map(mul, row, state), Fraction(0)) for row in table)
+    found = [
+        (
+            name,
+            index if part.shape[0] > 1 else 0,
+            row,
+            [sum(map(mul, row, s), Fraction(0)) for s in states_there],
+            dashed,
+        )
+        for name, part, dashed in signals
+        for index, row in enumerate(_rows(part), 1)
+    ]
+    parts = lcm(*(height.denominator for _, _, _, heights, _ in found for height in heights))
+    made = tuple(
+        Course(name, index, row, tuple(int(height * parts) for height in heights), dashed)
+        for name, index, row, heights, dashed in found
+    )
+    window = _window(Fraction(len(states_there) - 1), made, parts)
+    page.plot(TimeResponse(states, _starts(page, states), made, window, parts, discrete=True), matrix, say=say)
+
+
+def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], ...]:
+    return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
+
+
+def _window(end: Fraction, courses: Sequence[Course], parts: int) -> tuple[Interval, Interval]:
+    """Return a window with a little room above and below."""
+    low, high = min(min(course.heights) for course in courses), max(max(course.heights) for course in courses)
+    edge = Fraction(high - low, 20)
+    return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
+
+
+def _rows(table: Matrix) -> list[tuple[Fraction, ...]]:
+    return [tuple(entry.fraction() for entry in row) for row in table.rows]
+
+
+def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
+    """Return row · state, in whole parts."""
+    common = lcm(*(part.denominator for part in row))
+    whole = [int(part * common) for part in row]
+    return tuple(sum(map(mul, whole, state)) // common for state in states)
+
+
+def _rounded(value: float) -> Fraction:
+    """Return a round number that is not smaller."""
+    power = Fraction(1)
+    while power * 10 <= value:
+        power *= 10
+    while power > value:
+        power /= 10
+    return next((factor * power for factor in _ROUND if factor * power >= value), 10 * power)

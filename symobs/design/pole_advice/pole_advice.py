@@ -1,0 +1,392 @@
+"""Where to put the poles of an observer: at the plant's stable zeros, the rest far left on a Butterworth circle."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import Claim
+from symobs.conditions import Condition, sign_of
+from symobs.derivation.builder import Page, relation
+from symobs.design.pole_advice.pole_candidates import (
+    Zeros,
+    as_number,
+    needed_of,
+    normalised,
+    numerator_of,
+    overshoot_of,
+    pair_poles,
+    pair_ratio,
+    poles_of,
+)
+from symobs.design.pole_advice.pole_warnings import warnings_of
+from symobs.design.pole_placement.single_output import Pair
+from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of
+from symobs.exact.kernel.generators import NotWritten, function, identities
+from symobs.exact.time_functions.butterworth import butterworth
+from symobs.formula import Environment, Literal
+from symobs.formula.term import Term, identity, letter
+from symobs.result import Case, Result, choose, method, task
+from symobs.specification import read_quantity
+from symobs.stability.criteria.stability import stability
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.design.pole_advice.pole_warnings import Beware
+    from symobs.specification import Name, Quantity
+    from symobs.system import StateSpace
+
+#: The poles besides a dominant pair begin at this many times its distance from the imaginary axis.
+FURTHER_LEFT = 5
+#: A pair for less overshoot is real in practice, for more it hardly decays.
+OVERSHOOTS = Fraction(1, 10**6), Fraction(99, 100)
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A radius, or a settling time and an overshoot."""
+
+    radius: Scalar | None = None
+    settling_time: Scalar | None = None
+    overshoot: Scalar | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PoleAdvice(Result):
+    """φ = φ_z φ_r: φ_z has the plant's stable zeros, φ_r the remaining N poles.
+
+    With a radius ω₀ φ_r(s) φ_r(−s) = ω₀^{2N} + (−1)^N s^{2N}; with a settling time T and an overshoot M φ_r begins with a
+    pair −σ ± iω, σ = 4/T, exp(−πσ/ω) ≤ M.
+    """
+
+    wish: Wish
+    #: Factors of the numerator whose roots are places for poles under conditions: here these hold.
+    taken: tuple[Scalar, ...] = ()
+
+    task: ClassVar[str] = "pole_advice"
+
+    @classmethod
+    def of(cls, plant: StateSpace, wish: Wish, method_name: str, taken: tuple[Scalar, ...] = ()) -> Self:
+        """Return the advice; raises `InputError` where a circle's poles have no square roots."""
+        sigma = None if wish.settling_time is None else 4 / wish.settling_time
+        zeros = Zeros.of(numerator_of(plant), plant, sigma, taken)
+        count = plant.order - zeros.polynomial.degree(plant.variable)
+        omega_d = None
+        if wish.radius is not None:
+            rest = on_circle(count, wish.radius, plant.variable)
+        else:
+            assert sigma is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+            omega_d = sigma * pair_ratio(wish.overshoot) if count > 1 else None
+            rest = dominated(count, sigma, omega_d, plant.variable)
+        one = Scalar.of(1)
+        answer: dict[str, Any] = {"zeros": zeros.polynomial, "sigma": sigma, "omega_d": omega_d}
+        answer["rest"] = Factored(one, tuple((factor, 1) for factor in rest))
+        together = dict(zeros.used)
+        for factor in rest:
+            together[factor] = together.get(factor, 0) + 1
+        answer["polynomial"] = Factored(one, tuple(together.items()))
+        return cls(plant, method_name, answer, wish, taken)
+
+    @cached_property
+    def zeros(self) -> Zeros:
+        """The plant's zeros: those that are used, and why the others are not."""
+        return Zeros.of(self.numerator, self.plant, self.answer["sigma"], self.taken)
+
+    @cached_property
+    def numerator(self) -> Scalar:
+        """C adj(sI − A) B + D det(sI − A), nothing cancelled."""
+        return numerator_of(self.plant)
+
+    @property
+    def passed(self) -> Scalar | None:
+        """The last of the factors that are taken for stable."""
+        return self.taken[-1] if self.taken else None
+
+    @property
+    def count(self) -> int:
+        """The number N of poles that are not at zeros."""
+        zeros: Scalar = self.answer["zeros"]
+        return self.plant.order - zeros.degree(self.plant.variable)
+
+    # -- claims ------------------------------------------------------------------------------------------------------
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that φ_z divides the numerator and is stable, what φ_r is, that φ is their product, and fixed modes."""
+        variable, m, answer = self.plant.variable, self.plant.matrices, self.answer
+        rest, zeros = answer["rest"].value, answer["zeros"]
+        self._hold_to_the_left(rest)
+        values = {**{name: getattr(m, name) for name in "ABCD"}, "phi_z": zeros, "phi_r": rest}
+        values["phi_o"] = answer["polynomial"].value
+        e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
+        e = e.under(identities([zeros, rest])[1])
+        z, r, s = (letter(name, e) for name in ("phi_z", "phi_r", "s"))
+        yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
+        yield Claim(relation(letter("phi_o", e), z @ r), e)
+        if not self.count:
+            yield Claim(relation(r, 1), e)
+        elif self.wish.radius is not None:
+            yield Claim(relation(r @ (-s).apply("phi_r_at"), self.circle), e, "phi_r(s) phi_r(-s) is Butterworth's")
+        else:
+            yield from self._claims_of_pair(e)
+        yield from self._claims_of_fixed_modes()
+
+    @property
+    def circle(self) -> Scalar:
+        """ω₀^{2N} + (−1)^N s^{2N}."""
+        radius, count = self.wish.radius, self.count
+        assert radius is not None  # noqa: S101 - asked only where there is one
+        power = Scalar.symbol(self.plant.variable) ** (2 * count)
+        return radius ** (2 * count) + (power if count % 2 == 0 else -power)
+
+    def _hold_to_the_left(self, rest: Scalar) -> None:
+        """Reject poles in the right half-plane: of zeros, and of φ_r in units of the radius."""
+        signs, variable = self.plant.symbols.signs, self.plant.variable
+        factors = [factor for factor, _ in self.answer["rest"].factors]
+        if self.wish.radius is not None:
+            factors = [normalised(factor, self.wish.radius, variable) for factor in factors]
+        used = [factor for factor, _ in self.zeros.used]
+        held = [f for f in (*used, *factors) if f not in self.taken]
+        stable = all(stability(f, variable, signs, discrete=False).verdict == "yes" for f in held)
+        stable = stable and all(needed_of(f, signs, self.answer["sigma"], variable) for f in self.taken)
+        whole = rest.degree(variable) == self.count and rest.coefficients(variable)[0].is_one
+        if not stable or not whole or self.answer["zeros"] != self.zeros.polynomial:
+            message = "the poles advised are the stable zeros and as many more in the left half-plane as are missing"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+
+    def _claims_of_pair(self, e: Environment) -> Iterator[Claim]:
+        """Yield σT = 4, e^{−σT} ≤ 1/50, exp(−πσ/ω) ≤ M, and φ_r as the pair and what lies further left."""
+        sigma, omega_d, wish = self.answer["sigma"], self.answer["omega_d"], self.wish
+        assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018
+        product = sigma * wish.settling_time
+        yield Claim(relation(product, 4), e, "sigma*T = 4")
+        yield Claim(relation(function("exp", -product), "<=", Scalar.of(Fraction(1, 50))), e)
+        if (omega_d is None) != (self.count < 2):
+            message = "two poles and more begin with a pair"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if omega_d is not None:
+            yield Claim(relation(overshoot_of(omega_d / sigma), "<=", wish.overshoot), e)
+        expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
+        yield Claim(relation(letter("phi_r", e), expected), e, "phi_r = (pair)(further left)")
+
+    def _claims_of_fixed_modes(self) -> Iterator[Claim]:
+        """Where unobservable modes are not among the poles: that they are unobservable."""
+        if self.missed.is_one:
+            return
+        pair, variable = self.pair, self.plant.variable
+        m, N, X = self.plant.matrices, self.pair.kernel, self.pair.restricted
+        size = N.shape[1]
+        e = Environment(variable=variable, values={"A": m.A, "C": m.C, "N": N, "X": X})
+        A, C, N_, X_ = (letter(name, e) for name in ("A", "C", "N", "X"))
+        yield Claim(relation(C @ N_, Matrix.zeros(1, size)), e, "C*N = 0")
+        yield Claim(relation(A @ N_, N_ @ X_), e)
+        yield Claim(relation(N_.apply("rank"), size), e)
+        pencil = letter("s", e) @ identity(size, e) - X_
+        yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def pair(self) -> Pair:
+        """(A, C)."""
+        m = self.plant.matrices
+        return Pair(m.A, m.C, self.plant.variable, self.plant.equations)
+
+    @cached_property
+    def missed(self) -> Scalar:
+        """The polynomial of the unobservable modes where it does not divide φ, else 1."""
+        if self.pair.is_observable or self.pair.divided(self.answer["polynomial"].value)[1].is_zero:
+            return Scalar.of(1)
+        return self.pair.fixed_polynomial
+
+    @property
+    def verdict(self) -> str:
+        """`no` where unobservable modes are not among the poles: no gain moves them there."""
+        if not self.missed.is_one:
+            return "no"
+        return "conditional" if self.case_tree else super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the plant and the zeros, that the radius is positive, and that zeros and modes are all there."""
+        signs, radius = self.plant.symbols.signs, self.wish.radius
+        own = [*super().holds_where]
+        if radius is not None and self.count and sign_of(radius, signs) != "positive":
+            own.append(Condition("claim", radius.numerator * radius.denominator, ">"))
+        for factor in self.taken:
+            needed = needed_of(factor, signs, self.answer["sigma"], self.plant.variable)
+            own += [Condition("claim", value, ">") for value in needed]
+        listed = {condition.expression for condition in own}
+        return (*own, *(c for c in self._existence if c.expression not in listed))
+
+    @cached_property
+    def _existence(self) -> tuple[Condition, ...]:
+        """The conditions for as many zeros as in general, and for a plant all of whose modes are seen and moved."""
+        if not self.plant.field.names:
+            return ()
+        from symobs.design.pole_advice.pole_advice_cases import existence_of  # noqa: PLC0415 - only plants with parameters pay for it
+
+        return existence_of(self.plant, self.numerator)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The advice where zeros are stable that need not be, and where zeros or modes are lost."""
+        if not self.plant.field.names:
+            return ()
+        from symobs.design.pole_advice.pole_advice_cases import cases_of  # noqa: PLC0415 - only plants with parameters pay for it
+
+        return cases_of(self)
+
+    @cached_property
+    def places(self) -> tuple[Complex | Root, ...]:
+        """All n poles, with multiplicity: the zeros first."""
+        radius, sigma = self.wish.radius, self.answer["sigma"]
+        if radius is not None:
+            return (*self.places_used, *poles_of(self.count, radius))
+        pair = pair_poles(self.count, sigma, self.answer["omega_d"])
+        return (*self.places_used, *pair, *(Complex.of(-place) for place in further_left(self.count, sigma)))
+
+    @cached_property
+    def places_used(self) -> tuple[Complex | Root, ...]:
+        """The zeros at which poles are put, with multiplicity."""
+        return tuple(
+            as_number(root)
+            for factor, power in self.zeros.used
+            for _ in range(power)
+            for root in roots_of(factor, self.plant.variable)
+        )
+
+    @cached_property
+    def cautions(self) -> tuple[Beware, ...]:
+        """What an expert would warn of."""
+        return warnings_of(self.plant, self.zeros, self.answer["polynomial"], self.pair, self.missed)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract; σ and ω of the pair where there is one."""
+        found = {"poles": list(self.places), "polynomial": self.answer["polynomial"]}
+        found |= {"zeros_used": list(self.places_used), "warnings": [str(warning) for warning in self.cautions]}
+        if self.wish.radius is None:
+            found |= {"sigma": self.answer["sigma"], "omega_d": self.answer["omega_d"]}
+        return found
+
+    def write(self, page: Page) -> None:
+        """Write the page."""
+        from symobs.design.pole_advice.pole_advice_page import write_pole_advice  # noqa: PLC0415 - the page stands on this type
+
+        write_pole_advice(page, self)
+
+
+def numerator_term(e: Environment, plant: StateSpace) -> Term:
+    """Return C adj(sI − A) B + D det(sI − A) as a formula."""
+    pencil = letter("s", e) @ identity(plant.order, e) - letter("A", e)
+    found = letter("C", e) @ pencil.apply("adj") @ letter("B", e)
+    return found + letter("D", e) @ pencil.apply("det") if plant.matrices.has_feedthrough else found
+
+
+def on_circle(count: int, radius: Scalar, variable: str) -> tuple[Scalar, ...]:
+    """Return Butterworth's factors; raises `InputError` where square roots do not write them."""
+    try:
+        return butterworth(count, radius, variable)
+    except NotWritten:
+        message = f"the {count} poles on a circle are not written with square roots"
+        repair = "give settling_time and overshoot instead of radius, or name the poles yourself"
+        raise InputError(message, where="specification.radius", repair=repair) from None
+
+
+def further_left(count: int, sigma: Scalar) -> tuple[Scalar, ...]:
+    """Return 5σ, 6σ, …: how far left the poles besides a pair are."""
+    return tuple(sigma * (FURTHER_LEFT + k) for k in range(count - 2))
+
+
+def dominated(count: int, sigma: Scalar, omega_d: Scalar | None, variable: str) -> tuple[Scalar, ...]:
+    """Return (s + σ)² + ω² and factors further left; s + σ where one pole is left."""
+    s = Scalar.symbol(variable)
+    if omega_d is None:
+        return (s + sigma,) if count else ()
+    return ((s + sigma) ** 2 + omega_d**2, *(s + place for place in further_left(count, sigma)))
+
+
+@method("pole_advice/butterworth", source="S3, section F")
+def on_a_circle(plant: StateSpace, wish: Wish) -> PoleAdvice:
+    """Stable zeros, then a Butterworth circle of the radius given."""
+    if wish.radius is None:
+        raise InputError("butterworth needs a radius", where="specification.radius", repair='give radius = "omega_0"')
+    return PoleAdvice.of(plant, wish, "butterworth")
+
+
+@method("pole_advice/dominant_pair", source="second-order step response, 2 % settling time 4/σ")
+def with_a_pair(plant: StateSpace, wish: Wish) -> PoleAdvice:
+    """Stable zeros that are fast enough, a pair for settling time and overshoot, the others further left."""
+    if wish.settling_time is None:
+        message, repair = (
+            "dominant_pair needs settling_time and overshoot",
+            'give settling_time = 2, overshoot = "0.05"',
+        )
+        raise InputError(message, where="specification.settling_time", repair=repair)
+    return PoleAdvice.of(plant, wish, "dominant_pair")
+
+
+@task
+def pole_advice(
+    plant: StateSpace,
+    *,
+    radius: Quantity = None,
+    settling_time: Quantity = None,
+    overshoot: Quantity = None,
+    method: Name = "auto",
+) -> Result:
+    """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair.
+
+    plant                         n states, one input, one output, continuous time
+    radius                        ω₀ > 0, a symbol or a number: φ_r(s) φ_r(−s) = ω₀^{2N} + (−1)^N s^{2N}, N poles remaining
+    settling_time and overshoot   numbers T > 0 and 0 < M < 1 instead of a radius: −σ ± iω with σ = 4/T (2 %) and
+                                  exp(−πσ/ω) ≤ M, zeros only where Re s < −σ, other poles at −5σ, −6σ, …
+    Returns poles (with multiplicity), polynomial (factored), zeros_used, warnings.  The verdict is `no` where modes that
+    no observer moves are not among the poles.  Raises `InputError` in discrete time, for several inputs or outputs, and
+    where N poles on a circle are not written with square roots (N = 7, 9, 11, …).
+    Source: S3, section F; W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532-533.
+    """
+    plant.require("B", "C", task="pole_advice")
+    if (plant.inputs, plant.outputs) != (1, 1):
+        message = f"the plant has {plant.inputs} inputs and {plant.outputs} outputs"
+        raise InputError(message, where="plant", repair="keep one input and one output")
+    if plant.is_discrete:
+        message = "a Butterworth circle and a settling time 4/σ are of continuous time"
+        raise InputError(
+            message, where="plant.dt", repair="leave dt out, or take observer with all poles at 0 (deadbeat)"
+        )
+    wish = _wish(plant, radius, settling_time, overshoot)
+    plant = plant.knowing(radius)
+    found: Result = choose("pole_advice", method, "dominant_pair" if wish.radius is None else "butterworth").solve(
+        plant, wish
+    )
+    return found.asked(method)
+
+
+def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: object) -> Wish:
+    """Return what is asked for: a radius, or both others; raises `InputError` for anything else."""
+    where = "specification.radius"
+    if radius is not None:
+        if settling_time is not None or overshoot is not None:
+            raise InputError(
+                "a radius is given beside settling_time or overshoot", where=where, repair="keep one of them"
+            )
+        return Wish(read_quantity(radius, plant, "radius"))
+    if settling_time is None or overshoot is None:
+        message = "radius is missing" if settling_time is overshoot else "settling_time and overshoot belong together"
+        repair = 'give radius = "omega_0", or settling_time = 2 and overshoot = "0.05"'
+        raise InputError(message, where=where if settling_time is overshoot else "specification", repair=repair)
+    found = [read_quantity(v, plant, n) for n, v in (("settling_time", settling_time), ("overshoot", overshoot))]
+    for name, value in zip(("settling_time", "overshoot"), found, strict=True):
+        if not value.is_constant:
+            message = f"{name} is {value}, not a number"
+            raise InputError(message, where=f"specification.{name}", repair="give a number, or a radius as a symbol")
+    least, most = OVERSHOOTS
+    if not least <= found[1].fraction() <= most:
+        message = f"the overshoot is {found[1]}, which is not between {least} and {most}"
+        raise InputError(message, where="specification.overshoot", repair='write 5 % as "0.05"')
+    return Wish(None, found[0], found[1])

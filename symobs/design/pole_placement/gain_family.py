@@ -1,0 +1,113 @@
+"""The family of all gains for several outputs (inputs) as a result carries it: its parameters, and what proves it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import Claim
+from symobs.derivation.builder import relation
+from symobs.design.pole_placement.sylvester import charts_of
+from symobs.exact import Matrix, Scalar
+from symobs.formula import Environment, Literal
+from symobs.formula.term import Term, letter
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+    from symobs.design.pole_placement.sylvester import Sylvester
+    from symobs.specification import DesiredPolynomial
+
+#: What the family leaves out.
+SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det X = 0"
+
+
+@dataclass(frozen=True)
+class Family:
+    """L = S (L₀ + (G X⁻¹)ᵀ) + N H: the seen part by Sylvester's equation, anything along the kernel N of 𝒪."""
+
+    pair: SeveralOutputs
+    equation: Sylvester
+    names: tuple[str, ...]
+    member: Matrix
+
+    @staticmethod
+    def of(pair: SeveralOutputs, desired: DesiredPolynomial, names: tuple[str, ...], member: Matrix) -> Family:
+        """Return the family in the first chart that contains the member; in the first one where none does."""
+        factors = pair.remaining(desired)
+        assert factors is not None  # noqa: S101 - a member exists
+        A, C, _ = pair.seen
+        own = names[: A.shape[0] * (C.shape[0] - 1)]
+        charts = charts_of(A, C, factors, pair.variable, own)
+        part = pair.part_of(member)
+        inside = (chart for chart in charts if A.shape[0] and chart.free_entries(part) is not None)
+        return Family(pair, next(inside, charts[0]), names, member)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is seen, so that every gain serves."""
+        return not self.pair.seen[0].shape[0]
+
+    @cached_property
+    def own_G(self) -> Matrix | None:
+        """The G of the member, None where it lies in no chart."""
+        return None if self.is_empty else self.equation.free_entries(self.pair.part_of(self.member))
+
+    @cached_property
+    def H(self) -> Matrix:
+        """What a gain does along the kernel."""
+        outputs, hidden = self.pair.c.shape[0], self.pair.kernel.shape[1]
+        free = iter([Scalar.symbol(name) for name in self.names[len(self.equation.names) :]])
+        return Matrix.of([[next(free) for _ in range(outputs)] for _ in range(hidden)], outputs)
+
+    @cached_property
+    def general(self) -> Matrix | None:
+        """The gain with its parameters; None where it is too long to be written out."""
+        if self.equation.is_long:
+            return None
+        own = (self.pair.seen[2] @ self.equation.gain(self.equation.G)).normal() if not self.is_empty else None
+        rest = self.pair.kernel @ self.H if self.pair.kernel.shape[1] else None
+        parts = [part for part in (own, rest) if part is not None]
+        return sum(parts[1:], start=parts[0]).normal()
+
+    @cached_property
+    def X(self) -> Matrix:
+        """The solution of Sylvester's equation, with its parameters."""
+        return self.equation.solution(self.equation.G)
+
+    def fields(self, name: str, oriented: Callable[[Matrix], Matrix]) -> dict[str, Any]:
+        """Return what is told of the family: contract fields, then what they come from."""
+        general = None if self.general is None else oriented(self.general)
+        found: dict[str, Any] = {"parameters": self.names, name: general, "dimension": len(self.names)}
+        if self.is_empty:
+            return found
+        shift = self.equation.shift
+        told = {"F": self.equation.F, "G": self.equation.G, "X": self.X, "scope": SCOPE}
+        return found | told | {"shift": None if shift is None else oriented(shift)}
+
+    def claims(self, oriented: Callable[[Matrix], Matrix], told: Mapping[str, Any] | None) -> Iterator[Claim]:
+        """Yield (A − L₀C)ᵀX − XF = CᵀG and (L − L₀)ᵀX = G for the seen part: L determines G, so no parameter is idle.
+
+        w G = e₁ᵀ, and e₁ᵀ, e₁ᵀF, … are the rows of I: with both equations r = w Lᵀ has [r; rM; …] X = I, M = (A − LC)ᵀ.
+        """
+        if self.is_empty or told is None:
+            return
+        A, C, _ = self.pair.seen
+        values = {"A": A, "C": C, "F": told["F"], "G": told["G"], "X": told["X"]}
+        if told["shift"] is not None:
+            values |= {"A": A - oriented(told["shift"]) @ C}
+        if self.general is not None:
+            part = self.pair.part_of(self.general)
+            values["L"] = part if told["shift"] is None else part - oriented(told["shift"])
+        e = Environment(variable=self.pair.variable, values=values)
+        A_, C_, F, G, X = (letter(name, e) for name in ("A", "C", "F", "G", "X"))
+        yield Claim(relation(A_.T @ X - X @ F, C_.T @ G), e, "A.T*X - X*F = C.T*G")
+        if self.general is not None:
+            yield Claim(relation(letter("L", e).T @ X, G), e, "L.T*X = G")
+        weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
+        yield Claim(relation(Term(Literal(weights), e) @ G, first), e, "w*G = [1, 0, ..., 0]")
+        yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")
+        rows = len(told["parameters"]) - self.H.shape[0] * self.H.shape[1]
+        yield Claim(relation(rows, A.shape[0] * (C.shape[0] - 1)), e, "G has n*(p - 1) parameters")

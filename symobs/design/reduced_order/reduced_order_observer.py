@@ -1,0 +1,342 @@
+"""The reduced-order observer  ż = F z + G u + H y,  x̂ = M [y − D u; z]: what the outputs show is not estimated again.
+
+In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  With P = R − L C the estimate of P x is z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+from symobs._dataclass import dataclass
+from symobs.analysis.strata.strata import carried, equations_of, strata
+from symobs.certificate.claims import Certificate, Claim
+from symobs.conditions import Condition
+from symobs.derivation.builder import Page, relation
+from symobs.design.full_order.observer import ObserverDesign
+from symobs.design.gain.gain_cases import chosen
+from symobs.design.gain.gain_design import letters_of
+from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, unit_rows
+from symobs.exact.kernel.generators import NotWritten
+from symobs.formula import Environment
+from symobs.formula.term import block, identity, letter
+from symobs.result import Case, Result, choose, method, task
+from symobs.specification import (
+    DesiredPolynomial,
+    MatrixText,
+    Name,
+    Poles,
+    PolynomialText,
+    desired_polynomial,
+    read_gain,
+)
+from symobs.system import StateSpace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+
+class Partition(NamedTuple):
+    """The plant in the coordinates x̄ = T x, the measured states first."""
+
+    T: Matrix
+    A11: Matrix
+    A12: Matrix
+    A21: Matrix
+    A22: Matrix
+    B1: Matrix | None
+    B2: Matrix | None
+
+
+def partition(plant: StateSpace, T: Matrix) -> Partition:
+    """Return T A T⁻¹ and T B in blocks; raises ZeroDivisionError where T is singular."""
+    m, measured = plant.matrices, plant.outputs
+    first, second = range(measured), range(measured, plant.order)
+    A = (T @ m.A @ T.inverse()).normal()
+    B = (T @ m.B).normal() if m.has_input else None
+    A11, A12, A21, A22 = (A.select(rows, columns) for rows in (first, second) for columns in (first, second))
+    B1, B2 = (
+        (None, None) if B is None else (B.select(first, range(plant.inputs)), B.select(second, range(plant.inputs)))
+    )
+    return Partition(T, A11, A12, A21, A22, B1, B2)
+
+
+def completed(C: Matrix) -> Matrix:
+    """Return T = [C; R], R the unit rows of the columns without a pivot; constant pivots are preferred.
+
+    Raises `InputError` where the rows of C depend on each other.
+    """
+    pivots = _pivots(C)
+    if len(pivots) < C.shape[0]:
+        message = "the rows of C depend on each other: one output is a combination of the others"
+        raise InputError(message, where="plant.C", repair="leave that output out")
+    others = tuple(j for j in range(C.shape[1]) if j not in pivots)
+    return Matrix.block([[C], [unit_rows(C.shape[1], others)]]) if others else C
+
+
+def _pivots(C: Matrix) -> list[int]:
+    """Return the pivot columns of C, row by row: the first with a constant entry, else the first with an entry."""
+    rows = [list(row) for row in C.rows]
+    found: list[int] = []
+    for index, row in enumerate(rows):
+        candidates = [j for j, entry in enumerate(row) if not entry.is_zero]
+        if not candidates:
+            continue
+        pivot = next((j for j in candidates if row[j].is_constant), candidates[0])
+        found.append(pivot)
+        for other in rows[index + 1 :]:
+            factor = other[pivot] / row[pivot]
+            other[:] = [a - factor * b for a, b in zip(other, row, strict=True)]
+    return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ReducedOrderObserver(Result):
+    """An observer of order n − p: P A − F P = H C, G = P B − H D, M [C; P] = I, det(sI − F) = φ(s), P = R − L C.
+
+    `inner` is the gain L for the pair (A₁₂, A₂₂), with its own claims.
+    """
+
+    desired: DesiredPolynomial
+    inner: ObserverDesign
+
+    task: ClassVar[str] = "reduced_order_observer"
+    letter: ClassVar[str] = "L"
+
+    @classmethod
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, T: Matrix, method_name: str) -> Self:
+        """Return the observer in the coordinates T, or the negative result."""
+        inner = ObserverDesign.of(_unmeasured(plant, partition(plant, T)), desired, "ackermann")
+        return cls.assembled(plant, inner, desired, T, method_name)
+
+    @classmethod
+    def assembled(
+        cls, plant: StateSpace, inner: ObserverDesign, desired: DesiredPolynomial, T: Matrix, method_name: str
+    ) -> Self:
+        """Return the observer with a gain for (A₁₂, A₂₂)."""
+        parts = partition(plant, T)
+        m = plant.matrices
+        answer: dict[str, Any] = dict.fromkeys("LTFGHM") | {"T": T}
+        L = inner.answer["L"]
+        if L is not None:
+            F = (parts.A22 - L @ parts.A12).normal()
+            H = (F @ L + parts.A21 - L @ parts.A11).normal()
+            G = None
+            if parts.B1 is not None and parts.B2 is not None:
+                G = parts.B2 - L @ parts.B1
+                G = (G - H @ m.D if m.has_feedthrough else G).normal()
+            known, rest = Matrix.identity(plant.outputs), Matrix.identity(L.shape[0])
+            lift = Matrix.block([[known, Matrix.zeros(plant.outputs, L.shape[0])], [L, rest]])
+            answer |= {"L": L, "F": F, "G": G, "H": H, "M": (T.inverse() @ lift).normal()}
+        return cls(plant, method_name, answer, desired, inner)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the observer with another L, and with the F, G, H and M that follow from it."""
+        if name != "L":
+            return super().with_answer(name, value)
+        inner = self.inner.with_answer("L", value)
+        return (
+            type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method).asked(self.page_method)
+        )
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """It is one."""
+        return True
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that z follows P x, that [C; P] is undone by M, and where the poles are."""
+        plant, answer = self.plant, self.answer
+        rows, columns = range(plant.outputs), range(plant.order)
+        values = letters_of(plant) | {name: value for name, value in answer.items() if value is not None}
+        T: Matrix = answer["T"]
+        values |= {"phi": self.desired.polynomial, "R": T.select(range(plant.outputs, plant.order), columns)}
+        e = Environment(variable=plant.variable, values=values)
+        parts, inner = partition(plant, T), self.inner
+        yield Claim(relation(T.select(rows, columns), letter("C", e)), e, "the upper rows of T are C")
+        yield Claim(relation(parts.A22, inner.plant.matrices.A), e, "the inner gain is one for A22")
+        yield Claim(relation(parts.A12, inner.plant.matrices.C), e, "the inner gain is one for A12")
+        yield Claim(relation(letter("phi", e), inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        if (answer["L"] is None) != (inner.answer["L"] is None):
+            message = "there is a reduced-order observer exactly where the pair (A12, A22) has a gain"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if answer["L"] is None:
+            return
+        if (answer["G"] is None) == plant.matrices.has_input:
+            message = "G belongs to a plant with an input, and to no other"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        A, C, L, F, H, M, R = (letter(name, e) for name in ("A", "C", "L", "F", "H", "M", "R"))
+        P = R - L @ C
+        yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
+        if answer["G"] is not None:
+            driven = P @ letter("B", e)
+            if plant.matrices.has_feedthrough:
+                driven = driven - H @ letter("D", e)
+            yield Claim(relation(letter("G", e), driven), e, "G = P*B - H*D")
+        yield Claim(relation(M @ block([[C], [P]]), identity(plant.order, e)), e, "M*[C; P] = I")
+        order = plant.order - plant.outputs
+        pencil = letter("s", e) @ identity(order, e) - F
+        yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the inner gain and of the observer."""
+        return (*self.inner.certificates, *self.certificates)
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The estimate of x₂; the observer's state where the estimate is made of it."""
+        names = ["x_2_hat"]
+        if self.page_method == "undetermined":
+            names.append("w_o" if self.plant.is_discrete else "z_o")
+        return dict.fromkeys(names, self.plant.order - self.plant.outputs)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where φ cannot be assigned."""
+        return "no" if self.answer["L"] is None else super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the coordinates and of the inner gain."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        inner = [c for c in self.inner.holds_where if c.kind == "existence" and c.expression not in known]
+        return (*own, *inner)
+
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """The modes that no gain moves."""
+        return self.inner.unmoved_modes
+
+    @property
+    def gain_family(self) -> dict[str, Any] | None:
+        """The general gain L where it is not unique."""
+        return self.inner.gain_family
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The whole question again where T is singular or the pair (A₁₂, A₂₂) loses its rank."""
+        determinant = self.answer["T"].determinant()
+
+        def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
+            desired = self.desired.substitute(values)
+            T = self.answer["T"].substitute(values)
+            require_rank(plant)
+            usable = not plant.simplified(T.determinant()).is_zero
+            return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
+
+        own = strata(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)), solve)
+        if self.plant.outputs == 1 and not self.unmoved_modes:
+            return own
+        found = {frozenset(equations_of(case)): case for case in own}
+        for case in carried(self.plant, self._inner_cases, solve):
+            found.setdefault(frozenset(equations_of(case)), case)
+        return tuple(found.values())
+
+    @property
+    def _inner_cases(self) -> tuple[Case, ...]:
+        """The cases of the inner gain, apart from where there is no pair (A₁₂, A₂₂) that they speak of."""
+        known = {condition.expression for condition in self.domain}
+        apart = [Condition("domain", c.expression) for c in self.inner.domain if c.expression not in known]
+        return tuple(
+            replace(case, when=(*case.when, *(c for c in apart if _meets(case, c.expression))))
+            for case in self.inner.case_tree
+        )
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract, and P, polynomial and family."""
+        return {
+            **{name: self.answer[name] for name in "LTFGHM"},
+            "polynomial": self.desired.polynomial,
+            "poles": self.inner.roots if self.answer["L"] is not None else (),
+            "fixed_modes": self.unmoved_modes,
+            "family": self.gain_family,
+        }
+
+    def write(self, page: Page) -> None:
+        """Write the page."""
+        from symobs.design.reduced_order.reduced_order_observer_page import write_reduced_order  # noqa: PLC0415 - the page stands on this type
+
+        write_reduced_order(page, self)
+
+
+def _meets(case: Case, value: Scalar) -> bool:
+    """Tell whether a value may vanish where the equations of a case hold."""
+    try:
+        return not Ideal.of((*equations_of(case), value)).is_whole
+    except TooLarge:
+        return True
+
+
+def require_rank(plant: StateSpace) -> None:
+    """Raise `NotWritten` on a stratum where an output is a combination of the others: fewer are to be kept there."""
+    if len(echelon(plant.matrices.C, plant.ideal)[0]) < plant.outputs:
+        message = "an output is a combination of the others here"
+        raise NotWritten(message)
+
+
+def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
+    """Return the plant of x₂ alone, seen through A₁₂."""
+    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols).restricted(
+        plant.equations, plant.nonzero
+    )
+
+
+@method("reduced_order_observer/partition", source="S0, (4.32)-(4.41); Luenberger 1971")
+def by_partition(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
+    """L places the poles of A₂₂ − L A₁₂ in coordinates where the outputs are the first states."""
+    return ReducedOrderObserver.of(plant, desired, T, "partition")
+
+
+@method("reduced_order_observer/undetermined", source="S2, conditions on F, G and H")
+def undetermined(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
+    """x̂₂ = z + L x₁, ż = F z + G u + H y: the error is free of x and u for one choice of F, G, H, whatever L is."""
+    return ReducedOrderObserver.of(plant, desired, T, "undetermined")
+
+
+@task
+def reduced_order_observer(
+    plant: StateSpace,
+    *,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    T: MatrixText = None,
+    method: Name = "auto",
+) -> Result:
+    """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s).
+
+    plant         n states, p < n outputs, none a combination of the others; B may be missing
+    poles         n − p desired poles, closed under conjugation; or
+    polynomial    φ, monic of degree n − p
+    T             optional n×n coordinates x̄ = T x whose upper p rows are C
+    Returns L ((n−p)×p), T, F, G, H, M; where (C, A) is not observable either the family of gains or verdict `no` with
+    the fixed modes.  Raises `InputError` for wrong poles or shapes, and where nothing is left to estimate.
+    Source: S0, (4.32)-(4.41) and Lemma 4.1.
+    """
+    plant = plant.knowing(poles, polynomial, T)
+    plant.require("C", task="reduced_order_observer")
+    if plant.order == plant.outputs:
+        message = "the outputs show the whole state, nothing is left to estimate"
+        raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
+    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order - plant.outputs)
+    assert desired is not None  # noqa: S101 - required
+    coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
+    return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
+
+
+def _read_coordinates(value: object, plant: StateSpace) -> Matrix:
+    T = read_gain(value, plant, "T", (plant.order, plant.order))
+    if T.select(range(plant.outputs), range(plant.order)) != plant.matrices.C:
+        message = "the upper rows of T are not C"
+        raise InputError(message, where="specification.T", repair="write T as [C; R]")
+    if T.names & {plant.variable, "t"}:
+        message = "T contains a name that stands for the time or the variable of polynomials"
+        raise InputError(message, where="specification.T", repair="give the parameter another name")
+    if T.determinant().is_zero:
+        message = "T is singular"
+        raise InputError(message, where="specification.T", repair="choose rows below C that are independent of it")
+    return T

@@ -1,0 +1,131 @@
+"""The page of tracking, in the order of S2."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.factored_form import formula_of_factored
+from symobs.derivation.builder import Page, relation
+from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
+from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
+from symobs.design.compensator.unstable_law_caution import caution_law
+from symobs.design.page_parts.block_diagrams import draw_tracking
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.exact import Matrix
+from symobs.formula.term import Term, block
+
+if TYPE_CHECKING:
+    from symobs.design.reference.tracking import TrackingDesign
+
+
+def write_tracking(page: Page, design: TrackingDesign) -> None:
+    """Write the reference, the gains, K_d and the errors."""
+    loop = design.loop
+    write_both_gains(page, loop)
+    if is_ill_posed(page, loop):
+        return
+    with page.section("tracking"):
+        _reference(page, design)
+        if design.has_gains and design.answer["K_d"] is not None:
+            _law(page, design)
+        _gain(page, design)
+        if design.has_gains and design.answer["K_d"] is not None:
+            draw_tracking(page, minimal=isinstance(loop.estimator, ReducedOrderObserver))
+            _errors(page, design)
+            caution_law(page, loop)
+
+
+def _reference(page: Page, design: TrackingDesign) -> None:
+    """ẋ_d = A_d x_d."""
+    page.set("A_ref", design.reference)
+    page.dynamics("x_d", page["A_ref"] @ page["x_d"], silent=True)
+    page.equal(
+        relation(page["x_d"].derivative, page["A_ref"] @ page["x_d"]),
+        relation(page["A_ref"], design.reference),
+        say="reference",
+    )
+
+
+def _law(page: Page, design: TrackingDesign) -> None:
+    """U = K (x_d − x̂) − K_d x_d, and the equation of the error."""
+    page.set("K_d", design.answer["K_d"])
+    minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
+    if minimal:
+        partitioned_gain(page)
+        shown = page["K_1"] @ page["x_1"] + page["K_2"] @ page["x_2_hat"]
+    else:
+        shown = page["K"] @ page["x_hat"]
+    page.signal("u", page["K"] @ page["x_d"] - shown - page["K_d"] @ page["x_d"], silent=True)
+    both = (page["K"] - page["K_d"]) @ page["x_d"] - shown
+    page.equal(
+        relation(page["u"], page["K"] @ (page["x_d"] - page["x_hat"]) - page["K_d"] @ page["x_d"], both),
+        say="tracking_law",
+    )
+    page.signal("e_d", page["x_d"] - page["x"], silent=True)
+    A, B, K = (page[name] for name in "ABK")
+    through = B @ page["K_2"] @ page["e_2"] if minimal else B @ K @ page["e"]
+    page.equal(
+        relation(
+            page["e_d"].derivative,
+            (A - B @ K) @ page["e_d"] + (page["A_ref"] - A + B @ page["K_d"]) @ page["x_d"] - through,
+        ),
+        say="tracking_error",
+        error=relation(page["e_d"], page["x_d"] - page["x"]),
+    )
+
+
+def _gain(page: Page, design: TrackingDesign) -> None:
+    """A_d − A + BK_d = 0, for every reference or for what one trajectory passes through."""
+    A, B = page["A"], page["B"]
+    order, columns = design.passed.shape
+    if design.start is not None:
+        page.set("x_d0", design.start)
+        passes = block([[page["A_ref"] ** k @ page["x_d0"] if k else page["x_d0"] for k in range(columns)]])
+        page.define("V_d", passes, say="tracking_condition_one", start=relation(page["x_d0"], design.start))
+    V = page["V_d"] if design.start is not None else None
+    if design.answer["K_d"] is None:
+        page.set("w_d", design.answer["w"])
+        w = page["w_d"]
+        left = w @ (A - page["A_ref"]) if V is None else w @ (A - page["A_ref"]) @ V
+        page.conclude(
+            "tracking_impossible" if V is None else "tracking_impossible_one",
+            relation(left, "!==", Matrix.zeros(1, columns)),
+            row=relation(w, w.shown),
+            annuls=relation(w @ B, Matrix.zeros(1, page.plant.inputs)),
+            left=relation(left, left.shown),
+        )
+        return
+    if not page.knows("K_d"):
+        page.set("K_d", design.answer["K_d"])
+    K_d = page["K_d"]
+    zero = page.value(Matrix.zeros(order, columns))
+    condition = page["A_ref"] - A + B @ K_d
+    page.equal(
+        relation(condition if V is None else condition @ V, zero),
+        say="tracking_condition" if V is None else "tracking_condition_then",
+    )
+    page.equal(relation(K_d, K_d.shown), say="tracking_solved", answer=True)
+
+
+def _errors(page: Page, design: TrackingDesign) -> None:
+    """The block triangular matrix of both errors, and its polynomial."""
+    minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
+    A, B, C, K, L = (page[name] for name in "ABCKL")
+    order, size = page.plant.order, design.matrix_of_errors.shape[0]
+    own = page["A_22"] - L @ page["A_12"] if minimal else A - L @ C
+    through = B @ page["K_2"] if minimal else B @ K
+    zero = page.value(Matrix.zeros(size - order, order))
+    one = design.start is not None
+    page.define(
+        "A_e", block([[A - B @ K, -through], [zero, own]]), say="tracking_errors_one" if one else "", silent=not one
+    )
+    if not one:
+        state = block([[page["e_d"]], [page["e_2" if minimal else "e"]]])
+        matrix: Term = block([[A - B @ K, -through], [zero, own]])
+        page.equal(
+            relation(state.derivative, matrix @ state, page["A_e"].shown @ state), say="tracking_errors", answer=True
+        )
+    determinant = (page.s @ page.identity(size) - page["A_e"]).apply("det")
+    page.equal(
+        relation(determinant, page.term(formula_of_factored(design.loop.loop_polynomial))), say="tracking_polynomial"
+    )

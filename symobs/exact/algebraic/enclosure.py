@@ -1,0 +1,92 @@
+"""Certified enclosures of numbers made of square roots, exponentials and π, and the signs that follow (trusted)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from flint import arb, ctx
+
+from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.kernel.generators import PI, known, symbols_in
+from symobs.exact.kernel.precision import Precision
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact.kernel.scalar import Scalar
+
+#: Bits that are tried in turn until an enclosure keeps clear of 0.
+_BITS = (64, 256, 1024, 4096)
+
+
+def is_number(value: Scalar) -> bool:
+    """Whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
+    kinds = {f.kind for name in value.names if (f := known(name)) is not None}
+    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
+
+
+def sign_of_number(value: Scalar) -> str:
+    """Return `positive` or `negative`, and `real` where the value is no number or may be 0."""
+    if not is_number(value):
+        return "real"
+    for bits in _BITS:
+        found = _enclosed(value, bits)
+        if found > 0:
+            return "positive"
+        if found < 0:
+            return "negative"
+    return "real"
+
+
+def decimal(value: Scalar) -> float:
+    """Return a number near an exact one, for a choice that is proved afterwards or a warning."""
+    return float(_enclosed(value, _BITS[0]).mid())
+
+
+def near(value: Scalar, bits: int = 40) -> Fraction | None:
+    """Return a rational number closer to a number than 2^-bits, None where no enclosure is as narrow."""
+    if not is_number(value):
+        return None
+    for precision in _BITS:
+        found = _enclosed(value, precision)
+        if found.rad() < arb(2) ** -bits:
+            middle = found.mid().fmpq()
+            return Fraction(int(middle.p), int(middle.q))
+    return None
+
+
+def _enclosed(value: Scalar, bits: int) -> arb:
+    """Return an interval that holds the number."""
+    with Precision(bits):
+        return _ball(value)
+
+
+def _ball(value: Scalar) -> arb:
+    if value.is_constant:
+        number = value.fraction()
+        return arb(number.numerator) / number.denominator
+    names = {name: _generator(name) for name in value.names}
+    above, below = (polynomial_ball(part, names) for part in (value.numerator, value.denominator))
+    return above / below
+
+
+def polynomial_ball(value: Scalar, names: Mapping[str, arb]) -> arb:
+    """Return an enclosure of a polynomial, given those of its names; a number has its own."""
+    total = arb(0)
+    for coefficient, powers in value.terms():
+        term = arb(coefficient)
+        for name, power in powers:
+            term = term * (names[name] if name in names else _generator(name)) ** power
+        total = total + term
+    return total
+
+
+def _generator(name: str) -> arb:
+    found = known(name)
+    if found is None:
+        return arb.pi()
+    if isinstance(found, RealRoot):
+        return found.number.ball(ctx.prec)
+    inner = _ball(found.argument)
+    return inner.sqrt() if found.kind == "sqrt" else inner.exp()

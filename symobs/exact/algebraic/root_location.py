@@ -1,0 +1,101 @@
+"""Whether all roots of a polynomial with rational coefficients lie in the open left half-plane, in three ways."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import reduce
+from math import gcd, lcm
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpz_mat, fmpz_poly
+
+from symobs.exact.algebraic.real_algebraic import RealNumber, real_roots
+from symobs.exact.kernel.precision import Precision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def all_to_the_left(coefficients: Sequence[Fraction]) -> bool:
+    """Tell it by Routh's table without fractions; the leading coefficient must not be 0 for the answer to be yes."""
+    whole = integers(coefficients)
+    if not whole[0]:
+        return False
+    if whole[0] < 0:
+        whole = [-c for c in whole]
+    above, below = whole[0::2], whole[1::2]
+    while below:
+        if below[0] <= 0:
+            return False
+        lead, first = above[0], below[0]
+        others = [*below[1:], *([0] * (len(above) - len(below)))]
+        row = [first * a - lead * b for a, b in zip(above[1:], others, strict=True)]
+        common = reduce(gcd, row, 0) or 1
+        above, below = below, [entry // common for entry in row]
+    return True
+
+
+def has_positive_minors(coefficients: Sequence[Fraction]) -> bool:
+    """Tell it by Hurwitz's theorem: for a₀ > 0 all leading minors Δ₁, …, Δₙ of the matrix a₂ⱼ₋ᵢ are positive."""
+    whole = integers(coefficients)
+    if not whole[0]:
+        return False
+    order, sign = len(whole) - 1, 1 if whole[0] > 0 else -1
+    padded = [0] * order + [sign * c for c in whole] + [0] * order
+    return all(
+        fmpz_mat([[padded[order + 2 * j - i] for j in range(1, k + 1)] for i in range(1, k + 1)]).det() > 0
+        for k in range(1, order + 1)
+    )
+
+
+def sides(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:
+    """Return how many roots lie to the left of the imaginary axis, on it and to the right, by isolating them.
+
+    Those on the axis, and pairs r, −r, are roots of the greatest common divisor of p(s) and p(−s), which is sᵏ q(s²):
+    they lie on the axis where s² is real and not positive.
+    """
+    whole = fmpz_poly(list(reversed(integers(coefficients))))
+    mirrored = fmpz_poly([c if k % 2 == 0 else -c for k, c in enumerate(whole.coeffs())])
+    symmetric = whole.gcd(mirrored)
+    left, right = _split(whole // symmetric)
+    ascending = symmetric.coeffs()
+    zeros = next(k for k, c in enumerate(ascending) if c != 0)
+    squares = fmpz_poly(ascending[zeros::2])
+    negative = sum(
+        power * sum(root < RealNumber.of(0) for root in real_roots(factor)) for factor, power in squares.factor()[1]
+    )
+    pairs = int(squares.degree()) - negative
+    return left + pairs, zeros + 2 * negative, right + pairs
+
+
+def _split(polynomial: fmpz_poly) -> tuple[int, int]:
+    """Return how many roots lie to the left and to the right, none being on the axis."""
+    bits = 64
+    while True:
+        roots = _roots(polynomial, bits)
+        if not any(root.real.contains(0) for root, _ in roots):
+            left = sum(m for root, m in roots if root.real < 0)
+            return left, int(polynomial.degree()) - left
+        bits *= 2
+
+
+def _roots(polynomial: fmpz_poly, bits: int) -> list[Any]:
+    if polynomial.degree() < 1:
+        return []
+    with Precision(bits):
+        return list(polynomial.complex_roots())
+
+
+def integers(coefficients: Sequence[Fraction]) -> list[int]:
+    """Return rational coefficients times a positive number that makes them whole."""
+    below = lcm(*(c.denominator for c in coefficients))
+    return [int(c * below) for c in coefficients]
+
+
+def complex_roots(coefficients: Sequence[Fraction]) -> list[tuple[Fraction, Fraction]]:
+    """Return all roots with multiplicity as rational points near them, real and imaginary part."""
+    found = []
+    for root, multiplicity in _roots(fmpz_poly(list(reversed(integers(coefficients)))), 64):
+        place = tuple(Fraction(round(float(part.mid()) * (1 << 40)), 1 << 40) for part in (root.real, root.imag))
+        found += [(place[0], place[1])] * multiplicity
+    return found

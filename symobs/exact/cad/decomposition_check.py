@@ -1,0 +1,161 @@
+"""Whether a divided plane is what it says, by other means than those that divided it (trusted).
+
+Discriminants and resultants are held against Sylvester's determinants at random points modulo random 64-bit primes, the
+numbers of walls and of branches against Sturm's theorem.  Where these hold, no curve turns back, runs off to infinity or
+meets another between two walls, so that every stack stands over its whole slab.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import random
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING
+
+from flint import fmpz_poly, nmod, nmod_mat, nmod_poly
+
+from symobs.exact.algebraic.real_algebraic import RealNumber, count_roots
+from symobs.exact.cad.decomposition import in_first
+from symobs.exact.kernel.modular import random_prime
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from fractions import Fraction
+
+    from symobs.exact.cad.decomposition import Plane, Slab
+
+#: Points at which each determinant is compared: one lets a false value pass with a probability below 10⁻¹⁵.
+_POINTS = 2
+
+
+def holds(plane: Plane) -> bool:
+    """Tell whether the projection is whole, and every wall and every branch is there and in its place."""
+    return _projection_is_whole(plane) and _walls_are_all(plane) and all(_is_stack(plane, s) for s in plane.slabs)
+
+
+def is_line(points: Sequence[RealNumber], factors: Iterable[fmpz_poly]) -> bool:
+    """Tell whether these are all real roots of irreducible polynomials, in ascending order, by Sturm's theorem."""
+    counted = {_key(factor): count_roots(factor, None, None) for factor in factors}
+    listed: dict[tuple[int, ...], list[int]] = {key: [] for key in counted}
+    for point in points:
+        listed.setdefault(_key(point.polynomial), []).append(point.index)
+        if not _is_isolated(point):
+            return False
+    ascending = all(_before(one, other) for one, other in pairwise(points))
+    return ascending and {k: list(range(count)) for k, count in counted.items()} == listed
+
+
+def _key(polynomial: fmpz_poly) -> tuple[int, ...]:
+    return tuple(int(c) for c in polynomial.coeffs())
+
+
+def _is_isolated(point: RealNumber) -> bool:
+    """Tell whether the enclosure of a number holds the root of its number, and no other."""
+    if point.is_rational:
+        return point.index == 0
+    low, high = point.interval()
+    return count_roots(point.polynomial, low, high) == 1 and count_roots(point.polynomial, None, low) == point.index
+
+
+def _before(one: RealNumber, other: RealNumber) -> bool:
+    """Tell whether the enclosures stand apart, refined as far as it takes."""
+    bits = 64
+    while bits <= 1 << 14:
+        if one.interval(bits)[1] < other.interval(bits)[0]:
+            return True
+        bits *= 2
+    return False
+
+
+def _projection_is_whole(plane: Plane) -> bool:
+    """Tell whether all leading coefficients, discriminants and resultants are products of the factors listed."""
+    values = [curve.by_second[-1] for curve in plane.curves]
+    risen = [curve for curve in plane.curves if curve.degree]
+    name = plane.names[1]
+    generator = random.Random(_seed(plane))  # noqa: S311 - repeatable by design
+    for curve in risen:
+        if curve.degree > 1:
+            # Res(f, f′) = ± lc(f) disc(f)
+            found = in_first(curve.inside.discriminant(name), plane.names)
+            slope = [c * k for k, c in enumerate(curve.by_second)][1:]
+            if not _is_resultant(found * curve.by_second[-1], curve.by_second, slope, generator):
+                return False
+            values.append(found)
+    for one, other in combinations(risen, 2):
+        found = in_first(one.inside.resultant(other.inside, name), plane.names)
+        if not _is_resultant(found, one.by_second, other.by_second, generator):
+            return False
+        values.append(found)
+    return all(value and _is_product(value, plane.projection) for value in values)
+
+
+def _is_product(value: fmpz_poly, factors: Iterable[fmpz_poly]) -> bool:
+    """Tell whether nothing but a number is left when a polynomial is divided by all powers of these."""
+    for factor in factors:
+        while value.degree() >= factor.degree() and not value % factor:
+            value = value // factor
+    return bool(value.degree() == 0)
+
+
+def _is_resultant(
+    claimed: fmpz_poly, one: Sequence[fmpz_poly], other: Sequence[fmpz_poly], generator: random.Random
+) -> bool:
+    """Compare a resultant, up to its sign, with Sylvester's determinant at random points modulo random primes."""
+    signs = set()
+    for _ in range(_POINTS):
+        prime = random_prime(generator)
+        point = generator.getrandbits(61)
+        at = [[_residue(c, point, prime) for c in reversed(polynomial)] for polynomial in (one, other)]
+        found = int(nmod_mat(*_sylvester(at[0], at[1]), prime).det())
+        wanted = _residue(claimed, point, prime)
+        signs.add(1 if found == wanted else -1 if found == (prime - wanted) % prime else 0)
+    return len(signs) == 1 and 0 not in signs
+
+
+def _residue(polynomial: fmpz_poly, point: int, prime: int) -> int:
+    return int(nmod_poly(polynomial, prime)(nmod(point, prime)))
+
+
+def _sylvester(one: Sequence[int], other: Sequence[int]) -> tuple[int, int, list[int]]:
+    """Return Sylvester's matrix of two polynomials, highest coefficient first, as rows, columns and entries."""
+    m, n = len(one) - 1, len(other) - 1
+    rows = [[0] * k + list(one) + [0] * (n - 1 - k) for k in range(n)]
+    rows += [[0] * k + list(other) + [0] * (m - 1 - k) for k in range(m)]
+    return m + n, m + n, [entry for row in rows for entry in row]
+
+
+def _walls_are_all(plane: Plane) -> bool:
+    """Tell whether the walls are all real roots of the projection, and every slab's point lies between its walls."""
+    inside = all(
+        (slab.left is None or _before(slab.left, RealNumber.of(slab.x)))
+        and (slab.right is None or _before(RealNumber.of(slab.x), slab.right))
+        for slab in plane.slabs
+    )
+    ends = [(slab.left, slab.right) for slab in plane.slabs]
+    walls = [wall.x for wall in plane.walls]
+    return inside and ends == list(pairwise([None, *walls, None])) and is_line(walls, plane.projection)
+
+
+def _is_stack(plane: Plane, slab: Slab) -> bool:
+    """Tell whether over the slab's point every branch lies alone between the two samples around it."""
+    if list(slab.samples) != sorted(slab.samples) or len(slab.samples) != len(slab.branches) + 1:
+        return False
+    cuts = [curve.on_vertical(slab.x) if curve.degree else None for curve in plane.curves]
+    numbers = [0] * len(cuts)
+    for branch, (low, high) in zip(slab.branches, pairwise(slab.samples), strict=True):
+        cut = cuts[branch.curve]
+        if cut is None or branch.number != numbers[branch.curve] or _count(cut, low, high) != 1:
+            return False
+        numbers[branch.curve] += 1
+    return all(cut is None or _count(cut, None, None) == number for cut, number in zip(cuts, numbers, strict=True))
+
+
+def _count(cut: fmpz_poly, low: Fraction | None, high: Fraction | None) -> int:
+    return count_roots(cut, low, high) if cut.degree() > 0 else 0
+
+
+def _seed(plane: Plane) -> int:
+    digest = hashlib.sha256(repr(plane.names).encode())
+    for curve in plane.curves:
+        digest.update(curve.scalar.fingerprint().encode())
+    return int.from_bytes(digest.digest(), "big")

@@ -1,0 +1,52 @@
+"""Canonical text of exact values, in SymPy's syntax: `19*s/4 + omega**2`, `(s + 1)/(s**2 + b*s)`."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import gcd
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from symobs.exact.kernel.scalar import Scalar
+
+
+def _monomial(coefficient: int, divisor: int, powers: tuple[tuple[str, int], ...]) -> str:
+    """Return |coefficient| / divisor times the powers."""
+    common = gcd(coefficient, divisor)
+    top, bottom = abs(coefficient) // common, divisor // common
+    factors = [name if power == 1 else f"{name}**{power}" for name, power in powers]
+    if top != 1 or not factors:
+        factors.insert(0, str(top))
+    text = "*".join(factors)
+    return text if bottom == 1 else f"{text}/{bottom}"
+
+
+def _sum(value: Scalar, divisor: int) -> str:
+    if divisor == 1 and all(map(str.isidentifier, value.field.names)):  # the kernel's own text, but for its powers
+        return str(value.numerator_part.str()).replace("^", "**")
+    pieces: list[str] = []
+    for coefficient, powers in value.terms():
+        text = _monomial(coefficient, divisor, powers)
+        if not pieces:
+            pieces.append(f"-{text}" if coefficient < 0 else text)
+        else:
+            pieces.append(f" - {text}" if coefficient < 0 else f" + {text}")
+    return "".join(pieces) or "0"
+
+
+@lru_cache(maxsize=16)
+def _denominator(value: Scalar) -> str:
+    """Return the text of a denominator: the entries of a matrix share theirs."""
+    return _sum(value, 1)
+
+
+def scalar_text(value: Scalar) -> str:
+    """Return the canonical text of a scalar."""
+    below = value.denominator
+    if below.is_constant:
+        return _sum(value.numerator, int(below.fraction()))
+    top, bottom = _sum(value.numerator, 1), _denominator(below)
+    if len(value.numerator_part) > 1:
+        top = f"({top})"
+    is_single_name = len(value.denominator_part) == 1 and "*" not in bottom
+    return f"{top}/{bottom}" if is_single_name else f"{top}/({bottom})"

@@ -1,0 +1,385 @@
+"""Functions of time as generators: exp, cos, sin, cosh, sinh of an argument, and square roots that stand in arguments.
+
+A generator's name is SymPy's text, `exp(-2*t)` or `cos(sqrt(3)*t)`, and carries the function (`Generator`), so that its
+derivative follows from the value alone: d/dt is Σ ∂/∂generator · generator′.  Different generators may depend on each
+other, exp(−2t) = exp(−t)²; `identities` says how: what each one is in the base of a set of values, and which polynomials
+vanish there.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import gcd, isqrt, lcm
+from typing import TYPE_CHECKING, overload
+
+from flint import fmpz
+
+from symobs._dataclass import dataclass
+from symobs.exact.kernel.field import Generator
+from symobs.exact.kernel.matrix import Matrix
+from symobs.exact.kernel.scalar import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+#: Integers of more bits are not split into primes under a root.
+_PRIME_BITS = 128
+ZERO, ONE = Scalar.of(0), Scalar.of(1)
+#: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
+PI = "pi"
+#: cos(π r) for r = 0, 1/6, 1/4, 1/3, 1/2: (rational factor, radicand).
+_COSINES = {Fraction(0): (Fraction(1), 1), Fraction(1, 6): (Fraction(1, 2), 3), Fraction(1, 4): (Fraction(1, 2), 2)}
+_COSINES |= {Fraction(1, 3): (Fraction(1, 2), 1), Fraction(1, 2): (Fraction(0), 1)}
+
+
+class NotWritten(ArithmeticError):
+    """A value that is not written with square roots here."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """kind(argument): exp, cos, sin, cosh, sinh, or sqrt, whose argument is the radicand."""
+
+    kind: str
+    argument: Scalar
+
+    @property
+    def text(self) -> str:
+        """SymPy's text."""
+        return f"{self.kind}({self.argument})"
+
+    @property
+    def name(self) -> Generator:
+        """The generator's name, which carries the function."""
+        return Generator(self)
+
+    @property
+    def value(self) -> Scalar:
+        """The function as a generator."""
+        return Scalar.symbol(self.name)
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The plain symbols inside."""
+        return symbols_in(self.argument)
+
+    def rate(self, time: str) -> Scalar:
+        """Return d/dt, by the chain rule."""
+        if self.kind == "sqrt":
+            return ZERO
+        sign, kind = _RATES[self.kind]
+        return derivative(self.argument, time) * generator(kind, self.argument) * sign
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the function with symbols of its argument replaced."""
+        argument = substitute(self.argument, values)
+        return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
+
+
+_RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
+
+
+def known(name: str) -> Function | None:
+    """Return the function a generator's name stands for, None for a plain symbol."""
+    return name.function if isinstance(name, Generator) else None
+
+
+def generator(kind: str, argument: Scalar) -> Scalar:
+    """Return kind(argument) as a generator, whatever the argument."""
+    return Function(kind, argument).value
+
+
+def function(kind: str, argument: Scalar) -> Scalar:
+    """Return kind(argument); arguments of even and odd functions are given a positive leading coefficient."""
+    if argument.is_zero:
+        return ONE if kind in {"exp", "cos", "cosh"} else ZERO
+    if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
+        turns = (argument / Scalar.symbol(PI)).fraction()
+        return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
+    if kind == "exp" or not leads_with_minus(argument):
+        return generator(kind, argument)
+    value = generator(kind, -argument)
+    return -value if kind in {"sin", "sinh"} else value
+
+
+def _cosine(turns: Fraction) -> Scalar:
+    """Return cos(π r).  Raises `NotWritten` where the table does not have it."""
+    turns = abs((turns + 1) % 2 - 1)
+    sign, turns = (-1, 1 - turns) if turns > Fraction(1, 2) else (1, turns)
+    if turns not in _COSINES:
+        message = f"cos({turns}*pi) is not written with square roots here"
+        raise NotWritten(message)
+    front, radicand = _COSINES[turns]
+    return square_root(Scalar.of(radicand)) * front * sign
+
+
+def leads_with_minus(value: Scalar) -> bool:
+    """Whether the first term of the numerator, plain symbols before roots, is negative."""
+    return value.terms()[0][0] < 0
+
+
+def square_root(radicand: Scalar) -> Scalar:
+    """Return √radicand: square factors in front, numbers as products of roots of primes, the rest one generator.
+
+    Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
+    """
+    unit, factors = radicand.factors()
+    number = unit.fraction()
+    if number < 0 and all(power % 2 == 0 for _, power in factors):
+        message = f"{radicand} has no real root"
+        raise ZeroDivisionError(message)
+    front, odd = ONE, ONE
+    for factor, power in factors:
+        half, rest = divmod(power, 2)
+        front = front * factor**half
+        odd = odd * factor if rest else odd
+    if odd.is_one:
+        return front * _root_of_number(number)
+    return front * generator("sqrt", odd * number)
+
+
+def square_part(number: int) -> int:
+    """Return the largest number whose square divides a positive integer, 1 where that is too long to find."""
+    root = isqrt(number)
+    if root * root == number:
+        return root
+    if number.bit_length() > _PRIME_BITS:
+        return 1
+    part = 1
+    for prime, power in fmpz(number).factor():
+        part *= int(prime) ** (int(power) // 2)
+    return part
+
+
+def _root_of_number(number: Fraction) -> Scalar:
+    """Return √number for a positive fraction."""
+    whole = number.numerator * number.denominator
+    outside = square_part(whole)
+    inside = whole // outside**2
+    value = Scalar.of(Fraction(outside, number.denominator))
+    if inside == 1:
+        return value
+    if inside.bit_length() > _PRIME_BITS:
+        return value * generator("sqrt", Scalar.of(inside))
+    for prime, _ in fmpz(inside).factor():
+        value = value * generator("sqrt", Scalar.of(int(prime)))
+    return value
+
+
+def square_root_of(numbers: Iterable[Scalar]) -> str:
+    """Return the name of one root of a product of numbers without common factors, for printing."""
+    product = ONE
+    for number in numbers:
+        product = product * number
+    return next(iter(generator("sqrt", product).names))
+
+
+def roots_in(value: Scalar | Matrix) -> list[Function]:
+    """Return the square roots that occur, longer radicands last."""
+    found = [f for name in value.names if (f := known(name)) is not None and f.kind == "sqrt"]
+    return sorted(found, key=lambda f: (f.argument.size, f.name))
+
+
+def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
+    """Return the functions among the generators that occur; most fields have none, which is soon seen."""
+    having = [value for value in values if value.field.functions]
+    return frozenset(f for value in having for name in value.names if (f := known(name)) is not None)
+
+
+def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
+    """Return the square roots that occur in values, also in the arguments of functions."""
+    found = _functions_in(values)
+    inner = all_roots(*(f.argument for f in found)) if found else frozenset()
+    return frozenset(f for f in found if f.kind == "sqrt") | inner
+
+
+def tidy(value: Scalar) -> Scalar:
+    """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
+    for root in roots_in(value):
+        above = _split(value.numerator, root)
+        below = _split(value.denominator, root)
+        q = root.value
+        over = below[0] * below[0] - below[1] * below[1] * root.argument
+        top = (
+            above[0] * below[0] - above[1] * below[1] * root.argument,
+            above[1] * below[0] - above[0] * below[1],
+        )
+        value = top[0] / over + top[1] / over * q
+    return value
+
+
+def _split(polynomial: Scalar, root: Function) -> tuple[Scalar, Scalar]:
+    """Return (a, b) with polynomial = a + b √radicand."""
+    parts = [ZERO, ZERO]
+    for power, coefficient in enumerate(reversed(polynomial.coefficients(root.name))):
+        parts[power % 2] = parts[power % 2] + coefficient * root.argument ** (power // 2)
+    return parts[0], parts[1]
+
+
+def with_roots(value: Scalar, roots: Iterable[Function]) -> Scalar:
+    """Return a value with the radicands of these roots in its denominator written as squares: ν/ν² becomes 1/ν."""
+    for root in roots:
+        if root.argument.is_constant:
+            continue
+        core, power = root.argument.numerator, 0
+        square = root.value**2 * root.argument.denominator
+        unit, _ = core.factors()
+        core, square = core / unit, square / unit
+        below = value.denominator
+        while not (quotient := below / core).is_zero and quotient.denominator.is_constant:
+            below, power = quotient, power + 1
+        value = value.numerator / (below * square**power)
+    return value
+
+
+# -- calculus ------------------------------------------------------------------------------------------------------
+
+
+@overload
+def derivative(value: Scalar, time: str = "t") -> Scalar: ...
+@overload
+def derivative(value: Matrix, time: str = "t") -> Matrix: ...
+@overload
+def derivative(value: Scalar | Matrix, time: str = "t") -> Scalar | Matrix: ...
+def derivative(value: Scalar | Matrix, time: str = "t") -> Scalar | Matrix:
+    """Return d/dt, by the chain rule on each generator that contains the time."""
+    if isinstance(value, Matrix):
+        return Matrix.of([[derivative(entry, time) for entry in row] for row in value.rows], value.shape[1])
+    total = ZERO
+    for name in sorted(value.names):
+        rate = _rate(name, time)
+        if not rate.is_zero:
+            total = total + partial(value, name) * rate
+    return total
+
+
+def partial(value: Scalar, name: str) -> Scalar:
+    """Return ∂ value / ∂ name."""
+    field, index = value.field, value.field.position[name]
+    above, below = value.numerator_part, value.denominator_part
+    if below.degrees()[index] <= 0:
+        return Scalar.reduced(field, above.derivative(index), below)
+    top = above.derivative(index) * below - above * below.derivative(index)
+    return Scalar.reduced(field, top, below * below)
+
+
+def _rate(name: str, time: str) -> Scalar:
+    if name == time:
+        return ONE
+    found = known(name)
+    return ZERO if found is None else found.rate(time)
+
+
+@overload
+def substitute(value: Scalar, values: Mapping[str, Scalar]) -> Scalar: ...
+@overload
+def substitute(value: Matrix, values: Mapping[str, Scalar]) -> Matrix: ...
+@overload
+def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix: ...
+def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix:
+    """Return the value with symbols replaced, in the arguments of functions too; raises ZeroDivisionError."""
+    if isinstance(value, Matrix):
+        return Matrix.of([[substitute(entry, values) for entry in row] for row in value.rows], value.shape[1])
+    images = {name: values[name] for name in value.names if name in values}
+    for name in value.names:
+        found = known(name)
+        if found is not None and found.symbols & values.keys():
+            images[name] = found.moved(values)
+    return value.substitute(images) if images else value
+
+
+def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
+    """Return the plain symbols of a value, also those inside functions."""
+    names: set[str] = set()
+    for name in value.names:
+        found = known(name)
+        names |= found.symbols if found is not None else {name}
+    return frozenset(names)
+
+
+def symbols_named(name: str) -> frozenset[str]:
+    """Return the plain symbols of a generator: its own name, or those of its argument."""
+    found = known(name)
+    return found.symbols if found is not None else frozenset((name,))
+
+
+# -- how generators depend on each other -----------------------------------------------------------------------------
+
+Coordinates = dict[Scalar, Fraction]
+
+
+def _coordinates(argument: Scalar) -> Coordinates:
+    """Return an argument as a sum of rational multiples of monomials over one denominator."""
+    below, found = argument.denominator, {}
+    content = gcd(*(coefficient for coefficient, _ in below.terms()))
+    below = below / content
+    for coefficient, powers in argument.terms():
+        monomial = ONE
+        for name, power in powers:
+            monomial = monomial * Scalar.symbol(name) ** power
+        found[monomial / below] = Fraction(coefficient, content)
+    return found
+
+
+def identities(
+    values: Iterable[Scalar | Matrix], *, falling: bool = False
+) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
+    """Return (what each generator is in a common base, the polynomials in the base that vanish).
+
+    Base exponentials rise with their monomial, or with `falling` fall with it.
+
+    exp is a product of powers of base exponentials, cosh and sinh are sums of two of them, cos and sin of a multiple or
+    a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1, root² − radicand, and the
+    minimal polynomial of a real root.
+    """
+    values = tuple(values)
+    found = _functions_in(values)
+    if not found:
+        return {}, ()
+    roots = all_roots(*values)
+    moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
+    steps: dict[tuple[bool, Scalar], Fraction] = {}
+    for f in moving:
+        for monomial, coefficient in _coordinates(f.argument).items():
+            key = (f.kind in {"cos", "sin"}, monomial)
+            steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
+    if falling:
+        steps = {key: step if key[0] else -step for key, step in steps.items()}
+    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
+    counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
+    relations += [f.argument.substitute(dict.fromkeys(f.argument.names, f.value)) for f in counted]
+    for (turns, monomial), step in steps.items():
+        if turns:
+            relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
+    meanings: dict[str, Scalar] = {}
+    for f in moving:
+        meaning = _in_base(f, steps)
+        if meaning != f.value:
+            meanings[f.name] = meaning
+    return meanings, tuple(r.numerator for r in relations)
+
+
+def _common_measure(left: Fraction, right: Fraction) -> Fraction:
+    """Return the greatest fraction of which both are whole multiples."""
+    below = lcm(left.denominator, right.denominator)
+    return Fraction(gcd(int(left * below), int(right * below)), below)
+
+
+def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction]) -> Scalar:
+    turns = f.kind in {"cos", "sin"}
+    real, imaginary = ONE, ZERO
+    for monomial, coefficient in _coordinates(f.argument).items():
+        step = steps[turns, monomial]
+        count = int(coefficient / step)
+        if not turns:
+            real = real * function("exp", monomial * step) ** count
+            continue
+        c, s = function("cos", monomial * step), function("sin", monomial * step)
+        s = s if count > 0 else -s
+        for _ in range(abs(count)):
+            real, imaginary = real * c - imaginary * s, real * s + imaginary * c
+    if turns:
+        return real if f.kind == "cos" else imaginary
+    if f.kind == "exp":
+        return real
+    return (real + 1 / real if f.kind == "cosh" else real - 1 / real) / 2

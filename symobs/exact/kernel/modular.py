@@ -1,0 +1,99 @@
+"""Exact values at a random point modulo a prime: the arithmetic in which large claims are checked.
+
+A polynomial identity of total degree d that is false survives a random point of {0, …, 2⁶¹−1}ᵏ with probability at most
+d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random 64-bit prime with probability at
+most h / (63 · 2·10¹⁷), there being more than 2·10¹⁷ such primes.
+"""
+
+from __future__ import annotations
+
+from math import gcd
+from typing import TYPE_CHECKING
+
+from flint import fmpz, fmpz_mat, nmod, nmod_mat
+
+if TYPE_CHECKING:
+    import random
+    from collections.abc import Iterable
+
+    from flint import fmpz_mpoly
+
+    from symobs.exact.kernel.matrix import Matrix
+    from symobs.exact.kernel.scalar import Scalar
+
+POINT_BITS = 61
+PRIME_BITS = 64
+PRIMES_BELOW = 2 * 10**17
+_ZERO = fmpz(0)
+#: The product of the odd primes below 50: most candidates share one, which is sooner seen than that they are composite.
+_SMALL_PRIMES = 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 * 37 * 41 * 43 * 47
+
+
+class VanishingDenominator(Exception):
+    """A denominator is zero at this point."""
+
+
+class Point:
+    """A value for every name, modulo one prime."""
+
+    __slots__ = ("bits", "prime", "values")
+
+    def __init__(self, names: Iterable[str], generator: random.Random) -> None:
+        """Draw a prime of 64 bits and a residue for each name."""
+        self.prime = random_prime(generator)
+        self.values = {name: generator.getrandbits(POINT_BITS) for name in sorted(names)}
+        self.bits: dict[int, tuple[int, int]] = {}
+
+    def scalar(self, value: Scalar) -> int:
+        """Return the residue of a scalar; the sizes of the integers it comes from are kept in `bits`."""
+        arguments = [self.values[name] for name in value.field.names]
+        above = value.numerator_part(*arguments)
+        over, below_bits = self._denominator(value.denominator_part, arguments)
+        self.bits[id(value)] = above.bit_length(), below_bits
+        return int(above % self.prime) * over % self.prime
+
+    def matrix(self, value: Matrix) -> nmod_mat:
+        """Return the matrix of residues; the sizes of the integers it comes from are kept in `bits`."""
+        arguments = [self.values[name] for name in value.field.names]
+        table = value.table
+        if not isinstance(table, fmpz_mat):
+            numbers = [entry(*arguments) if entry else _ZERO for row in table for entry in row]
+            table = fmpz_mat(*value.shape, numbers)
+        over, below_bits = self._denominator(value.denominator, arguments)
+        self.bits[id(value)] = max((entry.bit_length() for entry in table.entries()), default=0), below_bits
+        residues = nmod_mat(table, self.prime)
+        return residues if over == 1 else residues * nmod(over, self.prime)
+
+    def _denominator(self, polynomial: fmpz_mpoly, arguments: list[int]) -> tuple[int, int]:
+        """Return the inverse of a denominator's residue, and the size of the integer it comes from."""
+        if polynomial.is_one():
+            return 1, 1
+        number = polynomial(*arguments)
+        residue = int(number % self.prime)
+        if not residue:
+            raise VanishingDenominator
+        return pow(residue, -1, self.prime), number.bit_length()
+
+
+def random_prime(generator: random.Random) -> int:
+    """Return a random prime of 64 bits."""
+    while True:
+        candidate = generator.getrandbits(PRIME_BITS) | 1 << (PRIME_BITS - 1) | 1
+        if gcd(candidate, _SMALL_PRIMES) == 1 and fmpz(candidate).is_prime():
+            return candidate
+
+
+def scaled(matrix: nmod_mat, factor: int, prime: int) -> nmod_mat:
+    """Return the matrix times a residue."""
+    return matrix * nmod(factor, prime)
+
+
+def block(rows: list[list[nmod_mat | int]], prime: int) -> nmod_mat:
+    """Return the matrix of blocks; integers are 1×1 blocks."""
+    lines: list[list[int]] = []
+    for parts in rows:
+        tables = [
+            [[part]] if isinstance(part, int) else [list(map(int, row)) for row in part.tolist()] for part in parts
+        ]
+        lines += [[entry for table in tables for entry in table[i]] for i in range(len(tables[0]))]
+    return nmod_mat(len(lines), len(lines[0]), [entry for line in lines for entry in line], prime)

@@ -1,0 +1,282 @@
+"""Matrices over the ring Z[generators], without denominators: plain functions on rows of polynomials.
+
+`Table` is `fmpz_mat` where there is no generator and a tuple of rows of `fmpz_mpoly` otherwise; FLINT does the
+numeric case, the functions here the parametric one.  Everything is fraction-free.
+"""
+
+from __future__ import annotations
+
+from math import log2
+from typing import TYPE_CHECKING, TypeAlias
+
+from flint import fmpz, fmpz_mat, fmpz_mpoly
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from symobs.exact.kernel.field import Field
+
+Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
+
+#: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
+_WHOLE_TEXT, _TOLD = 40, 6
+#: Of this many terms, or some more, the exponents are looked at where polynomials are told apart.
+_LOOKED_AT = 6
+#: From this many terms on a common divisor is first looked for in a leading coefficient.
+_LONG = 150
+#: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
+MINORS_UP_TO = 8
+
+
+def dot(left: Sequence[fmpz_mpoly], right: Sequence[fmpz_mpoly], zero: fmpz_mpoly) -> fmpz_mpoly:
+    """Return Σ left_k right_k."""
+    total = None
+    for a, b in zip(left, right, strict=True):
+        if a and b:
+            if total is None:
+                total = a * b
+            else:
+                total.iadd(a * b)
+    return zero if total is None else total
+
+
+def product(left: Rows, right: Rows, zero: fmpz_mpoly) -> Rows:
+    """Return the matrix product."""
+    columns = transpose(right)
+    return tuple(tuple(dot(row, column, zero) for column in columns) for row in left)
+
+
+def added(left: Rows, right: Rows) -> Rows:
+    """Return the sum of two matrices of one shape."""
+    return tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
+
+
+def transpose(rows: Rows) -> Rows:
+    """Return the transpose."""
+    return tuple(zip(*rows, strict=True))
+
+
+def plus_diagonal(rows: Rows, factor: fmpz_mpoly, addend: fmpz_mpoly) -> Rows:
+    """Return factor · M + addend · I."""
+    scaled = rows if factor.is_one() else tuple(tuple(entry * factor for entry in row) for row in rows)
+    return tuple((*row[:i], row[i] + addend, *row[i + 1 :]) for i, row in enumerate(scaled))
+
+
+def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_mpoly:
+    """Return an integer times the coefficient of the highest powers of these generators, one after the other."""
+    for index in foreign:
+        while lower := polynomial.derivative(index):
+            polynomial = lower
+    return polynomial
+
+
+def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
+    """Tell whether it is easily seen that no factor divides the denominator and all entries.
+
+    A factor of the denominator is free of the generators that the denominator lacks, so it divides the coefficients
+    of the entries in those; the leading ones are much shorter than the entries, and mostly two of them suffice.
+    """
+    if denominator.is_one():
+        return True
+    foreign = _foreign(denominator)
+    leading = sorted((leading_coefficient(entry, foreign) for entry in entries if entry), key=len)
+    shared = None
+    for polynomial in [*leading, denominator]:
+        shared = polynomial if shared is None else shared.gcd(polynomial)
+        if shared.is_one():
+            return True
+    return False
+
+
+def common_factor(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
+    """Return the greatest common divisor; of a long numerator its leading coefficient mostly leaves little to look for.
+
+    What divides both divides the coefficients of the numerator in the generators that the denominator lacks.
+    """
+    foreign = _foreign(denominator) if len(numerator) > _LONG else []
+    if foreign:
+        denominator = leading_coefficient(numerator, foreign).gcd(denominator)
+    return numerator.gcd(denominator)
+
+
+def _foreign(polynomial: fmpz_mpoly) -> list[int]:
+    """Return the generators that a polynomial lacks."""
+    return [index for index, degree in enumerate(polynomial.degrees()) if degree <= 0]
+
+
+def determinant(rows: Rows, field: Field) -> fmpz_mpoly:
+    """Return the determinant, by minors for small orders and by Bareiss' elimination beyond."""
+    if not rows:
+        return field.one
+    content, rows = strip_row_contents(rows, field)
+    value = _by_minors(rows, field) if len(rows) <= MINORS_UP_TO else _by_elimination(rows, field)
+    return value * content
+
+
+def strip_row_contents(rows: Rows, field: Field) -> tuple[fmpz_mpoly, Rows]:
+    """Divide each row by the monomial and integer its entries share; return their product and the rows."""
+    total = field.one
+    stripped = []
+    for row in rows:
+        shared = None
+        for entry in row:
+            if entry:
+                shared = entry.term_content() if shared is None else shared.gcd(entry.term_content())
+                if shared.is_one():
+                    break
+        if shared is None or shared.is_one():
+            stripped.append(row)
+        else:
+            total = total * shared
+            stripped.append(tuple(entry / shared for entry in row))
+    return total, tuple(stripped)
+
+
+def _by_minors(rows: Rows, field: Field) -> fmpz_mpoly:
+    """Expand along the rows from the bottom."""
+    return maximal_minors(rows, field).get(tuple(range(len(rows))), field.zero)
+
+
+def maximal_minors(rows: Rows, field: Field) -> dict[tuple[int, ...], fmpz_mpoly]:
+    """Return every minor that uses all rows, by its columns: each row extends the minors of the rows below it."""
+    width = len(rows[0])
+    minors: dict[tuple[int, ...], fmpz_mpoly] = {(): field.one}
+    for row in reversed(rows):
+        larger: dict[tuple[int, ...], fmpz_mpoly] = {}
+        for columns, minor in minors.items():
+            if not minor:
+                continue
+            for column in range(width):
+                entry = row[column]
+                if column in columns or not entry:
+                    continue
+                position = sum(other < column for other in columns)
+                chosen = (*columns[:position], column, *columns[position:])
+                term = entry * minor
+                known = larger.get(chosen)
+                if position % 2:
+                    larger[chosen] = -term if known is None else known - term
+                else:
+                    larger[chosen] = term if known is None else known + term
+        minors = larger
+    return minors
+
+
+def _by_elimination(rows: Rows, field: Field) -> fmpz_mpoly:
+    work = [list(row) for row in rows]
+    order, previous, sign = len(work), field.one, 1
+    for k in range(order - 1):
+        pivot = next((i for i in range(k, order) if work[i][k]), None)
+        if pivot is None:
+            return field.zero
+        if pivot != k:
+            work[k], work[pivot], sign = work[pivot], work[k], -sign
+        for i in range(k + 1, order):
+            for j in range(k + 1, order):
+                work[i][j] = (work[i][j] * work[k][k] - work[i][k] * work[k][j]) / previous
+        previous = work[k][k]
+    return work[-1][-1] if sign > 0 else -work[-1][-1]
+
+
+def cofactor(rows: Rows, row: int, column: int, field: Field) -> fmpz_mpoly:
+    """Return (−1)^(row+column) times the minor without that row and column."""
+    rest = tuple(tuple(entry for j, entry in enumerate(line) if j != column) for i, line in enumerate(rows) if i != row)
+    value = determinant(rest, field)
+    return -value if (row + column) % 2 else value
+
+
+def echelon(rows: Rows, vanishes: Callable[[fmpz_mpoly], bool]) -> tuple[list[int], list[list[fmpz_mpoly]]]:
+    """Return (pivot columns, reduced rows): elimination without fractions, `vanishes` deciding what counts as zero.
+
+    In the reduced rows each pivot column is zero but at its own pivot.  Pivots are the simplest entries available:
+    constants first, then fewest terms, so that a witness holds as widely as possible.
+    """
+    work = [list(row) for row in rows]
+    pivots: list[int] = []
+    columns = len(work[0]) if work else 0
+    for column in range(columns):
+        rank = len(pivots)
+        candidates = [i for i in range(rank, len(work)) if not vanishes(work[i][column])]
+        if not candidates:
+            continue
+        best = min(candidates, key=lambda i: (work[i][column].total_degree(), len(work[i][column])))
+        work[rank], work[best] = work[best], work[rank]
+        lead = work[rank][column]
+        for i, line in enumerate(work):
+            if i != rank and not vanishes(line[column]):
+                factor = line[column]
+                work[i] = _primitive([lead * a - factor * b for a, b in zip(line, work[rank], strict=True)], vanishes)
+        pivots.append(column)
+        if len(pivots) == len(work):
+            break
+    return pivots, work[: len(pivots)]
+
+
+def _primitive(line: list[fmpz_mpoly], vanishes: Callable[[fmpz_mpoly], bool]) -> list[fmpz_mpoly]:
+    shared = None
+    for entry in line:
+        if entry and not vanishes(entry):
+            shared = entry if shared is None else shared.gcd(entry)
+            if shared.is_one():
+                return line
+    if shared is None or vanishes(shared):
+        return line
+    if any(entry and (entry % shared) for entry in line):
+        return line
+    return [entry / shared for entry in line]
+
+
+def rows_of(table: fmpz_mat, field: Field) -> Rows:
+    """Return a numeric table as rows of polynomials of `field`."""
+    constant = field.context.constant
+    return tuple(tuple(constant(entry) for entry in row) for row in table.tolist())
+
+
+def common_multiple(left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
+    """Return a common multiple as small as FLINT's gcd makes it."""
+    if right.is_one() or left == right:
+        return left
+    if left.is_one():
+        return right
+    multiple = left * (right / left.gcd(right))
+    return -multiple if multiple.leading_coefficient() < 0 else multiple
+
+
+def align(left: fmpz_mpoly, right: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly, fmpz_mpoly]:
+    """Return (common denominator, factor for the left, factor for the right)."""
+    common = common_multiple(left, right)
+    return common, common / left, common / right
+
+
+def number_of(constant: fmpz_mpoly) -> fmpz:
+    """Return the integer that a constant polynomial is."""
+    return constant.leading_coefficient() if constant else fmpz(0)
+
+
+def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
+    """Return FLINT's text of a polynomial where it is short, else a summary of it."""
+    length = len(polynomial)
+    if length <= _WHOLE_TEXT:
+        return str(polynomial)
+    return f"{length} {' '.join(str(polynomial.coefficient(k * (length - 1) // _TOLD)) for k in range(_TOLD + 1))}"
+
+
+def invariants(polynomial: fmpz_mpoly, places: Sequence[int]) -> tuple[object, ...]:
+    """Return the coefficients, and the exponents that some terms have at these places: the same in every field."""
+    looked_at = range(0, len(polynomial), len(polynomial) // _LOOKED_AT or 1)
+    exponents = [polynomial.monomial(k) for k in looked_at]
+    return (*polynomial.coeffs(), *(powers[index] for powers in exponents for index in places))
+
+
+def length_bits(polynomial: fmpz_mpoly) -> float:
+    """Return an upper bound of log₂ Σ |coefficients|."""
+    if not polynomial:
+        return 0.0
+    return max(abs(c) for c in polynomial.coeffs()).bit_length() + log2(len(polynomial))
+
+
+def degree_bound(polynomial: fmpz_mpoly) -> int:
+    """Return the sum of the degrees in each generator, which the total degree cannot exceed (and which is cheap)."""
+    if len(polynomial) == 1:
+        return int(polynomial.total_degree())
+    return sum(map(int, polynomial.degrees())) if polynomial else 0

@@ -1,0 +1,396 @@
+"""Scalars: rational functions over Q in the generators of a field, always reduced.
+
+numerator / denominator are coprime integer polynomials and the denominator's leading coefficient is positive, so
+two scalars are equal exactly when both parts are.  Arithmetic joins fields by itself.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
+
+from symobs.errors import WrongKind
+from symobs.exact.kernel.field import RATIONALS, Field
+from symobs.exact.kernel.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
+from symobs.exact.kernel.univariate import by_powers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+#: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
+_COEFFICIENT_LIMIT = 2**31
+
+
+class Scalar:
+    """An element numerator / denominator of a field."""
+
+    __slots__ = ("denominator_part", "field", "known_hash", "numerator_part")
+
+    def __init__(self, field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> None:
+        """Take parts that are already reduced; `reduced` is the general constructor."""
+        self.field = field
+        self.numerator_part = numerator
+        self.denominator_part = denominator
+
+    # -- construction ---------------------------------------------------------------------------------------------
+
+    @staticmethod
+    def reduced(field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Scalar:
+        """Return numerator / denominator in lowest terms; the denominator must not be zero."""
+        if not numerator:
+            return Scalar(field, field.zero, field.one)
+        if not denominator.is_one():
+            common = common_factor(numerator, denominator)
+            if not common.is_one():
+                numerator, denominator = numerator / common, denominator / common
+            if denominator.leading_coefficient() < 0:
+                numerator, denominator = -numerator, -denominator
+        return Scalar(field, numerator, denominator)
+
+    @staticmethod
+    def of(value: object) -> Scalar:
+        """Return the scalar equal to an integer, a fraction or a scalar."""
+        if isinstance(value, Scalar):
+            return value
+        if isinstance(value, Fraction):
+            return Scalar.rational(value.numerator, value.denominator)
+        if isinstance(value, (int, fmpz)):
+            return Scalar(RATIONALS, RATIONALS.context.constant(value), RATIONALS.one)
+        message = f"{type(value).__name__} is not an exact number"
+        raise WrongKind(message)
+
+    @staticmethod
+    def rational(numerator: int, denominator: int = 1) -> Scalar:
+        """Return the number numerator / denominator."""
+        constant = RATIONALS.context.constant
+        return Scalar.reduced(RATIONALS, constant(numerator), constant(denominator))
+
+    @staticmethod
+    def symbol(name: str) -> Scalar:
+        """Return the generator `name`."""
+        field = Field.of((name,))
+        return Scalar(field, field.context.gen(0), field.one)
+
+    @staticmethod
+    def generator(field: Field, name: str) -> Scalar:
+        """Return the generator `name` as an element of `field`."""
+        return Scalar(field, field.context.gen(field.position[name]), field.one)
+
+    def within(self, field: Field) -> Scalar:
+        """Return the same value as an element of `field`, which must contain the generators it uses."""
+        if field is self.field:
+            return self
+        return Scalar(field, field.lift(self.numerator_part, self.field), field.lift(self.denominator_part, self.field))
+
+    def over(self, denominator: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the numerator over a multiple of the denominator."""
+        if denominator == self.denominator_part:
+            return self.numerator_part
+        return self.numerator_part * (denominator / self.denominator_part)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (
+            _from_terms,
+            (self.field.names, _plain_terms(self.numerator_part), _plain_terms(self.denominator_part)),
+        )
+
+    # -- arithmetic -----------------------------------------------------------------------------------------------
+
+    def _pair(self, other: Scalar | int | Fraction) -> tuple[Scalar, Scalar, Field]:
+        other = Scalar.of(other)
+        if self.field is other.field:
+            return self, other, self.field
+        field = self.field | other.field
+        return self.within(field), other.within(field), field
+
+    def __add__(self, other: Scalar | int | Fraction) -> Scalar:
+        a, b, field = self._pair(other)
+        if a.denominator_part == b.denominator_part:
+            return Scalar.reduced(field, a.numerator_part + b.numerator_part, a.denominator_part)
+        return Scalar.reduced(
+            field,
+            a.numerator_part * b.denominator_part + b.numerator_part * a.denominator_part,
+            a.denominator_part * b.denominator_part,
+        )
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Scalar:
+        return Scalar(self.field, -self.numerator_part, self.denominator_part)
+
+    def __sub__(self, other: Scalar | int | Fraction) -> Scalar:
+        return self + (-Scalar.of(other))
+
+    def __rsub__(self, other: int | Fraction) -> Scalar:
+        return Scalar.of(other) - self
+
+    def __mul__(self, other: Scalar | int | Fraction) -> Scalar:
+        if not isinstance(other, (Scalar, int, Fraction)):
+            return NotImplemented
+        a, b, field = self._pair(other)
+        return Scalar.reduced(field, a.numerator_part * b.numerator_part, a.denominator_part * b.denominator_part)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Scalar | int | Fraction) -> Scalar:
+        a, b, field = self._pair(other)
+        if not b.numerator_part:
+            message = "division by zero"
+            raise ZeroDivisionError(message)
+        return Scalar.reduced(field, a.numerator_part * b.denominator_part, a.denominator_part * b.numerator_part)
+
+    def __rtruediv__(self, other: int | Fraction) -> Scalar:
+        return Scalar.of(other) / self
+
+    def __pow__(self, exponent: int) -> Scalar:
+        if exponent < 0:
+            return (Scalar.of(1) / self) ** -exponent
+        return Scalar(self.field, self.numerator_part**exponent, self.denominator_part**exponent)
+
+    # -- questions ------------------------------------------------------------------------------------------------
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scalar):
+            if not isinstance(other, (int, Fraction)):
+                return NotImplemented
+            other = Scalar.of(other)
+        a, b = self, other
+        if a.field is not b.field:
+            a, b, _ = self._pair(other)
+        return bool(a.numerator_part == b.numerator_part and a.denominator_part == b.denominator_part)
+
+    def __hash__(self) -> int:
+        """Hash by invariants that do not depend on the surrounding field; kept, since they take a while."""
+        if not hasattr(self, "known_hash"):
+            self.known_hash: int = self._hash()
+        return self.known_hash
+
+    def _hash(self) -> int:
+        if self.is_constant:
+            return hash(self.fraction())
+        degrees = zip(self.numerator_part.degrees(), self.denominator_part.degrees(), strict=True)
+        places = [index for index, (above, below) in enumerate(degrees) if above > 0 or below > 0]
+        below = () if self.denominator_part.is_one() else invariants(self.denominator_part, places)
+        names = tuple([self.field.names[index] for index in places])
+        return hash((names, invariants(self.numerator_part, places), below))
+
+    def __bool__(self) -> bool:
+        return bool(self.numerator_part)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether this is 0."""
+        return not self.numerator_part
+
+    @property
+    def is_one(self) -> bool:
+        """Whether this is 1."""
+        return bool(self.numerator_part.is_one() and self.denominator_part.is_one())
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether this is a rational number."""
+        return bool(self.numerator_part.is_constant() and self.denominator_part.is_constant())
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The generators that really occur."""
+        degrees = zip(self.field.names, self.numerator_part.degrees(), self.denominator_part.degrees(), strict=True)
+        return frozenset(name for name, above, below in degrees if above > 0 or below > 0)
+
+    @property
+    def size(self) -> int:
+        """The number of terms of numerator and denominator."""
+        return len(self.numerator_part) + len(self.denominator_part)
+
+    def degrees(self) -> tuple[int, int]:
+        """Return upper bounds of the total degrees of numerator and denominator."""
+        return degree_bound(self.numerator_part), degree_bound(self.denominator_part)
+
+    def lengths(self) -> tuple[float, float]:
+        """Return bounds of log₂ of the sums of the |coefficients| of numerator and denominator."""
+        return length_bits(self.numerator_part), length_bits(self.denominator_part)
+
+    def fingerprint(self) -> str:
+        """Return a text that differs between different values in practice: whole where short, else a summary."""
+        return f"{polynomial_fingerprint(self.numerator_part)}/{polynomial_fingerprint(self.denominator_part)}"
+
+    @property
+    def numerator(self) -> Scalar:
+        """The numerator of the reduced form."""
+        return Scalar(self.field, self.numerator_part, self.field.one)
+
+    @property
+    def denominator(self) -> Scalar:
+        """The denominator of the reduced form."""
+        return Scalar(self.field, self.denominator_part, self.field.one)
+
+    def common_denominator(self) -> Scalar:
+        """Return the denominator, as a matrix does."""
+        return self.denominator
+
+    def fraction(self) -> Fraction:
+        """Return a constant as a `Fraction`."""
+        return Fraction(int(_constant(self.numerator_part)), int(_constant(self.denominator_part)))
+
+    def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
+        """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""
+        return list(self.each_term())
+
+    def each_term(self) -> Iterator[tuple[int, tuple[tuple[str, int], ...]]]:
+        """Yield the terms one by one."""
+        for powers, coefficient in self.numerator_part.terms():
+            pairs = zip(self.field.names, powers, strict=True)
+            yield int(coefficient), tuple((name, int(power)) for name, power in pairs if power)
+
+    def __str__(self) -> str:
+        from symobs.exact.kernel.canonical_text import scalar_text  # noqa: PLC0415 - printing stands on scalars, not the reverse
+
+        return scalar_text(self)
+
+    def __repr__(self) -> str:
+        return f"Scalar({self})"
+
+    # -- as a polynomial in one generator -------------------------------------------------------------------------
+
+    def degree(self, variable: str) -> int:
+        """Return the degree of the numerator in `variable` (−1 for zero)."""
+        if not self.numerator_part:
+            return -1
+        index = self.field.position.get(variable)
+        return 0 if index is None else int(self.numerator_part.degrees()[index])
+
+    def is_polynomial_in(self, variable: str) -> bool:
+        """Whether the denominator is free of `variable`."""
+        index = self.field.position.get(variable)
+        return index is None or self.denominator_part.degrees()[index] <= 0
+
+    def coefficients(self, variable: str, field: Field | None = None) -> tuple[Scalar, ...]:
+        """Return the coefficients of a polynomial in `variable`, highest power first, free of `variable`.
+
+        They are elements of `field` where one is given; it must contain the other generators that occur.
+        """
+        target = self.field if field is None else field
+        index = self.field.position.get(variable)
+        if index is None or self.degree(variable) <= 0:
+            return (self.within(target),)
+        parts = by_powers(self.numerator_part, index, self.field, target)
+        below = target.lift(self.denominator_part, self.field)
+        return tuple(Scalar.reduced(target, part, below) for part in parts)
+
+    # -- factors and substitution ---------------------------------------------------------------------------------
+
+    def factors(self) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
+        """Return (unit, ((irreducible polynomial, multiplicity), …)) with unit · product = this value.
+
+        Factors are primitive with positive leading coefficient; those of the denominator have negative multiplicity.
+        """
+        return (self, ()) if self.is_zero else _factored(self)
+
+    def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the value with generators replaced; raises ZeroDivisionError where a denominator vanishes."""
+        relevant = {name: value for name, value in values.items() if name in self.field.position}
+        if not relevant:
+            return self
+        above, below = (_compose(p, self.field, relevant) for p in (self.numerator_part, self.denominator_part))
+        return above / below
+
+
+def _constant(polynomial: fmpz_mpoly) -> fmpz:
+    return polynomial.leading_coefficient() if polynomial else fmpz(0)
+
+
+def _plain_terms(polynomial: fmpz_mpoly) -> tuple[tuple[tuple[int, ...], int], ...]:
+    return tuple((tuple(map(int, powers)), int(coefficient)) for powers, coefficient in polynomial.terms())
+
+
+def _from_terms(
+    names: tuple[str, ...],
+    numerator: tuple[tuple[tuple[int, ...], int], ...],
+    denominator: tuple[tuple[tuple[int, ...], int], ...],
+) -> Scalar:
+    field = Field.of(names)
+    return Scalar(field, field.context.from_dict(dict(numerator)), field.context.from_dict(dict(denominator)))
+
+
+@lru_cache(maxsize=1024)
+def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
+    """Return what `factors` does of a value that is not 0; the same polynomials are asked about again and again."""
+    field = value.field
+    above, over = _factor(field, value.numerator_part)
+    below, under = _factor(field, value.denominator_part)
+    found = [(Scalar(field, part, field.one), power) for part, power in over]
+    found += [(Scalar(field, part, field.one), -power) for part, power in under]
+    return Scalar.rational(above, below), tuple(found)
+
+
+def _factor(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
+    """Factor over Z into (unit, primitive irreducible factors with positive leading coefficient)."""
+    if polynomial.is_constant():
+        return int(_constant(polynomial)), []
+    if max(abs(c) for c in polynomial.coeffs()) < _COEFFICIENT_LIMIT:
+        try:
+            unit, parts = polynomial.factor()
+        except OverflowError:
+            unit, parts = _factor_over_rationals(field, polynomial)
+    else:
+        unit, parts = _factor_over_rationals(field, polynomial)
+    whole, found = int(unit), []
+    for part, power in parts:
+        positive = part
+        if part.leading_coefficient() < 0:
+            positive, whole = -part, whole * (-1) ** (power % 2)
+        found.append((positive, int(power)))
+    found.sort(key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
+    return whole, found
+
+
+def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:
+    letters = tuple(f"x{index}" for index in range(len(field.names)))  # the library keeps what it is asked for
+    rational = fmpq_mpoly_ctx.get(letters, field.context.ordering())
+    _, parts = rational.from_dict({p: fmpq(c) for p, c in polynomial.terms()}).factor()
+    found, product = [], field.one
+    for part, power in parts:
+        scale = fmpz(1)
+        for coefficient in part.coeffs():
+            scale = scale * coefficient.q // scale.gcd(coefficient.q)
+        whole = field.context.from_dict({p: (c * scale).p for p, c in part.terms()})
+        _, whole = whole.primitive()
+        found.append((whole, power))
+        product = product * whole**power
+    return _constant(polynomial / product), found
+
+
+def _compose(polynomial: fmpz_mpoly, field: Field, values: Mapping[str, Scalar]) -> Scalar:
+    """Evaluate a polynomial at scalars: clear denominators generator by generator, compose once."""
+    target = Field.of([name for name in field.names if name not in values])
+    for value in values.values():
+        target = target | value.field
+    powers = dict(zip(field.names, polynomial.degrees(), strict=True))
+    clearing = target.one
+    images = []
+    homogenised: list[tuple[int, int, fmpz_mpoly]] = []
+    for index, name in enumerate(field.names):
+        if name not in values:
+            images.append(target.context.gen(target.position[name]))
+            continue
+        value = values[name].within(target)
+        images.append(value.numerator_part)
+        if not value.denominator_part.is_one() and powers[name] > 0:
+            homogenised.append((index, int(powers[name]), value.denominator_part))
+            clearing = clearing * value.denominator_part ** int(powers[name])
+    if not homogenised:
+        return Scalar(target, polynomial.compose(*images, ctx=target.context), target.one)
+    total = target.zero
+    for exponents, coefficient in polynomial.terms():
+        term = target.context.constant(coefficient)
+        for image, exponent in zip(images, exponents, strict=True):
+            if exponent:
+                term = term * image ** int(exponent)
+        for index, degree, denominator in homogenised:
+            term = term * denominator ** (degree - int(exponents[index]))
+        total = total + term
+    return Scalar.reduced(target, total, clearing)

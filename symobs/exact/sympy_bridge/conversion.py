@@ -1,0 +1,272 @@
+"""SymPy in and out.  Imported only when SymPy objects come in or are asked for."""
+
+from __future__ import annotations
+
+import gc
+from contextlib import contextmanager
+from fractions import Fraction
+from functools import cmp_to_key
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import InexactInput, InputError
+from symobs.exact.algebraic.complex import Complex
+from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.kernel import generators as functions
+from symobs.exact.kernel.field import EIGENVALUE
+from symobs.exact.kernel.matrix import Matrix
+from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.sympy_bridge.sympy_import import sympy
+from symobs.exact.time_functions.root_sum import RootSum
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.exact.algebraic.polynomial_roots import Factored, Root
+
+
+def scalar_to_sympy(
+    value: Scalar, objects: Mapping[str, Any] | None = None, made: dict[Scalar, Any] | None = None
+) -> sympy.Expr:
+    """Return the SymPy expression of a scalar; `objects` gives the Symbol a name stands for.
+
+    `made` keeps the denominators that several entries share.
+    """
+    known, made = dict(objects or {}), {} if made is None else made
+    below = value.denominator
+    if below.is_constant:
+        return _polynomial(value.numerator, known, int(below.fraction()))
+    if below not in made:
+        made[below] = _polynomial(below, known)
+    above, under = _polynomial(value.numerator, known), made[below]
+    if not (above.is_Add and under.is_Add):
+        return above / under
+    # What SymPy makes of it too; but long sums it asks for their signs first, for minutes.
+    factors = sorted([above, sympy.Pow(under, -1, evaluate=False)], key=_SYMPYS_ORDER)
+    return sympy.Mul._from_args(factors, is_commutative=True)  # noqa: SLF001 - as every SymPy module does
+
+
+#: Sums with more terms are sorted here: SymPy compares expressions one with another.
+_LONG = 50
+_SYMPYS_ORDER = cmp_to_key(sympy.Basic.compare)
+
+
+def _polynomial(part: Scalar, known: dict[str, Any], divisor: int = 1) -> sympy.Expr:
+    """Return a polynomial with integer coefficients, divided by an integer, multiplied out."""
+    if part.size > _LONG and all(name.isidentifier() and functions.known(name) is None for name in part.field.names):
+        generators = {name: _generator(name, known) for name in part.names}
+        if all(generator.is_commutative for generator in generators.values()):
+            return _long_polynomial(str(part), generators, divisor)
+    terms = []
+    for coefficient, powers in part.terms():
+        factors = [_generator(name, known) ** power for name, power in powers]
+        terms.append(sympy.Mul(sympy.Rational(coefficient, divisor), *factors))
+    return sympy.Add(*terms)
+
+
+def _long_polynomial(text: str, generators: dict[str, Any], divisor: int) -> sympy.Expr:
+    """Return a sum of many terms from its canonical text."""
+    with _without_collection():
+        return _put_together(text, generators, divisor)
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Let no garbage be looked for meanwhile: among a million new parts there is none, and the search doubles the time."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+def _put_together(text: str, generators: dict[str, Any], divisor: int) -> sympy.Expr:
+    """Return a sum of many terms, its parts where SymPy sorts them to.
+
+    SymPy's order is by class, number of parts, and part by part; so each distinct factor is compared once, and a term
+    stands where the places of its factors say.
+    """
+    read = [_term(term) for term in text.replace(" - ", " + -").split(" + ")]
+    atoms: dict[object, Any] = {n: sympy.Rational(n, divisor) for n in {number for number, _ in read}}
+    for factor in {factor for _, factors in read for factor in factors}:
+        name, _, power = factor.partition("^")
+        atoms[factor] = generators[name] ** int(power or 1)
+    kinds = {type(atom): atom for atom in atoms.values()} | {sympy.Mul: 2 * sympy.Symbol("x")}
+    rank = {kind: place for place, kind in enumerate(sorted(kinds, key=lambda kind: _SYMPYS_ORDER(kinds[kind])))}
+    place = {atom: place for place, atom in enumerate(sorted(atoms.values(), key=_SYMPYS_ORDER))}
+    places = {name: place[atom] for name, atom in atoms.items()}
+    in_order = {place[atom]: atom for atom in atoms.values()}
+    constants, terms = [], []
+    for number, factors in read:
+        own = sorted([places[factor] for factor in factors])
+        if atoms[number] is not sympy.S.One:
+            own.insert(0, places[number])
+        if not factors:
+            constants.append(atoms[number])
+        elif len(own) == 1:
+            terms.append((rank[type(in_order[own[0]])], 0, own, in_order[own[0]]))
+        else:
+            product = sympy.Mul._from_args([in_order[each] for each in own], is_commutative=True)  # noqa: SLF001
+            terms.append((rank[sympy.Mul], len(own), own, product))
+    terms.sort(key=itemgetter(0, 1, 2))
+    return sympy.Add._from_args([*constants, *(term[3] for term in terms)], is_commutative=True)  # noqa: SLF001
+
+
+def _term(text: str) -> tuple[int, list[str]]:
+    """Return coefficient and powers of a term: −3 and a**2, b of `-3*a**2*b`."""
+    sign, body = (-1, text[1:]) if text[0] == "-" else (1, text)
+    number, *factors = body.replace("**", "^").split("*")
+    if number.isdigit():
+        return sign * int(number), factors
+    return sign, [number, *factors]
+
+
+def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
+    """Return the Symbol of a name, or the function it is the name of."""
+    found = functions.known(name)
+    if found is None:
+        return sympy.pi if name == functions.PI else objects.setdefault(name, sympy.Symbol(name))
+    if isinstance(found, RootSum):
+        root = sympy.Symbol(found.bound)
+        named = {EIGENVALUE: Scalar.symbol(found.bound)}
+        q, summand = (
+            scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
+        )
+        return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
+    if isinstance(found, RealRoot):
+        return sympy.CRootOf(scalar_to_sympy(found.argument), found.number.index)
+    return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
+
+
+def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:
+    """Return the `ImmutableMatrix` of a matrix."""
+    made: dict[Scalar, Any] = {}
+    return sympy.ImmutableMatrix(*value.shape, [scalar_to_sympy(entry, objects, made) for entry in value.entries])
+
+
+def factored_to_sympy(value: Factored, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return a factored form as a product of powers, not multiplied out."""
+    powers = [sympy.Pow(scalar_to_sympy(factor, objects), power) for factor, power in value.factors]
+    return sympy.Mul(scalar_to_sympy(value.unit, objects), *powers)
+
+
+def table_to_sympy(rows: tuple[tuple[Factored, ...], ...], objects: Mapping[str, Any]) -> sympy.ImmutableMatrix:
+    """Return the `ImmutableMatrix` of rows of factored forms."""
+    return sympy.ImmutableMatrix([[factored_to_sympy(entry, objects) for entry in row] for row in rows])
+
+
+def complex_to_sympy(value: Complex, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return real + imaginary·I."""
+    return scalar_to_sympy(value.real, objects) + sympy.I * scalar_to_sympy(value.imaginary, objects)
+
+
+def root_to_sympy(root: Root, objects: Mapping[str, Any]) -> sympy.Expr:
+    """Return a root in radicals where it has them, else as `CRootOf` or as the factor's root."""
+    if not root.is_closed:
+        factor = scalar_to_sympy(root.factor, objects)
+        if len(root.factor.names) > 1:  # SymPy's CRootOf takes numeric coefficients only
+            return sympy.Function("CRootOf")(factor, root.index)
+        return sympy.CRootOf(sympy.Poly(factor, sympy.Symbol(root.variable)), root.index)
+    offset = root.sign * sympy.sqrt(scalar_to_sympy(root.radicand, objects))
+    return scalar_to_sympy(root.centre, objects) + offset
+
+
+def relation_to_sympy(left: Scalar, operator: str, objects: Mapping[str, Any]) -> Any:
+    """Return `left operator 0` as a SymPy relation, not evaluated away."""
+    kinds = {"!=": sympy.Ne, "==": sympy.Eq, ">": sympy.Gt, ">=": sympy.Ge, "<": sympy.Lt, "<=": sympy.Le}
+    return kinds[operator](scalar_to_sympy(left, objects), 0, evaluate=False)
+
+
+def complex_from_sympy(expression: Any, where: str) -> Complex:
+    """Return the exact value of a SymPy expression built from numbers, symbols, i and the four operations."""
+    if isinstance(expression, (int, Fraction)):
+        return Complex.of(expression)
+    if isinstance(expression, sympy.Poly):
+        return complex_from_sympy(expression.as_expr(), where)
+    if not isinstance(expression, sympy.Expr):
+        message = f"{type(expression).__name__} is not an exact expression"
+        raise InputError(message, where=where)
+    if expression.is_Integer or expression.is_Rational:
+        return Complex.of(Fraction(int(expression.p), int(expression.q)))
+    if expression.is_Float:
+        message = f"{expression} is a floating-point number"
+        raise InexactInput(message, where=where, repair="write an exact value such as Rational(1, 10)")
+    if expression is sympy.I:
+        return Complex(Scalar.of(0), Scalar.of(1))
+    if expression.is_Symbol:
+        return Complex.of(Scalar.symbol(expression.name))
+    arguments = expression.args
+    if expression.is_Add or expression.is_Mul:
+        total = complex_from_sympy(arguments[0], where)
+        for argument in arguments[1:]:
+            value = complex_from_sympy(argument, where)
+            total = total + value if expression.is_Add else total * value
+        return total
+    if expression.is_Pow and expression.exp.is_Integer:
+        return complex_from_sympy(expression.base, where) ** int(expression.exp)
+    message = f"{expression} is not a rational expression"
+    raise InputError(message, where=where, repair="use numbers, symbols and + - * / with integer powers")
+
+
+def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:
+    """Return numerator and denominator as they stand, those of a sum brought over the least common denominator."""
+    if isinstance(expression, sympy.Add | sympy.Mul):
+        above, below = fraction_from_sympy(expression.args[0], where)
+        for argument in expression.args[1:]:
+            other_above, other_below = fraction_from_sympy(argument, where)
+            if expression.is_Mul:
+                above, below = above * other_above, below * other_below
+            else:
+                ratio = below / other_below
+                mine, theirs = (
+                    (Complex.of(ratio.real.denominator), Complex.of(ratio.real.numerator))
+                    if ratio.is_real
+                    else (other_below, below)
+                )
+                above, below = above * mine + other_above * theirs, below * mine
+        return above, below
+    if isinstance(expression, sympy.Pow) and expression.exp.is_Integer:
+        above, below = (part ** abs(int(expression.exp)) for part in fraction_from_sympy(expression.base, where))
+        return (above, below) if expression.exp > 0 else (below, above)
+    return complex_from_sympy(expression, where), Complex.of(1)
+
+
+def scalar_from_sympy(expression: Any, where: str) -> Scalar:
+    """Return the scalar of a real SymPy expression."""
+    value = complex_from_sympy(expression, where)
+    if not value.is_real:
+        message = f"{expression} is not real"
+        raise InputError(message, where=where)
+    return value.real
+
+
+def matrix_from_sympy(matrix: Any, where: str) -> Matrix:
+    """Return the exact matrix of a SymPy matrix."""
+    rows, columns = matrix.shape
+    return Matrix.of(
+        [[scalar_from_sympy(matrix[i, j], f"{where}[{i}][{j}]") for j in range(columns)] for i in range(rows)], columns
+    )
+
+
+def sign_from_assumptions(symbol: Any) -> str:
+    """Return the sign a caller's Symbol declares by its assumptions."""
+    for sign in ("positive", "negative", "nonnegative", "nonpositive"):
+        if getattr(symbol, f"is_{sign}"):
+            return sign
+    return "nonzero" if symbol.is_nonzero else "real"
+
+
+def rectangles(factor: Scalar, variable: str, first: int) -> tuple[tuple[Fraction, Any], ...]:
+    """Return where SymPy has isolated the roots of a polynomial from `CRootOf(polynomial, first)` on.
+
+    Each is a number times what lies in a rectangle.
+    """
+    polynomial = sympy.Poly(scalar_to_sympy(factor.numerator), sympy.Symbol(variable))
+    found = []
+    for k in range(first, polynomial.degree()):
+        scale, root = sympy.CRootOf(polynomial, k).as_coeff_Mul()
+        interval = root._get_interval()  # noqa: SLF001 - SymPy tells its order in no other way
+        found.append((Fraction(int(scale.p), int(scale.q)), interval))
+    return tuple(found)

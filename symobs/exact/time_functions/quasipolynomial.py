@@ -1,0 +1,331 @@
+"""Quasipolynomials: sums of c · tⁿ e^{αt}, c · tⁿ e^{αt} cos βt and c · tⁿ e^{αt} sin βt with constants c, α, β.
+
+These functions are linearly independent, so a sum has one form: two are equal where their coefficients are.  Sums are
+closed under products, derivatives and integrals.  Constants are scalars, with square roots in normal form (`tidy`).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from symobs._dataclass import dataclass
+from symobs.exact.kernel.generators import (
+    ONE,
+    ZERO,
+    derivative,
+    function,
+    known,
+    leads_with_minus,
+    roots_in,
+    tidy,
+    with_roots,
+)
+from symobs.exact.kernel.matrix import Matrix
+from symobs.exact.kernel.scalar import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_HALF = Fraction(1, 2)
+
+
+class Key(NamedTuple):
+    """tⁿ e^{rate · t}, times cos or sin of frequency · t where `wave` says so."""
+
+    power: int
+    rate: Scalar
+    wave: str
+    frequency: Scalar
+
+
+@dataclass(frozen=True)
+class Quasi:
+    """Σ coefficient · function; no coefficient is 0."""
+
+    terms: Mapping[Key, Scalar]
+
+    @staticmethod
+    def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasi:
+        """Return the sum of terms, those of one function collected."""
+        total: dict[Key, Scalar] = {}
+        for key, coefficient in terms:
+            total[key] = total[key] + coefficient if key in total else coefficient
+        tidied = {key: tidy(coefficient) for key, coefficient in total.items()}
+        return Quasi({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
+
+    @staticmethod
+    def constant(value: Scalar) -> Quasi:
+        """Return a constant."""
+        return Quasi.of([(Key(0, ZERO, "", ZERO), value)])
+
+    def __add__(self, other: Quasi) -> Quasi:
+        return Quasi.of([*self.terms.items(), *other.terms.items()])
+
+    def __neg__(self) -> Quasi:
+        return Quasi({key: -coefficient for key, coefficient in self.terms.items()})
+
+    def __sub__(self, other: Quasi) -> Quasi:
+        return self + (-other)
+
+    def scaled(self, factor: Scalar) -> Quasi:
+        """Return the sum times a constant."""
+        return Quasi.of([(key, coefficient * factor) for key, coefficient in self.terms.items()])
+
+    def __mul__(self, other: Quasi) -> Quasi:
+        found: list[tuple[Key, Scalar]] = []
+        for a, left in self.terms.items():
+            for b, right in other.terms.items():
+                found += _times(a, b, left * right)
+        return Quasi.of(found)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the function vanishes."""
+        return not self.terms
+
+    @property
+    def at_zero(self) -> Scalar:
+        """The value at t = 0."""
+        total = ZERO
+        for key, coefficient in self.terms.items():
+            if key.power == 0 and key.wave != "sin":
+                total = total + coefficient
+        return tidy(total)
+
+    def derivative(self) -> Quasi:
+        """Return d/dt."""
+        found: list[tuple[Key, Scalar]] = []
+        for key, c in self.terms.items():
+            if key.power:
+                found.append((key._replace(power=key.power - 1), c * key.power))
+            found.append((key, c * key.rate))
+            if key.wave:
+                other = "sin" if key.wave == "cos" else "cos"
+                found.append((key._replace(wave=other), c * key.frequency * (-1 if key.wave == "cos" else 1)))
+        return Quasi.of(found)
+
+    def integral(self) -> Quasi:
+        """Return the integral from 0 to t, by parts; where a rate depends on parameters it must not vanish."""
+        found: list[tuple[Key, Scalar]] = []
+        for key, coefficient in self.terms.items():
+            found += _primitive(key, coefficient)
+        whole = Quasi.of(found)
+        return whole - Quasi.constant(whole.at_zero)
+
+    def reversed(self) -> Quasi:
+        """Return the function of −t."""
+        found = []
+        for key, c in self.terms.items():
+            sign = (-1) ** key.power * (-1 if key.wave == "sin" else 1)
+            found.append((key._replace(rate=-key.rate), c * sign))
+        return Quasi.of(found)
+
+    def value_at(self, time: Scalar) -> Scalar:
+        """Return the scalar whose generators are functions of `time`, conjugate exponentials as cosh and sinh."""
+        total = ZERO
+        parts = [part for key, c in self.terms.items() for part in (key.rate, key.frequency, c)]
+        roots = dict.fromkeys(root for part in parts for root in roots_in(part))
+        for key, coefficient in _hyperbolic(self.terms):
+            value = with_roots(tidy(coefficient), roots) * time**key.power * function("exp", key.rate * time)
+            total = total + (value * function(key.wave, key.frequency * time) if key.wave else value)
+        return total
+
+
+def _key(power: int, rate: Scalar, wave: str, frequency: Scalar, c: Scalar) -> list[tuple[Key, Scalar]]:
+    """Return a term in the form a sum has: positive frequencies, none where it is 0."""
+    if frequency.is_zero:
+        return [] if wave == "sin" else [(Key(power, rate, "", ZERO), c)]
+    if leads_with_minus(frequency):
+        frequency, c = -frequency, (-c if wave == "sin" else c)
+    return [(Key(power, rate, wave, frequency), c)]
+
+
+def _times(a: Key, b: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
+    """Return a product of two functions: of two waves those of sum and difference."""
+    power, rate = a.power + b.power, tidy(a.rate + b.rate)
+    if not a.wave or not b.wave:
+        return [(Key(power, rate, a.wave or b.wave, a.frequency + b.frequency), c)]
+    if a.wave == "cos" and b.wave == "sin":
+        a, b = b, a
+    both, apart = tidy(a.frequency + b.frequency), tidy(a.frequency - b.frequency)
+    half = c * _HALF
+    if a.wave == "sin" and b.wave == "sin":
+        return [*_key(power, rate, "cos", apart, half), *_key(power, rate, "cos", both, -half)]
+    return [*_key(power, rate, a.wave, apart, half), *_key(power, rate, a.wave, both, half)]
+
+
+def _primitive(key: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
+    """Return an antiderivative of c tⁿ e^{αt} (1, cos βt or sin βt)."""
+    power, a, b = key.power, key.rate, key.frequency
+    if a.is_zero and not key.wave:
+        return [(key._replace(power=power + 1), c / (power + 1))]
+    if not key.wave:
+        lower = _primitive(key._replace(power=power - 1), -(c * power) / a) if power else []
+        return [(key, tidy(c / a)), *lower]
+    size = tidy(a * a + b * b)
+    p, q = (c, ZERO) if key.wave == "cos" else (ZERO, c)
+    found: list[tuple[Key, Scalar]] = []
+    for wave, part in (("cos", (a * p - b * q) / size), ("sin", (b * p + a * q) / size)):
+        if not part.is_zero:
+            found.append((key._replace(wave=wave), tidy(part)))
+            found += _primitive(key._replace(wave=wave, power=power - 1), -part * power) if power else []
+    return found
+
+
+def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
+    """Return the terms with e^{(σ+μ)t} and e^{(σ−μ)t} as e^{σt} cosh μt and e^{σt} sinh μt where μ is a root.
+
+    Where a cosine or sine stands beside such a pair, the two exponentials stay.
+    """
+    found: dict[Key, Scalar] = {}
+    for key, c in terms.items():
+        middle, offset = rate_parts(key.rate)
+        if offset.is_zero or key.wave:
+            found[key] = found.get(key, ZERO) + c
+            continue
+        turned = leads_with_minus(offset)
+        offset = -offset if turned else offset
+        for wave, part in (("cosh", c), ("sinh", -c if turned else c)):
+            place = Key(key.power, middle, wave, offset)
+            found[place] = found.get(place, ZERO) + part
+    return [(key, c) for key, c in found.items() if not tidy(c).is_zero]
+
+
+def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
+    """Return (the part without square roots, the rest)."""
+    plain = rate.substitute({name: ZERO for name in rate.names if (f := known(name)) is not None and f.kind == "sqrt"})
+    return plain, rate - plain
+
+
+# -- from scalars ----------------------------------------------------------------------------------------------------
+
+
+def quasi_of(value: Scalar, time: str = "t") -> Quasi:
+    """Return a scalar in functions of time as a sum; raises ValueError for what is none, such as exp(t²) or 1/t."""
+    below = Quasi.constant(ONE)
+    for name, power in _monomial_below(value, time):
+        below = below * _power(_inverse(name, time), power)
+    rest = _polynomial(value.numerator, time) * below
+    constant = value.denominator
+    for name, power in _monomial_below(value, time):
+        constant = constant / Scalar.symbol(name) ** power
+    return rest.scaled(1 / constant)
+
+
+def _monomial_below(value: Scalar, time: str) -> list[tuple[str, int]]:
+    """Return the exponentials of the denominator; raises ValueError where anything else there moves."""
+    moving = [name for name in value.denominator.names if _moves(name, time)]
+    found = [(name, min(dict(powers).get(name, 0) for _, powers in value.denominator.terms())) for name in moving]
+    rest = value.denominator
+    for name, power in found:
+        rest = rest / Scalar.symbol(name) ** power
+    if any(_moves(name, time) for name in rest.names):
+        message = f"{value} is not a sum of exponentials, sines and cosines times powers of {time}"
+        raise ValueError(message)
+    return found
+
+
+def _moves(name: str, time: str) -> bool:
+    found = known(name)
+    return name == time or (found is not None and not derivative(found.argument, time).is_zero)
+
+
+def _inverse(name: str, time: str) -> Quasi:
+    found = known(name)
+    if found is None or found.kind != "exp":
+        message = f"1/{name} is not a sum of exponentials, sines and cosines times powers of {time}"
+        raise ValueError(message)
+    return quasi_of(function("exp", -found.argument), time)
+
+
+def _polynomial(value: Scalar, time: str) -> Quasi:
+    total = Quasi.constant(ZERO)
+    for coefficient, powers in value.terms():
+        term = Quasi.constant(Scalar.of(coefficient))
+        for name, power in powers:
+            term = term * _power(_generator(name, time), power)
+        total = total + term
+    return total
+
+
+def _power(base: Quasi, exponent: int) -> Quasi:
+    value = Quasi.constant(ONE)
+    for _ in range(exponent):
+        value = value * base
+    return value
+
+
+def _generator(name: str, time: str) -> Quasi:
+    if name == time:
+        return Quasi({Key(1, ZERO, "", ZERO): ONE})
+    if not _moves(name, time):
+        return Quasi.constant(Scalar.symbol(name))
+    found = known(name)
+    assert found is not None  # noqa: S101 - only functions move
+    speed = derivative(found.argument, time)
+    if found.kind == "RootSum" or speed * Scalar.symbol(time) != found.argument or _depends(speed, time):
+        message = f"{name} is not a function of a multiple of {time}"
+        raise ValueError(message)
+    if found.kind == "exp":
+        return Quasi({Key(0, speed, "", ZERO): ONE})
+    if found.kind in {"cos", "sin"}:
+        return Quasi({Key(0, ZERO, found.kind, speed): ONE})
+    sign = 1 if found.kind == "cosh" else -1
+    half = Scalar.of(_HALF)
+    return Quasi.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
+
+
+def _depends(value: Scalar, time: str) -> bool:
+    return any(_moves(name, time) for name in value.names)
+
+
+# -- tables ----------------------------------------------------------------------------------------------------------
+
+Table = tuple[tuple[Quasi, ...], ...]
+
+
+def table_of(matrix: Matrix, time: str = "t") -> Table:
+    """Return the entries of a matrix as sums."""
+    return tuple(tuple(quasi_of(entry, time) for entry in row) for row in matrix.rows)
+
+
+def product(left: Table, right: Table) -> Table:
+    """Return the matrix product."""
+    columns = transposed(right)
+    return tuple(tuple(_dot(row, column) for column in columns) for row in left)
+
+
+def _dot(row: Iterable[Quasi], column: Iterable[Quasi]) -> Quasi:
+    total = Quasi({})
+    for a, b in zip(row, column, strict=True):
+        total = total + a * b
+    return total
+
+
+def transposed(table: Table) -> Table:
+    """Return the transpose."""
+    return tuple(zip(*table, strict=True))
+
+
+def integral(table: Table) -> Table:
+    """Return the integrals from 0 to t, entry by entry."""
+    return tuple(tuple(entry.integral() for entry in row) for row in table)
+
+
+def determinant(table: Table) -> Quasi:
+    """Return the determinant, by the first row."""
+    if len(table) == 1:
+        return table[0][0]
+    total = Quasi({})
+    for j, entry in enumerate(table[0]):
+        if not entry.is_zero:
+            rest = tuple(row[:j] + row[j + 1 :] for row in table[1:])
+            term = entry * determinant(rest)
+            total = total - term if j % 2 else total + term
+    return total
+
+
+def matrix_at(table: Table, time: Scalar) -> Matrix:
+    """Return the matrix of values in functions of `time`."""
+    return Matrix.of([[entry.value_at(time) for entry in row] for row in table], len(table[0]))

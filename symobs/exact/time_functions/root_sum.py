@@ -1,0 +1,91 @@
+"""Sums over the roots of a polynomial: φⱼ(t) = Σ λʲ e^{λt} / q′(λ), the roots λ of q being all different.
+
+Every symmetric sum Σ g(λ) e^{λt} is a combination of φ₀, …, φ_{d−1} with coefficients from the field of q.  Differentiating
+multiplies the summand by λ, and at t = 0 the sum is the trace of λʲ / q′(λ) in the field of a root.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.exact.algebraic.extension import Extension
+from symobs.exact.kernel.field import EIGENVALUE
+from symobs.exact.kernel.generators import Function, derivative, function, partial, substitute, symbols_in
+from symobs.exact.kernel.scalar import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: The name of the root in texts; `lambda` itself is a keyword where they are read.
+BOUND = "lam"
+
+
+@dataclass(frozen=True)
+class RootSum(Function):
+    """Σ λᵖ e^{λ·argument} / q′(λ) over the roots λ of q, a polynomial in the generator of eigenvalues."""
+
+    polynomial: Scalar
+    power: int
+
+    @staticmethod
+    def of(polynomial: Scalar, power: int, time: Scalar) -> Scalar:
+        """Return the sum, `power` less than the degree."""
+        return RootSum("RootSum", time, polynomial, power).value
+
+    @property
+    def summand(self) -> Scalar:
+        """What is summed over the roots."""
+        root = Scalar.symbol(EIGENVALUE)
+        return root**self.power * function("exp", root * self.argument) / self.slope
+
+    @property
+    def slope(self) -> Scalar:
+        """The derivative q′(λ)."""
+        return partial(self.polynomial, EIGENVALUE)
+
+    @property
+    def discriminant(self) -> Scalar:
+        """What vanishes exactly where two of the roots are equal: the product of q′ over all roots."""
+        return Extension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
+
+    @property
+    def bound(self) -> str:
+        """The name of the root in the text: one that no parameter has."""
+        taken = self.polynomial.names | self.argument.names
+        return next(name for name in (BOUND + "_" * k for k in range(len(taken) + 1)) if name not in taken)
+
+    @property
+    def text(self) -> str:
+        """SymPy's text; the variable is named where there are parameters."""
+        root = {EIGENVALUE: Scalar.symbol(self.bound)}
+        q, below = (p.substitute(root) for p in (self.polynomial, self.slope))
+        inside = f"{root[EIGENVALUE] ** self.power}*exp({root[EIGENVALUE] * self.argument})/({below})"
+        named = f", {self.bound}" if len(q.names) > 1 else ""
+        return f"RootSum({q}, Lambda({self.bound}, {inside}){named})"
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The time and the parameters of q."""
+        return symbols_in(self.argument) | symbols_in(self.polynomial) - {EIGENVALUE}
+
+    def rate(self, time: str) -> Scalar:
+        """Return d/dt: the summand times λ, its power reduced by q."""
+        field = Extension(self.polynomial, EIGENVALUE)
+        image = field.reduce(Scalar.symbol(EIGENVALUE) ** (self.power + 1))
+        total = Scalar.of(0)
+        for power, c in enumerate(reversed(image.coefficients(EIGENVALUE))):
+            if not c.is_zero:
+                total = total + c * RootSum.of(self.polynomial, power, self.argument)
+        return total * derivative(self.argument, time)
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the sum with symbols replaced; where the time is 0, the trace of λᵖ / q′(λ)."""
+        argument, q = substitute(self.argument, values), substitute(self.polynomial, values)
+        slope = partial(q, EIGENVALUE)
+        field = Extension(q, EIGENVALUE)
+        below = field.inverse(slope)  # raises where two roots are equal
+        if not argument.is_zero:
+            return replace(self, argument=argument, polynomial=q).value
+        return field.trace(field.reduce(Scalar.symbol(EIGENVALUE) ** self.power * below))

@@ -1,0 +1,64 @@
+"""How a linear system with numbers runs from a state: enclosures of e^{Mt} v, and how fast its modes are."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from flint import arb, arb_mat, fmpq, fmpq_mat
+
+from symobs.exact.kernel.precision import Precision
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from symobs.exact.kernel.matrix import Matrix
+
+#: Bits that are tried in turn until all enclosures are narrow.
+_BITS = (128, 256, 512, 1024, 2048, 4096)
+_HALF = arb(0.5)
+
+
+def rates(matrix: Matrix) -> tuple[float, float]:
+    """Return the largest and the smallest real part among the eigenvalues of a matrix of numbers, nearly."""
+    roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
+    real = [float(root.real.mid()) for root, _ in roots]
+    return max(real), min(real)
+
+
+def radius(matrix: Matrix) -> float:
+    """Return the largest absolute value among the eigenvalues of a matrix of numbers, nearly."""
+    roots: Any = _rational(matrix).charpoly().complex_roots()
+    return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
+
+
+def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
+    """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
+
+    The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again: an enclosure goes through few products.
+    Raises `ArithmeticError` where the enclosures stay too wide.
+    """
+    known = _rational(matrix)
+    for bits in _BITS:
+        with Precision(bits):
+            power = (arb_mat(known) * arb(fmpq(step.numerator, step.denominator))).exp()
+            columns = [[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start]
+            while len(columns[0]) < count:
+                more = (power * arb_mat(columns)).tolist()
+                columns = [[*row, *new] for row, new in zip(columns, more, strict=True)]
+                power = power * power
+            if all(entry.rad() < _HALF for row in columns for entry in row[:count]):
+                return [[_nearest(entry) for entry in state] for state in islice(zip(*columns, strict=True), count)]
+    raise ArithmeticError("a course with too much to compute")
+
+
+def _rational(matrix: Matrix) -> fmpq_mat:
+    values = [[entry.fraction() for entry in row] for row in matrix.rows]
+    return fmpq_mat([[fmpq(value.numerator, value.denominator) for value in row] for row in values])
+
+
+def _nearest(ball: arb) -> int:
+    """Return a whole number that is nearest to the middle of an interval."""
+    whole: Any = (ball.mid() + _HALF).floor().unique_fmpz()  # never None for what has no radius
+    return int(whole)

@@ -1,0 +1,125 @@
+"""Sums of c e^p cos q and c e^p sin q, with rational c and polynomials p and q of one generator: form and antiderivatives.
+
+A sum is held as a `Quasi` whose rates and frequencies are the exponents p and the arguments q themselves, and whose
+powers are 0.  An antiderivative of c e^p, if there is an elementary one, is r e^p with r' + p' r = c (Liouville), and
+where c is a polynomial so is r: its coefficients follow from the highest down.
+"""
+
+from __future__ import annotations
+
+from symobs.exact.kernel.generators import ONE, ZERO, derivative, function, identities, known, symbols_in
+from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.time_functions.quasipolynomial import Key, Quasi
+
+_WAVES = {"cos", "sin"}
+
+
+def moves(name: str, by: str) -> bool:
+    """Whether a generator is a function of another one."""
+    found = known(name)
+    return found is not None and found.kind != "sqrt" and by in found.symbols
+
+
+def waves_of(value: Scalar, by: str = "") -> Quasi | None:
+    """Return a value as a sum of functions of the generator `by`, of all generators where none is named.
+
+    None where a denominator, or something that is no exponential, cosine or sine, stands in the way.
+    """
+
+    def counts(name: str) -> bool:
+        found = known(name)
+        return moves(name, by) if by else found is not None and found.kind != "sqrt"
+
+    meanings, _ = identities([value])
+    value = value.substitute(meanings)
+    below, lowered = value.denominator, ZERO
+    for name in value.denominator.names:
+        if counts(name):
+            found, power = known(name), below.degree(name)
+            below = below / Scalar.symbol(name) ** power
+            if found is None or found.kind != "exp" or name in below.names:
+                return None
+            lowered = lowered - found.argument * power
+    total: list[tuple[Key, Scalar]] = []
+    for coefficient, powers in value.numerator.terms():
+        constant, exponent, waves = Scalar.of(coefficient) / below, lowered, Quasi.constant(ONE)
+        for name, power in powers:
+            found = known(name)
+            if found is None or not counts(name):
+                constant = constant * Scalar.symbol(name) ** power
+            elif found.kind == "exp":
+                exponent = exponent + found.argument * power
+            elif found.kind in _WAVES:
+                for _ in range(power):
+                    waves = waves * Quasi({Key(0, ZERO, found.kind, found.argument): ONE})
+            else:
+                return None
+        total += [(key._replace(rate=exponent), c * constant) for key, c in waves.terms.items()]
+    return Quasi.of(total)
+
+
+def value_of(waves: Quasi) -> Scalar:
+    """Return the sum as a scalar."""
+    total = ZERO
+    for key, c in waves.terms.items():
+        value = c * function("exp", key.rate)
+        total = total + (value * function(key.wave, key.frequency) if key.wave else value)
+    return total
+
+
+def collected(value: Scalar) -> Scalar:
+    """Return a value with one exponential and at most one cosine or sine in each term, where it can be so written."""
+    if not any(known(name) for name in value.names):
+        return value
+    waves = waves_of(value)
+    return value if waves is None else value_of(waves)
+
+
+def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] | None:
+    """Return (antiderivative of what moves as a function of `name`, the rest of the integrand).
+
+    None where a term has no elementary antiderivative, or is not treated here: exponents and coefficients are polynomials.
+    """
+    waves = waves_of(value, name)
+    if waves is None:
+        return None
+    groups: dict[tuple[Scalar, Scalar], dict[str, Scalar]] = {}
+    for key, c in waves.terms.items():
+        groups.setdefault((key.rate, key.frequency), {})[key.wave] = c
+    rest = groups.pop((ZERO, ZERO), {}).get("", ZERO)
+    found: list[tuple[Key, Scalar]] = []
+    for (p, q), parts in groups.items():
+        pair = _solved(p, q, (parts.get("cos", parts.get("", ZERO)), parts.get("sin", ZERO)), name)
+        if pair is None:
+            return None
+        names = ("cos", "sin") if not q.is_zero else ("", "")
+        found += [(Key(0, p, wave, q), r) for wave, r in zip(names, pair, strict=True) if not r.is_zero]
+    return value_of(Quasi.of(found)), rest
+
+
+def _solved(p: Scalar, q: Scalar, wanted: tuple[Scalar, Scalar], name: str) -> tuple[Scalar, Scalar] | None:
+    """Return polynomials u, v with u' + p'u + q'v = a and v' + p'v − q'u = b; None where there are none."""
+    if any(name in symbols_in(part.denominator) for part in (p, q, *wanted)):
+        return None
+    a, b = wanted
+    growth, turn, t = derivative(p, name), derivative(q, name), Scalar.symbol(name)
+    degree = max(growth.degree(name), turn.degree(name))
+    x, y = _coefficient(growth, degree, name), _coefficient(turn, degree, name)
+    u = v = ZERO
+    while not (a.is_zero and b.is_zero):
+        power = max(part.degree(name) for part in (a, b) if not part.is_zero)
+        if power < degree:
+            return None
+        above, beside, size = _coefficient(a, power, name), _coefficient(b, power, name), x * x + y * y
+        monomial = t ** (power - degree)
+        du, dv = (x * above - y * beside) / size * monomial, (y * above + x * beside) / size * monomial
+        a = a - derivative(du, name) - growth * du - turn * dv
+        b = b - derivative(dv, name) - growth * dv + turn * du
+        u, v = u + du, v + dv
+    return u, v
+
+
+def _coefficient(value: Scalar, power: int, name: str) -> Scalar:
+    """Return the coefficient of a power of a generator in a polynomial of it."""
+    found = value.coefficients(name)
+    return found[len(found) - 1 - power] if power < len(found) else ZERO

@@ -1,0 +1,38 @@
+"""Two values as functions: equal where their exponentials, sines, cosines and square roots are the same."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.certificate.claims import verify
+from symobs.exact import Matrix
+from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to
+from symobs.exact.kernel.generators import identities
+from symobs.formula import Environment, Literal, Relation
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+
+
+def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
+    """Tell whether an expected value is the one found, which rounds to its decimals."""
+    if not decimals_in(expected):
+        return bool(expected == found)
+    pairs = [(expected, found)]
+    if isinstance(expected, Matrix) and isinstance(found, Matrix):
+        if expected.shape != found.shape:
+            return False
+        pairs = list(zip(expected.entries, found.entries, strict=True))
+    return all(rounds_to(one, other) for one, other in pairs)  # type: ignore[arg-type]
+
+
+def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
+    """Tell whether two values are equal as functions: brought to common exponentials, sines and cosines.
+
+    Decimals of the one on the left may be rounded.
+    """
+    if decimals_in(left):
+        return agrees(left, right)
+    meanings, relations = identities([left, right])
+    environment = Environment(coefficients=meanings, relations=relations)
+    return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])

@@ -1,0 +1,255 @@
+"""Text to exact values: the only way from what a user wrote into the field.
+
+Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  `parser` makes the
+syntax tree, the same for problem files and printed equations, and `evaluation` computes with exact values; `budget` asks
+before every operation how large its result can get.  Nothing is run as a program and nothing recurses on the depth of a
+text, so any text ends, soon, in an exact value or in one of symobs's errors.
+"""
+
+from __future__ import annotations
+
+import numbers
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING
+
+from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
+from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
+from symobs.expression.evaluation import Grid, read
+from symobs.expression.fast_path import plain_rows
+from symobs.expression.names import Names, Scope, declared_name
+from symobs.expression.size_limits import common_denominator_excess
+from symobs.expression.source import shown
+from symobs.expression.syntax_parser import EQUAL_ROWS, unequal_row
+from symobs.expression.tokenizer import MOST_DIGITS, sharing
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import TypeGuard
+
+    from symobs.expression.size_limits import Number
+
+__all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
+
+_LONGEST_REPAIR = 30
+#: Numbers up to this many bits need no budget.
+_NUMBERS, _SMALL = {int, Fraction}, 128
+_KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
+
+
+def parse_scalar(
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    rounding: bool = False,
+) -> Scalar:
+    """Return the real value of a text, an int or a Fraction.
+
+    `names` are the declared names, None for any; `variable` (s, z or t) is known besides them; with `functions`, exp,
+    sin, cos, sinh, cosh and sqrt of real arguments are read as generators; with `rounding` decimals are (`exact.as_printed`).
+    Raises ExpressionError for what is no expression, UnknownName, BudgetExceeded, InexactInput for a float, and
+    InputError for any other type; all name the place `where`.
+    """
+    scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
+    return _real(_entry(value, scope, where), where)
+
+
+def parse_matrix(
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    rounding: bool = False,
+    beside: Sequence[object] = (),
+) -> Matrix:
+    """Return the matrix of a MATLAB-style text (`[1 0; 0 1]`) or of nested lists of int, Fraction and text.
+
+    The values stand in one context with those of the texts `beside` it, which need not be carried over then.
+    Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
+    """
+    scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
+    if _is_of_numbers(value):
+        return matrix_of_numbers(value)
+    if beside:
+        scope = sharing(scope, beside)
+    rows = _rows_of_text(value, scope, where) if isinstance(value, str) else _rows_of_lists(value, scope, where)
+    real = [
+        [entry if isinstance(entry, Scalar) else _real(entry, _cell(where, i, j)) for j, entry in enumerate(row)]
+        for i, row in enumerate(rows)
+    ]
+    excess = common_denominator_excess([entry for row in real for entry in row])
+    if excess:
+        raise BudgetExceeded(f"the common denominator of the matrix would build {excess}", where=where)
+    return Matrix.of(real)
+
+
+def parse_poles(
+    value: object,
+    names: Names = None,
+    *,
+    variable: str | None = None,
+    where: str = "",
+    functions: bool = False,
+    rounding: bool = False,
+) -> tuple[Complex, ...]:
+    """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
+
+    With `functions` square roots are read as generators; where there are names, the values stand in one context with
+    `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
+    """
+    scope = Scope.of(names, None, where, functions=functions, rounding=rounding)
+    if isinstance(value, str):
+        scope = sharing(scope, [value], variable)
+        return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
+    listed = _as_list(value)
+    if listed is None:
+        repair = 'write [-1, -2] or "-1, -2"'
+        raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
+    scope = sharing(scope, listed, variable)
+    texts = [pole for pole in listed if isinstance(pole, str)]
+    plain = plain_rows(",".join(texts), scope) if len(texts) == len(listed) else None
+    if plain is not None and len(plain[0][0]) == len(listed):
+        return tuple(map(Complex.of, plain[0][0]))
+    return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
+
+
+def parse_polynomial(value: object, variable: str, names: Names = None, *, where: str = "") -> Scalar:
+    """Return a real polynomial of degree at least 1 in `variable` (s, or z in discrete time).
+
+    Raises as `parse_scalar` does.
+    """
+    polynomial = _entry(value, Scope.of(names, variable, where), where)
+    if isinstance(polynomial, Complex):
+        message, repair = f"the polynomial in {variable} has complex coefficients", "write the conjugate factors too"
+    elif not polynomial.is_polynomial_in(variable):
+        message = f"a polynomial in {variable} is expected, but {variable} stands in a denominator"
+        repair = "write the numerator and the denominator as polynomials of their own"
+    elif polynomial.degree(variable) < 1:
+        message = f"a polynomial in {variable} is expected, but its degree in {variable} is 0"
+        repair = f"write for example {variable}^2 + 3 {variable} + 2"
+    else:
+        return polynomial
+    raise ExpressionError(message, where=where, repair=repair)
+
+
+# -- one number ---------------------------------------------------------------------------------------------------
+
+
+def _entry(value: object, scope: Scope, where: str) -> Number:
+    """Return the one number that a text, or an exact Python number, stands for."""
+    if not isinstance(value, str):
+        return _exact(value, where)
+    entries = read(value, scope, where)
+    if len(entries) > 1:
+        message = f'one expression is expected, but "{shown(value)}" holds {len(entries)}, set apart by commas'
+        raise ExpressionError(message, where=where, repair="write a decimal number with a point")
+    return _single(entries[0], where)
+
+
+def _single(entry: Number | Grid, where: str) -> Number:
+    if isinstance(entry, Grid):
+        rows, columns = entry.shape
+        repair = "write one expression without brackets around it"
+        raise ExpressionError(f"one number is expected, but a {rows}×{columns} matrix came", where=where, repair=repair)
+    return entry
+
+
+def _exact(value: object, where: str) -> Number:
+    """Return an exact Python number; a float is refused with the fraction to write instead."""
+    if isinstance(value, (Scalar, Complex)):
+        return value
+    if isinstance(value, bool) or not isinstance(value, numbers.Complex):
+        repair = 'write an integer or a text such as "1/10"'
+        raise InputError(f"{_kind(value)} is not an exact number", where=where, repair=repair)
+    if not isinstance(value, numbers.Rational):
+        repair = f'write an exact value such as "{_exact_text(value)}"'
+        raise InexactInput(f"{shown(str(value))} is a float", where=where, repair=repair)
+    above, below = int(value.numerator), int(value.denominator)
+    if max(abs(above), below) >= 10**MOST_DIGITS:
+        raise BudgetExceeded(f"a number has more than {MOST_DIGITS} digits", where=where)
+    return Scalar.rational(above, below)
+
+
+def _exact_text(value: numbers.Complex) -> str:
+    """Return what the shortest decimals of a float say, as a text to write instead of it."""
+    decimals = str(value).strip("()")
+    try:
+        exact = str(Fraction(decimals))
+    except ValueError:  # complex, infinite or not a number
+        return "1/10" if isinstance(value, numbers.Real) else decimals
+    return exact if len(exact) <= _LONGEST_REPAIR else shown(decimals)
+
+
+def _real(value: Number, where: str) -> Scalar:
+    if isinstance(value, Complex):
+        repair = "write a real value; only poles may be complex"
+        raise ExpressionError(f"a real value is expected, but {shown(str(value))} came", where=where, repair=repair)
+    return value
+
+
+# -- many numbers -------------------------------------------------------------------------------------------------
+
+
+def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
+    """Whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
+    if not isinstance(value, list) or not value or not all(isinstance(row, list) and row for row in value):
+        return False
+    entries = [entry for row in value for entry in row]
+    if any(len(row) != len(value[0]) for row in value) or not {type(entry) for entry in entries} <= _NUMBERS:
+        return False
+    common = lcm(*(entry.denominator for entry in entries))
+    return common.bit_length() <= _SMALL and all(entry.numerator.bit_length() <= _SMALL for entry in entries)
+
+
+def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:
+    """Return the numbers set apart by commas, or those of one row or column in brackets."""
+    entries = read(text, scope, where)
+    if len(entries) == 1 and isinstance(entries[0], Grid) and 1 in entries[0].shape:
+        return [number for row in entries[0].rows for number in row]
+    return [_single(entry, where) for entry in entries]
+
+
+def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Number]]:
+    entries = read(text, scope, where)
+    if len(entries) > 1:
+        repair = "write the rows in one pair of brackets: [1 0; 0 1]"
+        raise ExpressionError(f'"{shown(text)}" is not one matrix', where=where, repair=repair)
+    return entries[0].rows if isinstance(entries[0], Grid) else [[entries[0]]]
+
+
+def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]]:
+    listed = _as_list(value)
+    if listed is None:
+        repair = 'write nested lists or a text such as "[1 0; 0 1]"'
+        raise InputError(f"a matrix is expected, but {_kind(value)} came", where=where, repair=repair)
+    rows = [_as_list(row) for row in listed]
+    if None in rows:
+        repair = "write [[1, 2]] for one row, [[1], [2]] for one column"
+        raise ShapeMismatch(f"row {rows.index(None) + 1} is not a list of entries", where=where, repair=repair)
+    cells = [row for row in rows if row is not None]
+    unequal = unequal_row(cells)
+    if unequal:
+        raise ShapeMismatch(unequal[0], where=where, repair=EQUAL_ROWS, row=unequal[1])
+    if not cells or not cells[0]:
+        raise ShapeMismatch("the matrix has no entry", where=where, repair="write for example [[0, 1], [0, -1]]")
+    scope = sharing(scope, [cell for row in cells for cell in row])
+    return [[_entry(cell, scope, _cell(where, i, j)) for j, cell in enumerate(row)] for i, row in enumerate(cells)]
+
+
+def _as_list(value: object) -> Sequence[object] | None:
+    """Return a list, a tuple or an array as a sequence, and None for anything else."""
+    listed = value.tolist() if hasattr(value, "tolist") else value
+    return listed if isinstance(listed, (list, tuple)) else None
+
+
+def _cell(where: str, row: int, column: int) -> str:
+    return f"{where}[{row}][{column}]"
+
+
+def _kind(value: object) -> str:
+    return _KINDS.get(type(value), f"a value of type {type(value).__name__}")

@@ -1,0 +1,301 @@
+"""Signal-flow figures as data: where every node of a block diagram stands and how the signals run between them.
+
+A figure is written as it looks.  Its grid places the nodes:
+
+    a name with a capital     a box; the label of that name is its gain (primes are left out: A' has the label A)
+    ∫name                     an integrator, in discrete time a delay; the label `name` is its output
+    any other name            a point: a junction where several wires end, a branch where several begin, an end of the
+                              figure where none does; a label of that name is the signal there
+
+and its routes say which way the wires run: `a > b` straight, `a -| b` first across, then up or down, `a |- b` first up
+or down, then across.  A wire may have a gain too, `a >[U] b`, which is 1 or -1: a sign.  An optional box without a
+label is not drawn, nor what hangs on it alone: so one figure serves plants with and without feedthrough.  All
+mathematics comes with the labels, their signs too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, TypeAlias, overload
+
+from symobs._dataclass import dataclass
+from symobs.exact import Scalar
+from symobs.formula import Formula, Letter, Literal, Negative, Together
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: A gain or a signal; in the box of a whole system its equations.
+Label: TypeAlias = Formula | Together
+Labels: TypeAlias = "Mapping[str, Label]"
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A line from one node to another; `turn` is `>`, `-|` or `|-`, `gain` the label of a sign or empty."""
+
+    begin: str
+    turn: str
+    end: str
+    gain: str = ""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """Nodes on a grid, and wires.
+
+    signals     what the points are called where the page does not say otherwise: label → letter
+    letters     what stands for a label that is too wide to be drawn: label → letter
+    optional    boxes that may have no label
+    response    whether the figure is drawn for transfer functions: then the label `response` is the one from its input
+                to its output, and the signals are names only
+    """
+
+    places: tuple[tuple[str, tuple[int, int]], ...]
+    wires: tuple[Wire, ...]
+    signals: tuple[tuple[str, str], ...] = ()
+    letters: tuple[tuple[str, str], ...] = ()
+    optional: tuple[str, ...] = ()
+    response: bool = False
+
+    @cached_property
+    def place(self) -> dict[str, tuple[int, int]]:
+        """Column and row of every node."""
+        return dict(self.places)
+
+    def into(self, node: str) -> list[Wire]:
+        """Return the wires that end at a node."""
+        return [wire for wire in self.wires if wire.end == node]
+
+    def out_of(self, node: str) -> list[Wire]:
+        """Return the wires that begin at a node."""
+        return [wire for wire in self.wires if wire.begin == node]
+
+    def is_junction(self, node: str) -> bool:
+        """Whether signals are added at a node."""
+        return not is_box(node) and not is_integrator(node) and len(self.into(node)) > 1
+
+    def without_missing(self, labels: Labels) -> Figure:
+        """Return the figure without boxes that have no label, and without what led to them or from them alone."""
+        gone = {node for node in self.place if is_box(node) and key(node) in self.optional and key(node) not in labels}
+        while True:
+            wires = [wire for wire in self.wires if not {wire.begin, wire.end} & gone]
+            loose = {node for node in self.place if node not in gone and self._is_loose(node, wires)}
+            if not loose:
+                break
+            gone |= loose
+        places = tuple((node, place) for node, place in self.places if node not in gone)
+        return replace(self, places=places, wires=tuple(wires))
+
+    def _is_loose(self, node: str, wires: list[Wire]) -> bool:
+        """Whether a node has lost all wires of one of its sides."""
+        has_lost_entry = bool(self.into(node)) and not any(wire.end == node for wire in wires)
+        return has_lost_entry or (bool(self.out_of(node)) and not any(wire.begin == node for wire in wires))
+
+
+def is_box(node: str) -> bool:
+    """Whether a node is a box with a gain."""
+    return node[0].isupper()
+
+
+def is_integrator(node: str) -> bool:
+    """Whether a node is an integrator or a delay."""
+    return node[0] == "∫"
+
+
+def key(node: str) -> str:
+    """Return the label of a node."""
+    return node.lstrip("∫").rstrip("'")
+
+
+@overload
+def without_sign(label: Formula) -> tuple[bool, Formula]: ...
+
+
+@overload
+def without_sign(label: Label) -> tuple[bool, Label]: ...
+
+
+def without_sign(label: Label) -> tuple[bool, Label]:
+    """Return whether a label is the negative of something, and of what."""
+    negative = False
+    while isinstance(label, Negative):
+        negative, label = not negative, label.operand
+    return negative, label
+
+
+def _figure(
+    grid: str,
+    *routes: str,
+    signals: Mapping[str, str],
+    letters: Mapping[str, str] | None = None,
+    optional: tuple[str, ...] = (),
+    response: bool = False,
+) -> Figure:
+    rows = [row.split() for row in grid.strip().splitlines()]
+    places = tuple((name, (i, j)) for j, row in enumerate(rows) for i, name in enumerate(row) if name != ".")
+    wires: list[Wire] = []
+    for route in routes:
+        words = route.split()
+        for begin, way, end in zip(words[::2], words[1::2], words[2::2], strict=False):
+            turn, _, gain = way.rstrip("]").partition("[")
+            wires.append(Wire(begin, turn, end, gain))
+    named = tuple(signals.items()), tuple((letters or {}).items())
+    return Figure(places, tuple(wires), *named, optional, response)
+
+
+_LOOP_SIGNALS = {"r": "r_in", "u": "u", "y": "y"}
+_LOOP_LETTERS = {"P": "P", "F": "F"}
+
+_FIGURES = {
+    "loop": lambda: _figure(
+        """
+        r  u  P  y'  y
+        .  .  F  .   .
+        """,
+        "r > u > P > y' > y",
+        "y' |- F -| u",
+        signals=_LOOP_SIGNALS,
+        letters=_LOOP_LETTERS,
+        response=True,
+    ),
+    "unity_loop": lambda: _figure(
+        """
+        r  e  F  u  P  y'  y
+        .  .  .  c  .  .   .
+        """,
+        "r > e > F > u > P > y' > y",
+        "y' |- c -|[U] e",
+        signals=_LOOP_SIGNALS,
+        letters=_LOOP_LETTERS,
+        response=True,
+    ),
+    "observer_copy": lambda: _figure(
+        """
+        .  .  .  w  C   .  .  .
+        y  e  L  .  .   .  .  .
+        .  D  .  .  .   .  .  .
+        u  b  B  j  ∫x  a  c  x
+        .  .  .  .  A   .  .  .
+        """,
+        "u > b > B > j > ∫x > a > c > x",
+        "y > e > L -| j",
+        "c |- C > w -|[U] e",
+        "a |- A -| j",
+        "b > D > e",
+        signals={"u": "u", "y": "y", "x": "x_hat", "w": "y_hat"},
+        optional=("B", "D"),
+    ),
+    "observer_closed": lambda: _figure(
+        """
+        y  L  .  .   .  .
+        u  B  j  ∫x  a  x
+        .  .  .  A   .  .
+        """,
+        "u > B > j > ∫x > a > x",
+        "y > L -| j",
+        "a |- A -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat"},
+        optional=("B",),
+    ),
+    "observer_compensator": lambda: _figure(
+        """
+        .  .   .   A   .   .  .   .  .
+        .  B   j   ∫x  a   .  C   y'  y
+        .  .   .   L   .   .  .   e   .
+        u  B'  j'  ∫w  a'  k  C'  v   .
+        .  .   .   A'  .   .  .   .   .
+        c  .   .   K   .   .  .   .   .
+        """,
+        "u |- B > j > ∫x > a > C > y' > y",
+        "a |- A -| j",
+        "u > B' > j' > ∫w > a' > k > C' > v >[U] e",
+        "a' |- A' -| j'",
+        "y' > e > L -| j'",
+        "k |- K > c > u",
+        signals={"u": "u", "y": "y", "x": "x", "w": "x_hat", "v": "y_hat"},
+    ),
+    "observer_controller": lambda: _figure(
+        """
+        .  .  .  Plant  .  .  y'  y
+        .  .  .  A      .  .  .   .
+        u  K  a  ∫x     j  L  .   .
+        .  .  .  B      .  .  .   .
+        """,
+        "u |- Plant > y' > y",
+        "y' |- L > j > ∫x > a > K > u",
+        "a |- A -| j",
+        "u |- B -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat"},
+    ),
+    "estimated_state_feedback": lambda: _figure(
+        """
+        v  F  u  b  Plant     y'  y
+        .  .  .  .  Observer  .   .
+        .  .  .  K  x         .   .
+        """,
+        "v > F > u > b > Plant > y' > y",
+        "b |- Observer",
+        "y' |- Observer",
+        "Observer > x > K -| u",
+        signals={"v": "v_r", "u": "u", "y": "y", "x": "x_hat"},
+        optional=("F",),
+    ),
+    "tracking_loop": lambda: _figure(
+        """
+        .   .  .  Kd .  .  .         .   .
+        ∫r  a  e  K  u  b  Plant     y'  y
+        Ad  .  .  .  .  .  Observer  .   .
+        .   .  .  c  .  .  x         .   .
+        """,
+        "∫r > a > e > K > u > b > Plant > y' > y",
+        "a |- Ad > ∫r",
+        "a |- Kd -| u",
+        "b |- Observer",
+        "y' |- Observer",
+        "Observer > x > c -|[U] e",
+        signals={"r": "x_d", "u": "u", "y": "y", "x": "x_hat"},
+    ),
+    "minimal_order_observer": lambda: _figure(
+        """
+        y  b  .  .  .   .  .  .
+        .  .  H  .  .   .  .  .
+        u  .  G  j  ∫z  a  M  x
+        .  .  .  .  F   .  .  .
+        """,
+        "y > b -| M",
+        "u > G > j > ∫z > a > M > x",
+        "b |- H -| j",
+        "a |- F -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+        optional=("G",),
+    ),
+    "minimal_order_feedthrough": lambda: _figure(
+        """
+        y  e  b  .  .  .   .  .  .
+        .  D  .  H  .  .   .  .  .
+        u  c  .  G  j  ∫z  a  M  x
+        .  .  .  .  .  F   .  .  .
+        """,
+        "y > e > b -| M",
+        "u > c > G > j > ∫z > a > M > x",
+        "c > D > e",
+        "b |- H -| j",
+        "a |- F -| j",
+        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+    ),
+}
+
+
+@lru_cache(maxsize=32)
+def figure_of(name: str) -> Figure:
+    """Return a figure by its name."""
+    return _FIGURES[name]()
+
+
+def with_signals(name: str, labels: Mapping[str, Label]) -> dict[str, Label]:
+    """Return the labels together with the figure's own names of signals, and minus where a sign is left open."""
+    own: dict[str, Label] = {signal: Letter(letter) for signal, letter in figure_of(name).signals}
+    own |= {wire.gain: Negative(Literal(Scalar.of(1))) for wire in figure_of(name).wires if wire.gain}
+    return {**own, **labels}

@@ -1,0 +1,127 @@
+"""Pictures as data: what is drawn, in coordinates of the plane, before any format decides how it looks."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs._dataclass import dataclass
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+    from symobs.formula import Relation
+
+#: A point of a picture.  Coordinates are rational: what is drawn can be held against what is exact.
+Place: TypeAlias = "tuple[Fraction, Fraction]"
+Interval: TypeAlias = "tuple[Fraction, Fraction]"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A piece of the set where `equation` holds; a `boundary` is an edge of the region, other curves only divide the plane."""
+
+    points: tuple[Place, ...]
+    equation: Relation
+    boundary: bool = True
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
+
+    place: Place
+    kind: str
+
+
+@dataclass(frozen=True)
+class RegionPicture:
+    """A region of two parameters inside a window: filled areas (closed polygons), curves, marks.
+
+    `drawn_for` are the values given to other symbols, since a picture needs numbers.
+    """
+
+    axes: tuple[str, str]
+    window: tuple[Interval, Interval]
+    areas: tuple[tuple[Place, ...], ...]
+    curves: tuple[Curve, ...]
+    marks: tuple[Mark, ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of an interval on a line: where it is drawn, and the formula or text that is written there."""
+
+    place: Fraction
+    label: Scalar | str
+
+
+@dataclass(frozen=True)
+class LinePicture:
+    """Intervals of one parameter, open at both ends; an end that is missing lies beyond the window."""
+
+    axis: str
+    window: Interval
+    pieces: tuple[tuple[End | None, End | None], ...]
+    marks: tuple[tuple[Fraction, str], ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True)
+class PoleMap:
+    """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
+
+    The stability boundary is the imaginary axis moved left by `margin`, or in discrete time the circle of radius `radius`.
+    `along` are the values of the parameter at the points of each path.
+    """
+
+    variable: str
+    moved: str
+    values: Interval
+    paths: tuple[tuple[Place, ...], ...]
+    window: tuple[Interval, Interval]
+    discrete: bool = False
+    margin: Fraction | None = None
+    radius: Fraction | None = None
+    along: tuple[tuple[Fraction, ...], ...] = ()
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+
+
+@dataclass(frozen=True)
+class Course:
+    """One component of a signal over time; it is `row` times the state that the picture starts from.
+
+    `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
+    `heights` are its values, in whole parts of one, at equal distances from the begin of the window to its end.
+    """
+
+    signal: str
+    component: int
+    row: tuple[Fraction, ...]
+    heights: tuple[int, ...]
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class TimeResponse:
+    """Signals over time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
+
+    Heights of courses are counted in `parts` of one.  In `discrete` time they stand at 0, 1, 2, … and are exact.
+    """
+
+    states: tuple[str, ...]
+    starts: tuple[tuple[Fraction, ...], ...]
+    courses: tuple[Course, ...]
+    window: tuple[Interval, Interval]
+    parts: int
+    drawn_for: tuple[tuple[str, Scalar], ...] = ()
+    discrete: bool = False
+
+    def points(self, course: Course) -> list[Place]:
+        """Return the places in the plane of one of the courses."""
+        begin, end = self.window[0]
+        step = (end - begin) / (len(course.heights) - 1)
+        return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(course.heights)]
+
+
+Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse

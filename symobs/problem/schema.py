@@ -1,0 +1,150 @@
+"""The keys of a problem file, and the JSON schema made of them and of the registry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import SIGNS
+from symobs.convention import conventions
+from symobs.result import tasks
+from symobs.result.in_convention import names_in
+from symobs.specification import KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from symobs.result.registry import Task
+
+TOP: dict[str, dict[str, Any]] = {
+    "title": {"description": "the title of the page", "type": "string"},
+    "id": {"description": "ids of the problem", "type": ["array", "string"], "items": {"type": "string"}},
+    "source": {"description": "where the problem comes from", "type": "string"},
+    "text": {"description": "the problem in words, printed under the title", "type": "string"},
+    "task": {"description": "one task"},
+    "tasks": {"description": "several tasks, instead of task"},
+    "convention": {
+        "description": "the convention the file is written in: standard, S0 to S4, or your own",
+        "type": "string",
+        "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
+    },
+    "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
+    "plant": {"description": "A, B, C, D, or transfer_function; dt"},
+    "specification": {"description": "what the tasks need"},
+    "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
+    "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
+}
+#: What one entry of [[printed]] may say.
+PRINTED: dict[str, dict[str, Any]] = {
+    "where": {"description": "the place in the source", "type": "string"},
+    "erratum": {"description": "the id of the erratum, where it is a known one", "type": "string"},
+    "convention": {"description": "the convention of its letters, where it is not the file's", "type": "string"},
+    "relation": {"description": 'an equation: "A + M C = [-3 1; -2 0]"', "type": "string"},
+    "let": {
+        "description": "letters of this entry alone, and what they stand for",
+        "type": "object",
+        "additionalProperties": {"type": "string"},
+    },
+    "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
+}
+PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
+#: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
+_HALVES = {"state_feedback": "control", "observer": "observer", "reduced_order_observer": "observer"}
+
+
+def kinds_of(task: Task) -> dict[str, str]:
+    """Return the kinds of the keys of a specification that a task reads."""
+    half = _HALVES.get(task.name)
+    shared = {f"{half}_{name}": task.keywords[name] for name in ("poles", "polynomial")} if half else {}
+    return {**task.keywords, **shared}
+
+
+def keys_of(task: Task, specification: Mapping[str, Any]) -> dict[str, str]:
+    """Return the keywords of a task that a specification gives, each with the key it stands under."""
+    found = {name: name for name in task.keywords if name in specification}
+    if not found.keys() & {"poles", "polynomial", "K", "L"} and (half := _HALVES.get(task.name)):
+        shared = {name: f"{half}_{name}" for name in ("poles", "polynomial")}
+        found |= {name: key for name, key in shared.items() if key in specification}
+    return found
+
+
+def repair_of(key: str, known: Collection[str], where: str) -> str:
+    """Return what to do about a key that is not known where it stands: most are, elsewhere."""
+    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+    near = get_close_matches(key[:64], known, 1)
+    of = [task.name for task in tasks().values() if key in task.keywords]
+    if key in PLANT:
+        return "it belongs to [plant]"
+    if of:
+        return f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
+    if key in TOP and where in {"plant", "specification"}:
+        return "it belongs to the top of the file, above the first table"
+    return f"did you mean {near[0]}?" if near else f"known keys are {', '.join(known)}"
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a problem file, read from the registry."""
+    known = sorted(tasks())
+    number_or_text: dict[str, Any] = {"type": ["number", "string"]}
+    matrix = {"type": ["string", "array"], "items": {"type": "array", "items": number_or_text}}
+    sign = {"enum": list(SIGNS)}
+    details = {"sign": sign, "latex": {"type": "string"}}
+    symbol = {"type": "object", "properties": details, "additionalProperties": False}
+    plant = dict.fromkeys("ABCD", matrix) | {
+        "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
+        "dt": {"description": "0: continuous; true, or the period: discrete", "type": ["number", "boolean", "string"]},
+    }
+    keywords: dict[str, Any] = {}
+    for name in known:
+        for keyword, kind in kinds_of(tasks()[name]).items():
+            keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
+    for convention in conventions().values():
+        for own, (name, _) in names_in(convention).items():
+            if own not in keywords and name in keywords:
+                keywords[own] = {**keywords[name], "description": f"{name}, in the convention {convention.name}"}
+    properties: dict[str, Any] = {
+        **TOP,
+        "task": {"enum": known},
+        "tasks": {"type": "array", "items": {"enum": known}, "minItems": 1, "uniqueItems": True},
+        "symbols": {"type": "object", "additionalProperties": {"anyOf": [sign, symbol]}},
+        "plant": {
+            "type": "object",
+            "properties": plant,
+            "additionalProperties": False,
+        },
+        "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
+        "printed": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": PRINTED,
+                "additionalProperties": False,
+                "oneOf": [{"required": ["relation"]}, {"required": ["expect"]}],
+            },
+        },
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "symobs problem",
+        "type": "object",
+        "properties": {name: {**TOP[name], **found} for name, found in properties.items()},
+        "additionalProperties": False,
+        "oneOf": [{"required": ["task"]}, {"required": ["tasks"]}],
+        "anyOf": [_has("plant", "A"), _has("plant", "transfer_function"), _has("specification", "polynomial")],
+    }
+
+
+def _has(table: str, key: str) -> dict[str, Any]:
+    """Return that a key stands in a table."""
+    return {"required": [table], "properties": {table: {"type": "object", "required": [key]}}}
+
+
+def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str, str, str]]:
+    """Yield message, place and repair for the poles that tasks need and a specification gives in no way."""
+    known = given if isinstance(given, Mapping) else {}
+    asked = {name: task for task in wanted for name in task.keywords if name.endswith("poles")}
+    for name, task in asked.items():
+        instead = (name, f"{name.removesuffix('poles')}polynomial", *("KLMH" if name == "poles" else ()))
+        if not any(other in known or other in keys_of(task, known) for other in instead):
+            yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'

@@ -1,0 +1,298 @@
+"""Where everything in a block diagram stands: columns as wide as their boxes, gaps as wide as what is written in them.
+
+The format says how wide it writes a label; x grows to the right, y downwards, in the unit of the format (em, or columns
+and lines of a terminal).  A sign before the gain of a box moves on to the junction behind it, where readers look for it.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs._dataclass import dataclass
+from symobs.exact import Scalar
+from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
+from symobs.formula import Derivative, Letter, Literal, Negative, Power, Quotient, Together
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.figures.block_diagram import Label, Wire
+    from symobs.render.page.blocks import Drawing
+
+Point: TypeAlias = tuple[float, float]
+Measure: TypeAlias = "Callable[[Label], Point]"
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """What a format sets: the measure of a label, and space.
+
+    inside      between a box and its label, across and down
+    smallest    height of a box
+    junction    diameter of a junction
+    point       of a point that is not drawn
+    gap         between columns and between rows
+    beside      on both sides of what is written over a wire
+    sign        what a sign beside a vertical wire takes of the space to its right
+    rates       whether the inputs of integrators are written out
+    """
+
+    measure: Measure
+    inside: Point
+    smallest: float
+    junction: float
+    gap: Point
+    beside: float
+    point: float = 0.0
+    sign: float = 0.0
+    rates: bool = True
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box with its label in the middle."""
+
+    centre: Point
+    size: Point
+    label: Label
+
+
+@dataclass(frozen=True)
+class Line:
+    """A wire from corner to corner; `is_arrow` where it ends at something."""
+
+    points: tuple[Point, ...]
+    is_arrow: bool
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something written: in the middle of `place`, `above` it or to its `right`."""
+
+    label: Label
+    place: Point
+    side: str = ""
+
+
+@dataclass(frozen=True)
+class SignMark:
+    """A sign where a wire ends at a junction; `towards` is the direction of the wire there."""
+
+    is_negative: bool
+    place: Point
+    towards: Point
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """A block diagram, settled."""
+
+    size: Point
+    boxes: tuple[Box, ...]
+    junctions: tuple[Point, ...]
+    branches: tuple[Point, ...]
+    lines: tuple[Line, ...]
+    marks: tuple[Mark, ...]
+    signs: tuple[SignMark, ...]
+
+
+def arranged(drawing: Drawing, metrics: Metrics, width: float, *, discrete: bool) -> Arrangement:
+    """Return a drawing settled within a width; labels that are too wide make room for their letters, the widest first."""
+    labels = dict(drawing.labels)
+    figure = figure_of(drawing.name).without_missing(labels)
+    letters = dict(figure.letters)
+    while True:
+        arrangement = _Arranging(figure, labels, metrics, discrete=discrete).arrangement()
+        if arrangement.size[0] <= width or not letters:
+            return arrangement
+        widest = max(letters, key=lambda name: metrics.measure(without_sign(labels[name])[1])[0])
+        negative, _ = without_sign(labels[widest])
+        letter = Letter(letters.pop(widest))
+        labels[widest] = Negative(letter) if negative else letter
+
+
+class _Arranging:
+    """A figure with its labels on the way to its places."""
+
+    def __init__(self, figure: Figure, labels: dict[str, Label], metrics: Metrics, *, discrete: bool) -> None:
+        self.figure, self.labels, self.metrics = figure, labels, metrics
+        one, variable = Literal(Scalar.of(1)), Letter("s")
+        self.integrator: Label = Power(variable, -1) if discrete else Quotient(one, variable)
+        self.sizes = {node: self.size_of(node) for node in figure.place}
+        self.over = dict(self.written_over())
+        self.columns = self.positions(0, self.widths_of_gaps())
+        self.rows = self.positions(1, {})
+
+    # -- sizes --------------------------------------------------------------------------------------------------------
+
+    def shown(self, node: str) -> Label | None:
+        """Return what is written in a box, or at an end of the figure."""
+        if is_integrator(node):
+            return self.integrator
+        label = self.labels.get(key(node))
+        if is_box(node) and label is not None:
+            return without_sign(label)[1] if self.hands_on_its_sign(node) else label
+        return label if self.is_end(node) else None
+
+    def hands_on_its_sign(self, node: str) -> bool:
+        """Whether a box leads straight to a junction."""
+        ends = [wire.end for wire in self.figure.out_of(node)]
+        return len(ends) == 1 and self.figure.is_junction(ends[0])
+
+    def is_end(self, node: str) -> bool:
+        """Whether a node is an input or output of the figure."""
+        is_between = bool(self.figure.into(node)) and bool(self.figure.out_of(node))
+        return not (is_between or is_box(node) or is_integrator(node))
+
+    def size_of(self, node: str) -> Point:
+        """Return how wide and high a node is."""
+        shown, metrics = self.shown(node), self.metrics
+        if shown is not None:
+            width, height = metrics.measure(shown)
+            if self.is_end(node):
+                return width + 2 * metrics.beside, height
+            return width + 2 * metrics.inside[0], max(metrics.smallest, height + 2 * metrics.inside[1])
+        size = metrics.junction if self.figure.is_junction(node) else metrics.point
+        return size, size
+
+    # -- what is written over wires -------------------------------------------------------------------------------------
+
+    def written_over(self) -> Iterator[tuple[Wire, tuple[Label, bool]]]:
+        """Yield the wires that something is written over, and whether it stands at their beginning."""
+        at_ends = {key(node) for node in self.figure.place if self.is_end(node)}
+        for node in self.figure.place:
+            label = self.labels.get(key(node))
+            if is_box(node) or label is None or isinstance(label, Together) or self.is_end(node):
+                continue
+            into, out = self.figure.into(node), self.figure.out_of(node)
+            if is_integrator(node) and self.metrics.rates and len(into) == 1 and self.ends_across(into[0]):
+                yield into[0], (Derivative(label), False)
+            if key(node) in at_ends:
+                continue
+            across = [wire for wire in out if self.begins_across(wire)]
+            arriving = [wire for wire in into if len(into) == 1 and self.ends_across(wire)]
+            if across or not arriving:
+                yield (across or out)[0], (label, True)
+            else:
+                yield arriving[0], (label, False)
+
+    def begins_across(self, wire: Wire) -> bool:
+        """Whether a wire begins horizontally."""
+        return wire.turn == "-|" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
+
+    def ends_across(self, wire: Wire) -> bool:
+        """Whether a wire ends horizontally."""
+        return wire.turn == "|-" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
+
+    def row(self, node: str) -> int:
+        """Return the row of a node in the grid."""
+        return self.figure.place[node][1]
+
+    def is_entered_from_above(self, node: str) -> bool:
+        """Whether the sign of a wire stands where something over the wire that leaves would stand."""
+        arriving = [wire for wire in self.figure.into(node) if not self.ends_across(wire)]
+        return self.figure.is_junction(node) and any(self.row(wire.begin) < self.row(node) for wire in arriving)
+
+    def widths_of_gaps(self) -> dict[tuple[int, int], float]:
+        """Return the widths of gaps between neighbouring columns that something is written in."""
+        used = sorted({column for column, _ in self.figure.place.values()})
+        wanted: dict[tuple[int, int], float] = {}
+        for wire, (label, _) in self.over.items():
+            ends = sorted(self.figure.place[node][0] for node in (wire.begin, wire.end))
+            for pair in pairwise(used):
+                if list(pair) == ends:
+                    sign = self.metrics.sign if self.is_entered_from_above(wire.begin) else 0
+                    room = self.metrics.measure(label)[0] + 2 * self.metrics.beside + sign
+                    wanted[pair] = max(room, wanted.get(pair, 0.0))
+        return wanted
+
+    # -- places -------------------------------------------------------------------------------------------------------
+
+    def positions(self, axis: int, gaps: dict[tuple[int, int], float]) -> dict[int, float]:
+        """Return the middle of every column (row) that is used."""
+        used = sorted({place[axis] for place in self.figure.place.values()})
+        middles: dict[int, float] = {}
+        edge, last = 0.0, None
+        for index in used:
+            thick = max(self.sizes[node][axis] for node, place in self.figure.place.items() if place[axis] == index)
+            if last is not None:
+                edge += max(self.metrics.gap[axis], gaps.get((last, index), 0.0))
+            middles[index] = edge + thick / 2
+            edge, last = edge + thick, index
+        self.ends = (*getattr(self, "ends", ()), edge)
+        return middles
+
+    def at(self, node: str) -> Point:
+        """Return the middle of a node."""
+        column, row = self.figure.place[node]
+        return self.columns[column], self.rows[row]
+
+    def border(self, node: str, towards: Point) -> Point:
+        """Return where a wire that comes from `towards` meets a node."""
+        (x, y), (width, height) = self.at(node), self.sizes[node]
+        if not self.is_drawn(node):
+            return x, y
+        if abs(towards[0] - x) > abs(towards[1] - y):
+            return x + _sign(towards[0] - x) * width / 2, y
+        return x, y + _sign(towards[1] - y) * height / 2
+
+    def corners(self, wire: Wire) -> tuple[Point, ...]:
+        """Return a wire from border to border."""
+        begin, end = self.at(wire.begin), self.at(wire.end)
+        turn = {"-|": [(end[0], begin[1])], "|-": [(begin[0], end[1])]}.get(wire.turn, [])
+        bends = [corner for corner in turn if corner not in {begin, end}]
+        inner = [begin, *bends, end]
+        return self.border(wire.begin, inner[1]), *bends, self.border(wire.end, inner[-2])
+
+    # -- the whole ----------------------------------------------------------------------------------------------------
+
+    def arrangement(self) -> Arrangement:
+        """Return everything in its place."""
+        nodes = list(self.figure.place)
+        boxes = [node for node in nodes if is_box(node) or is_integrator(node)]
+        ends = [node for node in nodes if self.is_end(node)]
+        plain = [node for node in nodes if not self.is_drawn(node)]
+        return Arrangement(
+            size=(self.ends[0], self.ends[1]),
+            boxes=tuple(Box(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
+            junctions=tuple(self.at(node) for node in nodes if self.figure.is_junction(node)),
+            branches=tuple(self.at(node) for node in plain if len(self.figure.out_of(node)) > 1),
+            lines=tuple(Line(self.corners(wire), self.is_drawn(wire.end)) for wire in self.figure.wires),
+            marks=(
+                *(Mark(_given(self.shown(node)), self.at(node)) for node in ends),
+                *(self.mark(wire, label, begins) for wire, (label, begins) in self.over.items()),
+            ),
+            signs=tuple(self.signs()),
+        )
+
+    def is_drawn(self, node: str) -> bool:
+        """Whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
+        return self.shown(node) is not None or self.figure.is_junction(node)
+
+    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> Mark:  # noqa: FBT001
+        """Return what is written over a wire, in the middle of its first or last stretch."""
+        points = self.corners(wire)
+        (x0, y0), (x1, y1) = points[:2] if at_beginning else points[-2:]
+        return Mark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
+
+    def signs(self) -> Iterator[SignMark]:
+        """Yield the signs at the junctions."""
+        for wire in self.figure.wires:
+            if not self.figure.is_junction(wire.end):
+                continue
+            gain = self.labels.get(wire.gain) if wire.gain else None
+            if gain is None and is_box(wire.begin) and self.hands_on_its_sign(wire.begin):
+                gain = self.labels[key(wire.begin)]
+            (x0, y0), (x1, y1) = self.corners(wire)[-2:]
+            towards = (_sign(x1 - x0), _sign(y1 - y0))
+            yield SignMark(gain is not None and without_sign(gain)[0], (x1, y1), towards)
+
+
+def _sign(number: float) -> float:
+    return float((number > 0) - (number < 0))
+
+
+def _given(label: Label | None) -> Label:
+    assert label is not None  # noqa: S101 - boxes without a label are not drawn, nor ends without a signal
+    return label

@@ -1,0 +1,105 @@
+r"""Slides: the format `beamer`, one frame a section, which TeX breaks by the height it measures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.phrases import PHRASES
+from symobs.render.formats.latex import LatexWriter, has_drawings
+from symobs.render.formats.templates import fill
+from symobs.render.page.blocks import Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.printers.latex_escape import escape
+from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.result import output_format
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from symobs.render.page.blocks import Block, Inlines
+    from symobs.render.page.sheet import Sheet
+    from symobs.result import Document
+
+#: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
+WIDTH = 39.5
+#: Displays of more rows than this may be too high for a slide.
+_TALL = 6
+
+
+@output_format
+class Beamer:
+    """Slides for LaTeX's class `beamer`; chosen by name only, since its suffix is that of LaTeX."""
+
+    name: ClassVar[str] = "beamer"
+    suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "beamer.tex"
+
+    def render(self, document: Document) -> str:
+        """Return the LaTeX of the slides."""
+        return _slides([self.part(document)], document.templates)
+
+    def part(self, document: Document) -> dict[str, Any]:
+        """Return what the template says of a document: its title and its frames."""
+        title, blocks = opened(narrate(document))
+        printer = printer_for(document, LatexPrinter)
+        printer.width = WIDTH
+        writer = _SlideWriter(printer)
+        return {
+            "title": escape(title.text).strip(),
+            "source": escape(title.source).strip(),
+            "conventions": writer.sentence(title.conventions),
+            "frames": [
+                {"title": writer.sentence(heading).removesuffix("."), "body": writer.body(body)}
+                for heading, body in _frames(blocks)
+            ],
+            "drawings": has_drawings(blocks),
+        }
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the LaTeX of all problems' slides, those of each chapter after its title."""
+        decks = [_title(sheet.title)]
+        for name, parts in sheet.chapters():
+            decks.append(_title(PHRASES[f"sheet_{name}"]))
+            for entry, part in parts:
+                title = f"{entry.number}. {escape(entry.title)}".strip()
+                failed = {**_title(entry.title), "source": escape(entry.failure)}
+                decks.append({**(part or failed), "title": title})
+        return _slides(decks, sheet.templates)
+
+
+def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
+    return fill(Beamer.template, {"decks": decks, "drawings": any(deck["drawings"] for deck in decks)}, folder=folder)
+
+
+def _title(text: str) -> dict[str, Any]:
+    """Return slides that are a title only."""
+    return {"title": escape(text).strip(), "source": "", "conventions": "", "frames": [], "drawings": False}
+
+
+def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
+    """Yield what stands under each heading of the first level, its title first; what stands above all goes with the first."""
+    title: Inlines = ()
+    body: list[Block] = []
+    for block in blocks:
+        if not isinstance(block, Heading) or block.number.count(".") > 1:
+            body.append(block)
+        elif title and body:
+            yield title, tuple(body)
+            title, body = block.inlines, []
+        else:
+            title = block.inlines
+    if body:
+        yield title, tuple(body)
+
+
+class _SlideWriter(LatexWriter):
+    """Writes blocks for slides: what cannot be broken is fitted."""
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        written = super().block(block)
+        is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
+        if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
+            return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
+        return written

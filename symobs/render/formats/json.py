@@ -1,0 +1,121 @@
+"""The JSON of results: schema `symobs/1`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.convention import STANDARD, Convention
+from symobs.result import Case, Result, output_format
+from symobs.result.conversions import to_json
+from symobs.result.in_convention import Viewed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.render.page.sheet import Sheet
+    from symobs.result import Document
+
+SCHEMA = "symobs/1"
+
+
+@output_format
+class Json:
+    """One object a document, one object a task in it."""
+
+    name: ClassVar[str] = "json"
+    suffix: ClassVar[str] = ".json"
+
+    def render(self, document: Document) -> str:
+        """Return the document as indented JSON."""
+        results = [result_object(result, document.convention) for result in document.results]
+        return _written({"schema": SCHEMA, "title": document.title, "results": results})
+
+    def part(self, document: Document) -> Any:
+        """Return the objects of a solution's results, or a question as text."""
+        if document.results:
+            return [result_object(result, document.convention) for result in document.results]
+        from symobs.render.formats.text import Text  # noqa: PLC0415 - only for questions
+
+        return Text().part(document)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as indented JSON, one object a problem."""
+        problems = []
+        for entry in sheet.entries:
+            problem = {"file": entry.file, "title": entry.title}
+            if sheet.has_questions:
+                problem["question"] = entry.question
+            if sheet.has_solutions:
+                problem["results"] = entry.solution
+            problems.append(problem | ({"failure": entry.failure} if entry.failure else {}))
+        return _written({"schema": SCHEMA, "title": sheet.title, "problems": problems})
+
+
+def given_up(title: str, tasks: Sequence[str], method: str, signs: Mapping[str, str], convention: Convention) -> str:
+    """Return what is said of tasks that took more than they may: undecided, and nothing is claimed of them."""
+    empty: dict[str, list[str]] = {"conditions": [], "condition_kinds": [], "cases": [], "certificates": []}
+    names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": convention.name}}
+    results = [{"task": task, "method": method, "verdict": "undecided", **empty, **names} for task in tasks]
+    return _written({"schema": SCHEMA, "title": title, "results": results})
+
+
+def _written(whole: Mapping[str, object]) -> str:
+    """Return indented JSON."""
+    return "".join(_pieces(whole, "\n")) + "\n"
+
+
+def _pieces(value: object, line: str) -> Iterator[str]:
+    """Yield indented JSON as `json.dumps(indent=2)` writes it; that one leaves the fast encoder where it indents."""
+    if not isinstance(value, (dict, list, tuple)) or not value:
+        yield _encoded(value)
+        return
+    is_object, inner = isinstance(value, dict), line + "  "
+    entries = value.items() if isinstance(value, dict) else ((None, entry) for entry in value)
+    for place, (key, entry) in enumerate(entries):
+        yield (("{" if is_object else "[") if place == 0 else ",") + inner
+        if is_object:
+            yield f"{_encoded(key)}: "
+        yield from _pieces(entry, inner)
+    yield line + ("}" if is_object else "]")
+
+
+_encoded = json.JSONEncoder(ensure_ascii=False).encode
+
+
+def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
+    """Return the object of one result: what every task has, its own fields, and what a convention writes in another way."""
+    own = Viewed(result, convention).own
+    answers = {name: to_json(value) for name, value in result.fields.items()}
+    differing = {name: to_json(value) for name, value in own.items() if value is not result.fields.get(name)}
+    in_convention = {name: value for name, value in differing.items() if name not in answers or answers[name] != value}
+    return {
+        "task": result.task,
+        "method": result.method,
+        "verdict": result.verdict,
+        "conditions": [to_json(condition) for condition in result.holds_where],
+        "condition_kinds": [condition.kind for condition in result.holds_where],
+        "cases": [_case_object(case, answers) for case in result.case_tree],
+        "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
+        "symbols": result.symbols,
+        **answers,
+        "in_convention": {"name": convention.name, **in_convention},
+    }
+
+
+def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
+    """Return a stratum: when it holds, and what differs there."""
+    when = [to_json(condition) for condition in case.when]
+    if case.result is None:
+        return {"when": when, "verdict": "undecided"}
+    inner = {name: to_json(value) for name, value in case.result.fields.items()}
+    # What the stratum does not have is said to be missing: a reader would take it from around the case.
+    missing = dict.fromkeys(name for name, value in outer.items() if name not in inner and value is not None)
+    differing = missing | {name: value for name, value in inner.items() if outer.get(name) != value}
+    nested = [_case_object(deeper, missing | inner) for deeper in case.result.case_tree]
+    certificates = [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in case.result.all_certificates]
+    whole = {"when": when, "verdict": case.result.verdict, **differing, "certificates": certificates}
+    if case.result.verdict == "conditional":
+        whole["conditions"] = [to_json(condition) for condition in case.result.holds_where]
+        whole["condition_kinds"] = [condition.kind for condition in case.result.holds_where]
+    return {**whole, "cases": nested} if nested else whole

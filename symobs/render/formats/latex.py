@@ -1,0 +1,204 @@
+"""LaTeX: the formats `latex` (a page of its own) and `fragment` (to be put into somebody's document)."""
+
+from __future__ import annotations
+
+from copy import copy
+from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.formula import Roots
+from symobs.phrases import PHRASES
+from symobs.render.diagrams.writers import tikz
+from symobs.render.formats.templates import fill
+from symobs.render.page.blocks import (
+    CaseBlock,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+    every,
+    opened,
+)
+from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.printers.latex_escape import escape
+from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.render.printers.root_lists import LATEX, listed
+from symobs.result import output_format
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from symobs.render.page.blocks import Block, Inline, Inlines
+    from symobs.render.page.sheet import Sheet
+    from symobs.result import Document
+
+_INSET = 1.5  # em, as in the templates
+_GUTTER = 0.06  # between columns, of the line
+
+
+@output_format
+class LatexArticle:
+    """A whole LaTeX document, one page or more of A4."""
+
+    name: ClassVar[str] = "latex"
+    suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "article.tex"
+
+    def render(self, document: Document) -> str:
+        """Return the document's LaTeX."""
+        return typeset(document, self.template, folder=document.templates)
+
+    def part(self, document: Document) -> dict[str, object]:
+        """Return what a template says of a question or a solution."""
+        return values_of(document)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet's LaTeX."""
+        return typeset_sheet(sheet, "sheet.tex")
+
+
+@output_format
+class LatexFragment:
+    """The body alone, with the few commands it needs."""
+
+    name: ClassVar[str] = "fragment"
+    suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "fragment.tex"
+
+    def render(self, document: Document) -> str:
+        """Return the LaTeX of the body."""
+        return typeset(document, self.template, folder=document.templates)
+
+
+def typeset(document: Document, template: str, *, folder: Path | None = None) -> str:
+    """Return a document in a template; the user's own templates lie in `folder`."""
+    return fill(template, values_of(document), folder=folder)
+
+
+def values_of(document: Document) -> dict[str, object]:
+    """Return what a template says of a document."""
+    title, blocks = opened(narrate(document))
+    writer = LatexWriter(printer_for(document, LatexPrinter))
+    return {
+        "title": escape(title.text).strip(),
+        "source": escape(title.source).strip(),
+        "conventions": writer.sentence(title.conventions),
+        "body": writer.body(blocks),
+        "drawings": has_drawings(blocks),
+    }
+
+
+def has_drawings(blocks: Sequence[Block]) -> bool:
+    """Whether a page needs TikZ."""
+    return any(isinstance(block, Drawing | PictureBlock) for block in every(blocks))
+
+
+def typeset_sheet(sheet: Sheet, template: str) -> str:
+    """Return a sheet in a template; a problem's values are those of its part, its number, and what failed."""
+    chapters: list[dict[str, Any]] = []
+    for name, parts in sheet.chapters():
+        problems: list[dict[str, Any]] = [
+            {"source": "", "conventions": "", "body": "", **(part or {}), "title": escape(entry.title).strip()}
+            | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
+            for entry, part in parts
+        ]
+        chapters.append({"name": name, "title": PHRASES[f"sheet_{name}"], "problems": problems})
+    values = {
+        "title": escape(sheet.title).strip(),
+        "chapters": chapters,
+        "contents": PHRASES["sheet_contents"] if sheet.is_long else "",
+        "words": {"problem": PHRASES["sheet_problem"]},
+        "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
+    }
+    return fill(template, values, folder=sheet.templates)
+
+
+class LatexWriter:
+    """Writes blocks as LaTeX: the text around the mathematics, which the printer writes."""
+
+    def __init__(self, printer: LatexPrinter, *, inset: float = 0.0) -> None:
+        """Write mathematics with `printer`, on lines shorter by `inset` em."""
+        self.printer = copy(printer)
+        self.printer.width = printer.width - inset
+
+    def body(self, blocks: Sequence[Block]) -> str:
+        """Return all blocks, each where TeX reads it as going on with the paragraph or as beginning a new one."""
+        pieces = [self.block(block) for block in blocks]
+        gaps = [_gap(before, after) for before, after in pairwise(blocks)]
+        return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        match block:
+            case Heading(number, inlines):
+                return rf"\textbf{{{f'{number} ' * bool(number)}{self.sentence(inlines)}}}"
+            case Paragraph(inlines):
+                return self.sentence(inlines)
+            case Display(relations, boxed, closing):
+                return self.printer.display(relations, boxed=boxed, end=closing)
+            case Verified(inlines):
+                return rf"\verified{{{self.sentence(inlines)}}}"
+            case Caution(label, inlines):
+                return rf"\caution{{{escape(label)}}}{{{self.sentence(inlines)}}}"
+            case Drawing():
+                return tikz(block, self.printer)
+            case TableBlock():
+                from symobs.render.tables.text_and_latex import latex_table  # noqa: PLC0415 - only pages with tables
+
+                return latex_table(block, self.printer, self.sentence)
+            case PictureBlock(picture, caption):
+                from symobs.render.plots.numbered_caption import below  # noqa: PLC0415 - only pages with pictures
+                from symobs.render.plots.tikz import figure, latex_scene  # noqa: PLC0415
+
+                scene = latex_scene(picture, self.printer)
+                return figure(scene, self.sentence(below(caption, scene)), self.printer)
+            case CaseBlock(label, blocks):
+                first = _gap(Heading("", label), blocks[0]) if blocks else ""
+                body = LatexWriter(self.printer, inset=_INSET).body(blocks)
+                return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{body}\n\\end{{inset}}"
+            case Columns():
+                return self._columns(block)
+            case Title(text):
+                return escape(text)
+
+    def _columns(self, block: Columns) -> str:
+        """Return rows of boxes, which a page may end between; the line between the columns goes through."""
+        count = len(block.heads)
+        part = round((1 - _GUTTER * (count - 1)) / count, 4)
+        writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
+        opening, closing = (
+            rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright\rule{{0pt}}{{2.6ex}}",
+            r"\par\kern5pt\end{minipage}",
+        )
+        cells = [[rf"\textbf{{{self.sentence(head)}}}" for head in block.heads]]
+        cells += [[writer.body(cell) for cell in row] for row in block.rows]
+        between = f"{closing}\\hfill\\vrule\\hfill\n{opening}"
+        head, *rows = [rf"\noindent{opening}{between.join(row)}{closing}\par\nointerlineskip" for row in cells]
+        body = "\n".join([head, r"\nobreak\hrule\nobreak\vskip0pt", *rows])
+        return f"\\par\\medskip{{\\parskip=0pt\n{body}\n}}\\medskip"
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text: words escaped, mathematics between dollars."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return escape(part)
+        if isinstance(part, Roots):
+            return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
+        return f"${self.printer.inline(part)}$"
+
+
+def _gap(before: Block, after: Block) -> str:
+    """Return what stands between two blocks; TeX begins a new paragraph at an empty line."""
+    if isinstance(before, Heading) and isinstance(after, Paragraph):
+        return " "
+    begins = isinstance(after, Heading | CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
+    return "\n\n" if begins else "\n"

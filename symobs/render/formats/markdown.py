@@ -1,0 +1,221 @@
+r"""Markdown: the format `markdown`, for notebooks and for forges such as GitHub and GitLab.
+
+Programs that read Markdown take backslashes before punctuation away, even inside mathematics, and read `<` as the
+beginning of HTML.  So mathematics is written with named commands only, all of them known to KaTeX and MathJax: `\cr`
+ends a row, `\lbrace` is a brace.  Pictures and block diagrams are fenced text: forges remove embedded SVG and data URIs,
+and a file beside the page gets lost; characters survive everywhere.
+"""
+
+from __future__ import annotations
+
+import re
+from copy import copy
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.formula import Roots
+from symobs.phrases import PHRASES
+from symobs.render.diagrams.writers import sketch
+from symobs.render.formats.text import printable
+from symobs.render.page.blocks import (
+    CaseBlock,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+    opened,
+)
+from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.printers.display_layout import Layout
+from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.render.printers.root_lists import LATEX, listed
+from symobs.render.printers.text_printer import TextPrinter
+from symobs.render.tables.html_and_markdown import markdown_table
+from symobs.result import output_format
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.formula import Relation
+    from symobs.render.page.blocks import Block, Inline, Inlines
+    from symobs.render.page.sheet import Sheet
+    from symobs.result import Document
+
+_SKETCH = 78  # columns
+_SOURCE = re.compile(r"\\(?:\\(?:\[\d+pt\])?|[A-Za-z]+ ?|.)|[<>|]", re.DOTALL)
+#: What a command of the LaTeX pages is here; all others are known everywhere and stay.
+_NAMED = {
+    r"\,": r"\thinspace ",
+    r"\;": r"\thickspace ",
+    r"\ ": r"\space ",
+    r"\{": r"\lbrace ",
+    r"\}": r"\rbrace ",
+    r"\answer": r"\boxed",
+    r"\allowbreak": "",
+    "<": r"\lt ",
+    ">": r"\gt ",
+    "|": r"\vert ",
+}
+_SPECIAL = re.compile(r"[\\`*_\[\]<>|~$&#]")
+_AT_START = re.compile(r"^(\s*\d*)(?=[-+=:.)])")
+
+
+@output_format
+class Markdown:
+    """What a notebook or a forge shows."""
+
+    name: ClassVar[str] = "markdown"
+    suffix: ClassVar[str] = ".md"
+
+    def render(self, document: Document) -> str:
+        """Return the document as Markdown."""
+        return MarkdownWriter(printer_for(document, LatexPrinter)).body(narrate(document)) + "\n"
+
+    def part(self, document: Document) -> str:
+        """Return a question or a solution below its title."""
+        title, blocks = opened(narrate(document))
+        return MarkdownWriter(printer_for(document, LatexPrinter), level=3).body((replace(title, text=""), *blocks))
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as Markdown; forges make a table of contents of its headings by themselves."""
+        pieces = [f"# {plain(sheet.title).strip()}"] if sheet.title.strip() else []
+        for name, parts in sheet.chapters():
+            pieces.append(f"## {PHRASES[f'sheet_{name}']}")
+            for entry, part in parts:
+                pieces += [f"### {entry.number}. {plain(entry.title).strip()}", part or paragraph(plain(entry.failure))]
+        return "\n\n".join(pieces) + "\n"
+
+
+def portable(latex: str) -> str:
+    """Return mathematics without a backslash before punctuation, `<`, `>` or `|`."""
+    return _SOURCE.sub(_renamed, latex)
+
+
+def _renamed(match: re.Match[str]) -> str:
+    found = match[0]
+    if found.startswith("\\\\"):
+        return r"\cr "
+    name = found.rstrip() if found[-1:] == " " and len(found) > 2 else found
+    return _NAMED.get(name, found)
+
+
+def plain(text: str) -> str:
+    """Return text from outside as Markdown that shows it, on one line."""
+    return _SPECIAL.sub(_harmless, printable(text))
+
+
+def paragraph(line: str) -> str:
+    """Return a line that begins with no mark of a list or a heading."""
+    return _AT_START.sub(r"\1\\", line)
+
+
+def _harmless(match: re.Match[str]) -> str:
+    return {"<": "&lt;", ">": "&gt;", "&": "&amp;"}.get(match[0], f"\\{match[0]}")
+
+
+class MarkdownWriter:
+    """Writes blocks as Markdown: the text around the mathematics, which the printer of LaTeX writes."""
+
+    def __init__(self, printer: LatexPrinter, *, level: int = 1) -> None:
+        """Write mathematics with `printer`; a title is a heading of `level`."""
+        self.printer = copy(printer)
+        self.printer.paged = False
+        self.level = level
+
+    def body(self, blocks: Sequence[Block]) -> str:
+        """Return all blocks, an empty line between two."""
+        return "\n\n".join(filter(None, (self.block(block) for block in blocks)))
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        match block:
+            case Title(text, source, conventions):
+                heading = f"{'#' * self.level} {plain(text).strip()}" if text.strip() else ""
+                below = paragraph(f"{plain(source)} {self.sentence(conventions)}".strip())
+                return "\n\n".join(filter(None, (heading, below)))
+            case Heading(number, inlines):
+                depth = min(6, self.level + max(1, number.count(".")))
+                return f"{'#' * depth} {f'{number} {self.sentence(inlines)}'.strip().removesuffix('.')}"
+            case Paragraph(inlines):
+                return paragraph(self.sentence(inlines))
+            case Display(relations, boxed, closing):
+                return self.display(relations, boxed=boxed, end=closing)
+            case Verified(inlines):
+                return f"✓ {self.sentence(inlines)}"
+            case Caution(label, inlines, warns):
+                words = f"**{plain(label)}** {self.sentence(inlines)}"
+                return quoted(words) if warns else words
+            case Drawing():
+                return fenced(sketch(block, self._text_printer(), _SKETCH))
+            case TableBlock():
+                table, told = markdown_table(block, self.printer, self.sentence, self.mathematics)
+                return "\n\n".join([table, self.sentence(block.where), self.display(told)]) if told else table
+            case PictureBlock(picture):
+                from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
+                from symobs.render.plots.text import character_plot  # noqa: PLC0415 - only pages with pictures
+
+                plot = character_plot(picture, self._text_printer(), _SKETCH)
+                return f"{fenced(plot)}\n\n{self.sentence(caption(picture, sketched=True))}"
+            case CaseBlock(label, blocks):
+                inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
+                return quoted(f"**{self.sentence(label)}**\n\n{inside}")
+            case Columns(heads, rows):
+                writer = MarkdownWriter(self.printer, level=self.level + 1)
+                writer.printer.width = self.printer.width / len(heads)
+                lines = [[self.sentence(head) for head in heads], [":---"] * len(heads)]
+                lines += [["<br>".join(map(writer.in_a_cell, cell)) for cell in row] for row in rows]
+                return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+    def in_a_cell(self, block: Block) -> str:
+        """Return a block on one line, its mathematics as in running text."""
+        return re.sub(r"\$\$ (.*?) \$\$", r"$\\displaystyle \1$", self.block(block)).replace("\n", "<br>")
+
+    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+        """Return a display on one line: lines of their own would begin with the marks of what stands around them."""
+        rows, are_aligned = Layout(self.printer, self.printer.width, boxed=boxed, end=end).rows(relations)
+        if len(rows) == 1 and not are_aligned:
+            return f"$$ {portable(rows[0].right.source)} $$"
+        lines = [f"{row.left.source if row.left else ''}&{row.right.source}" for row in rows]
+        if not are_aligned:
+            lines = [row.right.source for row in rows]
+        kind = "aligned" if are_aligned else "gathered"
+        body = r"\cr ".join(map(portable, lines))
+        return rf"$$ \begin{{{kind}}}{body}\end{{{kind}}} $$"
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text: words escaped, mathematics between dollars."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return plain(part)
+        if isinstance(part, Roots):
+            return ", ".join(self.mathematics(root) for root in listed(part, self.printer, LATEX))
+        return self.mathematics(self.printer.inline(part))
+
+    def mathematics(self, latex: str) -> str:
+        """Return mathematics for a line of text."""
+        return f"${portable(latex).strip()}$"
+
+    def _text_printer(self) -> TextPrinter:
+        """The printer of what is drawn with characters."""
+        own = self.printer
+        printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete, width=_SKETCH)
+        printer.letters = own.letters
+        return printer
+
+
+def fenced(text: str) -> str:
+    """Return characters that are shown as they stand."""
+    return f"```text\n{text}\n```"
+
+
+def quoted(text: str) -> str:
+    """Return blocks set apart from the others."""
+    return "\n".join(f"> {line}".rstrip() for line in text.splitlines())

@@ -1,0 +1,201 @@
+"""Plain text for terminals: the format `text`, 80 columns wide."""
+
+from __future__ import annotations
+
+import unicodedata
+from copy import copy
+from dataclasses import replace
+from itertools import pairwise, zip_longest
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.formula import Roots
+from symobs.phrases import PHRASES
+from symobs.render.diagrams.writers import sketch
+from symobs.render.page.blocks import (
+    CaseBlock,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+    opened,
+)
+from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.plots.text import character_plot
+from symobs.render.printers.root_lists import TEXT, listed
+from symobs.render.printers.text_columns import RULE, beside
+from symobs.render.printers.text_printer import TextPrinter, text_width
+from symobs.result import output_format
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.render.page.blocks import Block, Inline, Inlines
+    from symobs.render.page.sheet import Sheet
+    from symobs.result import Document
+
+WIDTH = 80
+INDENT = "    "
+#: An inline formula up to this many characters is kept on one line.
+_KEPT_TOGETHER = 40
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+@output_format
+class Text:
+    """What a terminal shows."""
+
+    name: ClassVar[str] = "text"
+    suffix: ClassVar[str] = ".txt"
+
+    def render(self, document: Document) -> str:
+        """Return the document as plain text."""
+        return TextWriter(printer_for(document, TextPrinter), WIDTH).body(narrate(document)) + "\n"
+
+    def part(self, document: Document) -> str:
+        """Return a question or a solution below its title."""
+        title, blocks = opened(narrate(document))
+        writer = TextWriter(printer_for(document, TextPrinter), WIDTH)
+        below = writer.block(replace(title, text=""))
+        return "\n\n".join(part for part in (below, writer.body(blocks)) if part)
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the sheet as plain text."""
+        pieces = [underlined(wrapped(printable(sheet.title), WIDTH), "=", WIDTH)] if sheet.title else []
+        for name, parts in sheet.chapters():
+            pieces.append(underlined(PHRASES[f"sheet_{name}"], "=", WIDTH))
+            for entry, part in parts:
+                heading = f"{PHRASES['sheet_problem']} {entry.number}. {printable(entry.title)}"
+                pieces += [underlined(wrapped(heading, WIDTH), "=", WIDTH), part or entry.failure]
+        return "\n\n".join(pieces) + "\n"
+
+
+class TextWriter:
+    """Writes blocks as lines: the text around the mathematics, which the printer writes."""
+
+    def __init__(self, printer: TextPrinter, width: int) -> None:
+        """Write mathematics with `printer`, no line longer than `width` where it can be broken."""
+        self.printer = copy(printer)
+        self.printer.width = width - len(INDENT)
+        self.width = width
+
+    def body(self, blocks: Sequence[Block]) -> str:
+        """Return all blocks, an empty line between two; a heading stands directly above what it heads."""
+        pieces = [self.block(block) for block in blocks]
+        gaps = ["\n" if isinstance(before, Heading) else "\n\n" for before, _ in pairwise(blocks)]
+        return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        width = self.width
+        match block:
+            case Title(text, source, conventions):
+                heading = underlined(wrapped(printable(text), width), "=", width)
+                below = wrapped(f"{printable(source)} {self.sentence(conventions)}", width)
+                return "\n".join(part for part in (heading, below) if part)
+            case Heading(number, inlines):
+                title = f"{number} {self.sentence(inlines)}".strip().removesuffix(".")
+                return underlined(wrapped(title, width), "-", width)
+            case Paragraph(inlines):
+                return wrapped(self.sentence(inlines), width)
+            case Display(relations, boxed, _):
+                return indented(self.printer.display(relations, boxed=boxed))
+            case Verified(inlines):
+                return wrapped(self.sentence(inlines), width, first="✓ ")
+            case Caution(label, inlines, warns):
+                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
+            case Drawing():
+                return indented(sketch(block, self.printer, width - len(INDENT)))
+            case TableBlock():
+                from symobs.render.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
+
+                table, told = text_table(block, self.printer, self.remark)
+                below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
+                return f"{indented(table)}{below}"
+            case PictureBlock(picture):
+                from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
+
+                plot = character_plot(picture, self.printer, width - len(INDENT))
+                words = wrapped(self.sentence(caption(picture, sketched=True)), width - len(INDENT))
+                return f"{indented(plot)}\n\n{indented(words)}"
+            case CaseBlock(label, blocks):
+                inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
+                return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"
+            case Columns(heads, rows):
+                narrow = (width - len(RULE) * (len(heads) - 1)) // len(heads)
+                writer = TextWriter(self.printer, narrow)
+                titles = [underlined(wrapped(self.sentence(head), narrow), "-", narrow) for head in heads]
+                cells = [titles, *([writer.body(cell) for cell in row] for row in rows)]
+                return f"\n{beside([''] * len(heads), narrow)}\n".join(beside(row, narrow) for row in cells)
+
+    def sentence(self, inlines: Inlines) -> str:
+        """Return running text with its mathematics."""
+        return "".join(self._inline(part) for part in inlines)
+
+    def remark(self, inlines: Inlines) -> str:
+        """Return words that are not wrapped."""
+        return self.sentence(inlines).replace(_NO_BREAK, " ")
+
+    def _inline(self, part: Inline) -> str:
+        if isinstance(part, str):
+            return printable(part)
+        if isinstance(part, Roots):
+            return ", ".join(root.replace(" ", _NO_BREAK) for root in listed(part, self.printer, TEXT))
+        written = self.printer.inline(part)
+        return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else _kept_inside(written)
+
+
+def _kept_inside(written: str) -> str:
+    """Return a formula that breaks outside its parentheses and brackets only, unless one of them is itself too long."""
+    depth, start, kept = 0, 0, list(written)
+    for place, character in enumerate(written):
+        if character in "([":
+            start = start if depth else place
+            depth += 1
+        elif character in ")]":
+            depth -= 1
+            if not depth and text_width(written[start:place]) <= _KEPT_TOGETHER:
+                kept[start:place] = written[start:place].replace(" ", _NO_BREAK)
+    return "".join(kept)
+
+
+def printable(text: str) -> str:
+    """Return text from outside without what would steer a terminal: control and format characters."""
+    return "".join(_harmless(character) for character in text)
+
+
+def _harmless(character: str) -> str:
+    if character.isspace():
+        return " "
+    kind = unicodedata.category(character)
+    if kind in {"Cc", "Cf"}:
+        return ""
+    return "?" if kind.startswith("C") else character
+
+
+def wrapped(text: str, width: int, *, first: str = "") -> str:
+    """Return the text in lines of at most `width` columns; `first` opens the first line and sets in the others."""
+    inside = width - text_width(first)
+    lines: list[str] = []
+    for word in filter(None, text.split(" ")):
+        if lines and text_width(lines[-1]) + 1 + text_width(word) <= inside:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    broken = f"\n{' ' * len(first)}".join(lines)
+    return first + broken.replace(_NO_BREAK, " ")
+
+
+def underlined(text: str, mark: str, width: int) -> str:
+    """Return the text with a line of `mark` below it, as wide as its last line; nothing under nothing."""
+    return f"{text}\n{mark * min(width, text_width(text.splitlines()[-1]))}" if text else ""
+
+
+def indented(text: str) -> str:
+    """Return the text set in from the margin."""
+    return "\n".join(f"{INDENT}{line}".rstrip() for line in text.splitlines())

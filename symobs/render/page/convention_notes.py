@@ -1,0 +1,128 @@
+"""Which conventions a page has to state: those about the letters it uses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
+from symobs.formula import (
+    Exactly,
+    Letter,
+    Names,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    Shown,
+    Sum,
+    Together,
+    Turned,
+    letters,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from symobs.convention import Convention
+    from symobs.derivation import Sentence, Step
+    from symobs.formula import Fact, Formula
+    from symobs.render.page.blocks import Inline
+
+
+def letters_used(steps: Iterable[Step]) -> frozenset[str]:
+    """Return the names of all letters that the steps speak of."""
+    return frozenset().union(*(letters(formula) for step in steps for formula in _formulas(step)))
+
+
+def stated_conventions(
+    used: frozenset[str], convention: Convention, words: dict[str, str]
+) -> tuple[tuple[Inline, ...], ...]:
+    """Return the conventions that concern the letters used, each as a few words and a formula."""
+    turned = Turned(convention.turned)
+    conventions: list[tuple[Inline, ...]] = []
+    if "K" in used:
+        estimated = "L" in used or "x_hat" in used
+        conventions.append((turned.relation(_control_law("x_hat" if estimated else "x")),))
+    if "L" in used:
+        conventions.append((f"{words['observer_matrix']} ", turned.formula(_OBSERVER_MATRIX)))
+        conventions.append((f"{words['error']} ", _ERROR))
+    return tuple(conventions)
+
+
+def _control_law(state: str) -> Relation:
+    return Relation((Letter("u"), Negative(Product((Letter("K"), Letter(state))))), ("=",))
+
+
+_OBSERVER_MATRIX = Sum((Letter("A"), Negative(Product((Letter("L"), Letter("C"))))))
+_ERROR = Relation((Letter("e"), Sum((Letter("x"), Negative(Letter("x_hat"))))), ("=",))
+
+
+def _formulas(step: Step) -> Iterator[Formula]:
+    match step:
+        case Section(title=title, steps=steps):
+            yield from _in_sentence(title)
+            for inner in steps:
+                yield from _formulas(inner)
+        case Case(when=when, steps=steps, sentence=sentence):
+            yield from (*_in_facts((when,)), *_in_sentence(sentence))
+            for inner in steps:
+                yield from _formulas(inner)
+        case Given(relations=relations, sentence=sentence) | Equal(relations=relations, sentence=sentence):
+            yield from (*_in_facts(relations), *_in_sentence(sentence))
+        case Define(relation=relation, sentence=sentence):
+            yield from (*relation.members, *_in_sentence(sentence))
+        case Solve(equation=equation, solution=solution, sentence=sentence):
+            yield from (*equation.members, *solution.members, *_in_sentence(sentence))
+        case (
+            Conclude(sentence=sentence)
+            | Note(sentence=sentence)
+            | Tabulate(sentence=sentence)
+            | Plot(sentence=sentence)
+        ):
+            yield from _in_sentence(sentence)
+        case Where(fact=fact, sentence=sentence):
+            yield from (*_in_facts((fact,)), *_in_sentence(sentence))
+        case Survey(polynomial=polynomial):
+            yield polynomial
+        case Diagram(labels=labels, sentence=sentence):
+            yield from _in_sentence(sentence)
+            for _, label in labels:
+                yield from _in_facts((label,)) if isinstance(label, Together) else (label,)
+
+
+def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
+    for fact in facts:
+        match fact:
+            case Relation(members=members):
+                yield from members
+            case Predicate(subject=subject) | Roots(polynomial=subject):
+                yield subject
+            case Exactly(property=Predicate(subject=subject), where=where):
+                yield from (subject, *_in_facts(where))
+            case Together(relations=relations):
+                yield from _in_facts(relations)
+
+
+def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
+    for _, value in sentence.slots if sentence else ():
+        if isinstance(value, Relation | Predicate | Roots | Exactly | Together):
+            yield from _in_facts((value,))
+        elif isinstance(value, Shown):
+            yield value.value
+        elif not isinstance(value, str | Names):
+            yield value

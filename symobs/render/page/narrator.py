@@ -1,0 +1,393 @@
+"""The narrator: from the steps of checked derivations to the blocks of a page.
+
+Every sentence comes from `phrases`; the narrator only decides what follows what: a sentence before its display,
+displays without a sentence between them on one line, what is given said once, sections numbered through the page.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import zip_longest
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from symobs.convention import OF_REDUCED_ORDER
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Sentence,
+    Solve,
+    Survey,
+    Tabulate,
+    Where,
+)
+from symobs.formula import Together
+from symobs.notation.theorems import THEOREMS
+from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
+from symobs.render.page.blocks import (
+    Block,
+    CaseBlock,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Inline,
+    Inlines,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Title,
+    Verified,
+)
+from symobs.render.page.convention_notes import letters_used, stated_conventions
+from symobs.render.page.detail_level import at_detail
+from symobs.render.page.prose import filled, joined, with_reference
+from symobs.render.page.side_by_side import in_rows, is_beside, row_by_row
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.convention import Convention
+    from symobs.derivation import Step
+    from symobs.formula import Formula, Relation
+    from symobs.notation import LetterForm
+    from symobs.render.printers.printer import Printer
+    from symobs.result import Document
+
+P = TypeVar("P", bound="Printer[Any]")
+
+#: The sections of a question.
+_UNNUMBERED = {"task", "tasks"}
+
+#: The few words of a page that belong to no step.
+LABELS: dict[str, str] = {
+    "conventions": "Conventions:",
+    "observer_matrix": "observer matrix",
+    "error": "error",
+    "case": "Case",
+    "caution": "A caution.",
+    "sources": "Sources.",
+}
+
+
+def narrate(document: Document) -> tuple[Block, ...]:
+    """Return the blocks of a document; a derivation with a false line raises before a word is written."""
+    for derivation in document.derivations:
+        derivation.check()
+    parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
+    numbers = numbered(parts)
+    page = _Page(document.convention, numbers=numbers)
+    page.blocks.append(_title(document))
+    page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
+    together, apart = _statements(parts)
+    page.tell_given(together)
+    for index, steps in enumerate(parts):
+        if index in apart:
+            page.told.clear()
+            page.tell_given(apart[index])
+        for step in steps:
+            if not _is_statement(step):
+                page.tell_step(step)
+        page.told |= _inside(steps)
+    page.blocks += _sources(numbers)
+    return _punctuated(page.blocks)
+
+
+def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
+    """Return the theorems that the sentences appeal to, numbered in the order of the page."""
+    keys = dict.fromkeys(
+        RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
+    )
+    return {key: number for number, key in enumerate(keys, 1)}
+
+
+def _sources(numbers: Mapping[str, int]) -> list[Block]:
+    """Return the closing paragraph: each theorem under its number, with its source."""
+    if not numbers:
+        return []
+    listed = "; ".join(f"[{number}] {THEOREMS[key].name}: {THEOREMS[key].source}" for key, number in numbers.items())
+    return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
+
+
+def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
+    """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
+    seen: dict[Formula, Relation] = {}
+    together: list[Step] = []
+    apart: dict[int, list[Step]] = {}
+    for index, steps in enumerate(parts):
+        statement = [step for step in steps if _is_statement(step)]
+        relations = [relation for step in statement for relation in _given_relations(step)]
+        if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
+            apart[index] = statement
+        else:
+            together += statement
+            seen.update((relation.members[0], relation) for relation in relations)
+    return together, apart
+
+
+def _given_relations(step: Step) -> Iterator[Relation]:
+    match step:
+        case Given(relations=relations, silent=False):
+            yield from relations
+        case Section(steps=steps):
+            for inner in steps:
+                yield from _given_relations(inner)
+
+
+def _inside(steps: Sequence[Step]) -> set[Step]:
+    """Return the steps of the sections, which later derivations need not repeat, though they be answers only once."""
+    told = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
+    return {*told, *(replace(step, answer=False) for step in told if isinstance(step, (Define, Equal, Where)))}
+
+
+def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
+    for step in steps:
+        found = getattr(step, "sentence", None)
+        if found is not None:
+            yield found
+        yield from getattr(step, "findings", ())
+        yield from _sentences(row_by_row(step) if is_beside(step) else getattr(step, "steps", ()))
+
+
+def printer_for(document: Document, kind: type[P]) -> P:
+    """Return a printer of some format for a document's mathematics: variable, symbols, letters, kind of time."""
+    if not document.derivations:
+        return kind()
+    first = document.derivations[0]
+    symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
+    printer = kind(first.variable, symbols, discrete=first.discrete)
+    printer.letters = {**printer.letters, **_letters(document)}
+    return printer
+
+
+def _letters(document: Document) -> Mapping[str, LetterForm]:
+    """Return the forms of the letters that are not written as usual."""
+    if document.convention.is_standard:
+        return {}
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(OF_REDUCED_ORDER))
+
+
+class _Page:
+    """The blocks written so far, and what the next ones depend on."""
+
+    def __init__(
+        self,
+        convention: Convention,
+        *,
+        given: Mapping[Formula, Relation] | None = None,
+        numbered: bool = True,
+        numbers: Mapping[str, int] | None = None,
+    ) -> None:
+        self.convention = convention
+        self.blocks: list[Block] = []
+        self.theorems = dict(numbers or {})
+        self.given = dict(given or {})
+        self.stated: set[Sentence] = set()
+        self.told: set[Step] = set()
+        self.numbers = [0]
+        self.numbered = numbered
+
+    def tell(self, steps: Sequence[Step]) -> None:
+        """Tell a derivation: what is given first."""
+        self.tell_given([step for step in steps if _is_statement(step)])
+        for step in steps:
+            if not _is_statement(step):
+                self.tell_step(step)
+
+    def tell_given(self, statement: Sequence[Step]) -> None:
+        """Tell what is given, as far as it is not on the page already."""
+        news = [new for step in statement for new in self.news(step)]
+        if news:
+            self.blocks.append(Heading("", (PHRASES["given"],)))
+            for step in news:
+                self.tell_step(step)
+
+    def news(self, step: Step) -> Iterator[Step]:
+        """Yield what a step of the statement adds to the page."""
+        match step:
+            case Section(steps=steps):
+                for inner in steps:
+                    yield from self.news(inner)
+            case Given(silent=True):
+                pass
+            case Given(relations=relations):
+                new = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
+                self.given.update((relation.members[0], relation) for relation in new)
+                if new:
+                    yield replace(step, relations=new)
+            case Conclude(sentence=sentence) | Note(sentence=sentence):
+                if sentence and sentence not in self.stated:
+                    self.stated.add(sentence)
+                    yield step
+            case _:
+                yield step
+
+    def tell_step(self, step: Step) -> None:
+        match step:
+            case Given(relations=relations, sentence=sentence, silent=silent):
+                self.say(sentence)
+                self.show(() if silent or (sentence and _is_condition(step)) else relations)
+            case Define(relation=relation, sentence=sentence, answer=answer, silent=silent):
+                self.say(sentence)
+                self.show(() if silent else (relation,), boxed=answer)
+            case Equal(relations=relations, sentence=sentence, answer=answer):
+                self.say(sentence)
+                self.show(relations, boxed=answer)
+            case Solve(equation=equation, solution=solution, sentence=sentence):
+                self.say(sentence)
+                self.show((equation, solution))
+            case Conclude(sentence=Sentence() as sentence, verified=True):
+                self.blocks.append(Verified(filled(sentence, self.convention)))
+            case Note(sentence=sentence, caution=True):
+                self.blocks.append(Caution(LABELS["caution"], filled(sentence, self.convention)))
+            case Conclude(sentence=sentence) | Note(sentence=sentence):
+                self.say(sentence)
+            case Diagram(name=name, labels=labels, sentence=sentence):
+                self.say(sentence)
+                self.blocks.append(Drawing(name, labels))
+            case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
+                self.say(sentence)
+                from symobs.render.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
+
+                self.blocks.append(
+                    TableBlock(table, variable, remarks(table, variable), filled(Sentence("routh_where")))
+                )
+                for finding in findings:
+                    self.say(finding)
+            case Where(fact=fact, sentence=sentence, answer=answer):
+                self.say(sentence)
+                self.show(fact.where, boxed=answer)
+            case Survey():
+                self.tell_survey(step)
+            case Plot(picture=picture, sentence=sentence):
+                self.say(sentence)
+                from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
+
+                self.blocks.append(PictureBlock(picture, caption(picture)))
+            case Case(when=when, steps=steps, sentence=sentence):
+                self.tell_case(when, steps, sentence)
+            case Section() if _is_statement(step):
+                self.tell_given((step,))
+            case Section(title=title, steps=steps):
+                self.tell_section(title, steps)
+
+    def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
+        is_numbered = self.numbered and title.key not in _UNNUMBERED
+        self.numbers[-1] += is_numbered
+        number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
+        heading = Heading(number, filled(title, self.convention))
+        self.blocks.append(heading)
+        self.numbers.append(0)
+        columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
+        self.blocks += self.side_by_side(columns)
+        for step in steps:
+            if step not in columns and (isinstance(step, Section) or step not in self.told):
+                self.tell_step(step)
+        self.numbers.pop()
+        if self.blocks[-1] is heading and not self.told.isdisjoint(steps):  # all of it was told before
+            self.blocks.pop()
+            self.numbers[-1] -= is_numbered
+
+    def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
+        """Yield sections beside each other, each cell written on a page of its own."""
+        rows: list[tuple[tuple[Block, ...], ...]] = []
+        for row in in_rows([column.steps for column in columns]):
+            cells = [_Page(self.convention, given=self.given, numbers=self.theorems) for _ in row]
+            for cell, steps in zip(cells, row, strict=True):
+                for step in steps:
+                    cell.tell_step(step)
+            rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
+        if rows:
+            yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
+
+    def tell_survey(self, step: Survey) -> None:
+        """Tell what is found, and the parts of a region one below the other."""
+        for finding in step.findings:
+            self.say(finding)
+        self.say(step.sentence)
+        for part in step.parts:
+            self.blocks.append(Display(part))
+
+    def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
+        """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
+        inner = _Page(self.convention, given=self.given, numbered=False, numbers=self.theorems)
+        inner.say(sentence)
+        inner.tell(steps)
+        label: list[Inline] = [f"{LABELS['case']} "]
+        for place, relation in enumerate(when.relations if isinstance(when, Together) else (when,)):
+            label += [", ", relation] if place else [relation]
+        self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
+
+    def say(self, sentence: Sentence | None) -> None:
+        """Add a sentence, to the paragraph before it where there is one."""
+        if sentence is None:
+            return
+        inlines = with_reference(filled(sentence, self.convention), self.theorems.get(RESTS_ON.get(sentence.key, "")))
+        goes_on = sentence.key not in OPENS
+        if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
+            self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
+        else:
+            self.blocks.append(Paragraph(inlines))
+
+    def show(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
+        """Add a display, to the display before it where that one goes on; a box ends a display."""
+        if not relations:
+            return
+        if self.blocks and isinstance(last := self.blocks[-1], Display) and not last.boxed:
+            self.blocks[-1] = Display((*last.relations, *relations), boxed)
+        else:
+            self.blocks.append(Display(relations, boxed))
+
+
+def _is_statement(step: Step) -> bool:
+    """Whether a step states the problem: a section titled as given, or data on their own."""
+    if isinstance(step, Section):
+        return step.title.key == "given"
+    return isinstance(step, Given) and not _is_condition(step)
+
+
+def _is_condition(step: Given) -> bool:
+    return all(relation.operators[0] == "!=" for relation in step.relations)
+
+
+def _title(document: Document) -> Title:
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    conventions = stated_conventions(letters_used(steps), document.convention, LABELS)
+    if not conventions:
+        return Title(document.title, _as_sentence(document.source), ())
+    listed: list[Inline] = [f"{LABELS['conventions']} "]
+    for convention in conventions:
+        listed += [*convention, ", "]
+    return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
+
+
+def _as_sentence(text: str) -> str:
+    text = text.strip()
+    return f"{text}." if text and text[-1] not in ".!?" else text
+
+
+def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
+    """Return the blocks with a mark after every display that is not an answer's box.
+
+    A comma where the sentence goes on in small letters after it, else a full stop.
+    """
+    punctuated: list[Block] = []
+    for block, following in zip_longest(blocks, blocks[1:]):
+        if isinstance(block, Display) and not block.boxed:
+            goes_on = isinstance(following, Paragraph) and _starts_small(following.inlines)
+            punctuated.append(replace(block, closing="," if goes_on else "."))
+        else:
+            punctuated.append(block)
+    return tuple(punctuated)
+
+
+def _starts_small(inlines: Inlines) -> bool:
+    return bool(inlines) and isinstance(inlines[0], str) and inlines[0][:1].islower()

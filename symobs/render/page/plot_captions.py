@@ -1,0 +1,122 @@
+"""What stands below a picture, and which of its curves are drawn."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symobs.derivation import Sentence
+from symobs.exact import Matrix, Scalar
+from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula import Apply, At, Letter, Literal, Relation, Together
+from symobs.render.page.prose import filled, joined
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symobs.figures.plot import Curve, Picture
+    from symobs.formula import Fact, Formula
+    from symobs.render.page.blocks import Inline, Inlines
+
+#: With more equations than this, curves that are no boundary are left out.
+_MOST_DIVIDERS = 4
+_UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture_dashed"}
+
+
+def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
+    """Return the sentences below a picture; one that is sketched in characters has neither samples nor dashes."""
+    sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
+    if picture.drawn_for:
+        values = tuple(_equation(name, value) for name, value in picture.drawn_for)
+        sentences.append(_say("drawn_for", values=Together(values)))
+    words: list[Inline] = []
+    for sentence in sentences:
+        words += [" ", *filled(sentence)] if words else filled(sentence)
+    return joined(words)
+
+
+def drawn(picture: RegionPicture) -> tuple[Curve, ...]:
+    """Return the curves that are drawn: the boundaries, and the others where they are few."""
+    others = {curve.equation for curve in picture.curves if not curve.boundary}
+    return tuple(curve for curve in picture.curves if curve.boundary or len(others) <= _MOST_DIVIDERS)
+
+
+def symbol(name: str) -> Formula:
+    """Return a parameter as a formula."""
+    return Literal(Scalar.symbol(name))
+
+
+def number(value: Scalar | Fraction | int) -> Formula:
+    """Return a number as a formula."""
+    return Literal(Scalar.of(value))
+
+
+def part(name: str) -> Formula:
+    """Return the real part `Re` or the imaginary part `Im` of the variable."""
+    return Apply(name, Letter("s"))
+
+
+def _equation(name: str, value: Scalar) -> Relation:
+    return Relation((symbol(name), number(value)), ("=",))
+
+
+def _say(key: str, **slots: Formula | Fact) -> Sentence:
+    return Sentence(f"picture_{key}", tuple(slots.items()))
+
+
+def _sentences(picture: Picture) -> Iterator[Sentence]:
+    match picture:
+        case RegionPicture(axes=(first, second)):
+            yield _say(f"region{_extent(picture)}", first=symbol(first), second=symbol(second))
+            yield from (_say(kind) for kind in _kinds(mark.kind for mark in picture.marks))
+            if any(not curve.boundary for curve in drawn(picture)):
+                yield _say("dashed")
+        case LinePicture(axis=axis):
+            yield _say(f"line{_length(picture)}", parameter=symbol(axis))
+            yield from (_say(kind) for kind in _kinds(kind for _, kind in picture.marks))
+        case PoleMap(moved=moved, values=(begin, end)):
+            yield _say("poles", parameter=symbol(moved), begin=number(begin), end=number(end))
+            if picture.discrete:
+                yield _say("disc", radius=number(radius_of(picture)))
+            else:
+                edge = number(-(picture.margin or 0))
+                yield _say("half_plane", where=Relation((part("Re"), edge), ("<",)))
+        case TimeResponse(states=states, starts=starts):
+            begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
+            yield _say("response", start=Together(begun))
+            if any(course.dashed for course in picture.courses):
+                yield _say("estimates")
+            if picture.discrete:
+                yield _say("samples_only")
+
+
+def _beginning(name: str, start: Sequence[Fraction]) -> Relation:
+    values = Matrix.of([[part] for part in start])
+    value = values[0, 0] if len(start) == 1 else values
+    return Relation((At(Letter(name), "t", Scalar.of(0)), Literal(value)), ("=",))
+
+
+def radius_of(picture: PoleMap) -> Fraction:
+    """Return the radius of the disc in which poles are stable."""
+    return Fraction(1) if picture.radius is None else picture.radius
+
+
+def _extent(picture: RegionPicture) -> str:
+    if not picture.areas:
+        return "_nowhere"
+    return "" if any(curve.boundary for curve in picture.curves) else "_everywhere"
+
+
+def _length(picture: LinePicture) -> str:
+    if not picture.pieces:
+        return "_nowhere"
+    if picture.pieces == ((None, None),):
+        return "_everywhere"
+    return "_one" if len(picture.pieces) == 1 else ""
+
+
+def _kinds(kinds: Iterator[str]) -> list[str]:
+    """Return what explains the kinds of marks that occur."""
+    found = set(kinds)
+    samples = ["samples"] if {"stable", "unstable"} <= found else sorted(found - {"excluded"})
+    return [*samples, *(found & {"excluded"})]

@@ -1,0 +1,152 @@
+"""Sentences: phrases with their slots filled, and the names between dollar signs in them made mathematics.
+
+`$A - L C$` in a phrase is a formula in the letters of `notation`, so that it is printed as everywhere else: sums of
+products of letters, `ᵀ` behind a letter, `=` between two of them.  It names things and claims nothing.
+"""
+
+from __future__ import annotations
+
+import re
+import string
+from typing import TYPE_CHECKING
+
+from symobs.convention import STANDARD, Convention
+from symobs.exact import Scalar
+from symobs.formula import (
+    Exactly,
+    Letter,
+    Literal,
+    Names,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    Shown,
+    Sum,
+    Together,
+    Transpose,
+    Turned,
+)
+from symobs.notation import LETTERS
+from symobs.phrases import PHRASES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from symobs.derivation import Sentence
+    from symobs.formula import Fact, Formula
+    from symobs.render.page.blocks import Inline, Inlines
+
+
+#: Where in a phrase the number of what it rests on stands, if not at its end.
+MARK = "§"
+
+#: Words of a phrase for one root in its slot, and for several: `the <mode|modes> {roots}`.
+_COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
+#: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
+_PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
+_OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
+
+
+def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
+    """Return the phrase of a sentence with its slots filled, in the letters and signs of a convention."""
+    slots, turned = dict(sentence.slots), Turned(convention.turned)
+    several = any(isinstance(slot, Roots) and len(slot.values) > 1 for slot in slots.values())
+    phrase = _COUNTED.sub(lambda words: words[2 if several else 1], PHRASES[sentence.key])
+    if not convention.is_standard:
+        phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
+    inlines: list[Inline] = []
+    for text, name, _, _ in string.Formatter().parse(phrase):
+        inlines += _prose(text, turned, convention.letters)
+        if name is not None:
+            inlines += _shown(slots[name])
+    return joined(inlines)
+
+
+def with_reference(inlines: Inlines, number: int | None) -> Inlines:
+    """Return a sentence with the number of what it rests on: where its phrase says so, else before its last mark."""
+    if any(isinstance(part, str) and MARK in part for part in inlines):
+        shown = "" if number is None else f"\N{NO-BREAK SPACE}[{number}]"
+        return tuple(part.replace(MARK, shown) if isinstance(part, str) else part for part in inlines)
+    if number is None:
+        return inlines
+    *rest, last = inlines
+    if not isinstance(last, str):
+        return joined((*inlines, f"\N{NO-BREAK SPACE}[{number}]"))
+    words = last.rstrip(".:,")
+    return joined((*rest, f"{words}\N{NO-BREAK SPACE}[{number}]{last[len(words) :]}"))
+
+
+def joined(inlines: Iterable[Inline]) -> Inlines:
+    """Return the same inlines, neighbouring texts made one and empty ones left out."""
+    result: list[Inline] = []
+    for inline in inlines:
+        if isinstance(inline, str) and result and isinstance(before := result[-1], str):
+            result[-1] = before + inline
+        elif inline != "":
+            result.append(inline)
+    return tuple(result)
+
+
+def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
+    """Yield what stands in a slot: of a property its subject, of a region its inequalities."""
+    match slot:
+        case Predicate(subject=subject):
+            yield subject
+        case Shown(value=value):
+            yield value
+        case Names(names):
+            for place, name in enumerate(names):
+                between = "" if not place else " and " if place + 1 == len(names) else ", "
+                yield from (between, Literal(Scalar.symbol(name)))
+        case Exactly(where=where) | Together(relations=where):
+            for place, relation in enumerate(where):
+                yield from (", ", relation) if place else (relation,)
+        case _:
+            yield slot
+
+
+def _pair(first: str, second: str, convention: Convention) -> str:
+    """Return a pair of matrices in the brackets of a convention, which stand for themselves in a phrase."""
+    opening, closing = (f"{bracket}{bracket}" if bracket in "{}" else bracket for bracket in convention.brackets)
+    members = (second, first) if convention.state_first and first in _OUTPUTS else (first, second)
+    return f"{opening}{', '.join(members)}{closing}"
+
+
+def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
+    """Return the letter alone where a convention writes both sides of an equation alike."""
+    names = [member.name if isinstance(member, Letter) else "" for member in relation.members]
+    written = {letters.get(name, LETTERS[name].text) if name in LETTERS else "" for name in names}
+    return relation.members[-1] if len(written) == 1 and "" not in written else relation
+
+
+def _prose(text: str, turned: Turned, letters: Mapping[str, str]) -> Iterator[Inline]:
+    for place, part in enumerate(text.split("$")):
+        if place % 2:
+            named = _named(part)
+            yield _once(turned.relation(named), letters) if isinstance(named, Relation) else turned.formula(named)
+        else:
+            yield part
+
+
+def _named(text: str) -> Formula | Relation:
+    members = tuple(_sum(member) for member in text.split("="))
+    return Relation(members, ("=",) * (len(members) - 1)) if len(members) > 1 else members[0]
+
+
+def _sum(text: str) -> Formula:
+    terms = tuple(
+        Negative(_product(term)) if sign in {"-", "−"} else _product(term)
+        for sign, term in re.findall(r"([-−+]?)\s*([^-−+]+)", text.strip())
+    )
+    return terms[0] if len(terms) == 1 else Sum(terms)
+
+
+def _product(text: str) -> Formula:
+    factors = tuple(_factor(name) for name in text.split())
+    return factors[0] if len(factors) == 1 else Product(factors)
+
+
+def _factor(name: str) -> Formula:
+    return Transpose(Letter(name[:-1])) if name.endswith("ᵀ") else Letter(name)

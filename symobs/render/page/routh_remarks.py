@@ -1,0 +1,29 @@
+"""TODO symobs/render/page/routh_remarks.py."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.derivation import Sentence
+from symobs.formula import Literal
+from symobs.render.page.prose import filled
+
+if TYPE_CHECKING:
+    from symobs.render.page.blocks import Inlines
+    from symobs.stability.criteria.routh_table import RouthTable
+
+
+def remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
+    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
+    found: list[tuple[Inlines, ...]] = []
+    for row in table.rows:
+        if row.origin == "epsilon":
+            small = Literal(row.entries[0])
+            found.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
+        elif row.origin == "auxiliary":
+            polynomial = Literal(table.auxiliary(row, variable))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
+            found.append((full, filled(Sentence("routh_row_derivative"))))
+        else:
+            found.append(())
+    return tuple(found)

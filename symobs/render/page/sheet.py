@@ -1,0 +1,52 @@
+"""A sheet of several problems, as a format receives it: every part is rendered already, in a manner of its own.
+
+A format that has sheets offers two functions besides `render`: `part(document)` returns whatever it will want of one
+question or solution, and `sheet(sheet)` returns the whole.  Parts are made one by one, so one that fails loses no other.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+#: A sheet of more problems than this begins with a table of contents.
+WITHOUT_CONTENTS = 6
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One problem of a sheet; a part that could not be made is None where the sheet has such parts."""
+
+    number: int
+    file: str
+    title: str
+    question: Any = None
+    solution: Any = None
+    #: What the sheet says in place of a part that could not be made.
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Problems under one title: all questions first, then all solutions, as far as it has either."""
+
+    title: str
+    entries: tuple[Entry, ...]
+    has_questions: bool = True
+    has_solutions: bool = True
+    templates: Path | None = None
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it needs a table of contents."""
+        return len(self.entries) > WITHOUT_CONTENTS
+
+    def chapters(self) -> tuple[tuple[str, tuple[tuple[Entry, Any], ...]], ...]:
+        """Return its chapters, `questions` and `solutions`, each with its entries and their parts."""
+        asked = ("questions", tuple((entry, entry.question) for entry in self.entries))
+        solved = ("solutions", tuple((entry, entry.solution) for entry in self.entries))
+        return (*((asked,) if self.has_questions else ()), *((solved,) if self.has_solutions else ()))

@@ -1,0 +1,189 @@
+"""Pictures by matplotlib, for PNG and PDF: the same scene, with mathematics set by matplotlib's own TeX."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import UsageError
+from symobs.render.page.plot_captions import caption
+from symobs.render.plots.caption_rows import ABOVE, NARROWEST, ROW, rows_of, words_of
+from symobs.render.plots.numbered_caption import below
+from symobs.render.plots.plot_layout import scene_of
+from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Box, Scene, Sign, Stroke, arrow_head
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.figures.plot import Picture
+    from symobs.formula import Formula, Relation
+    from symobs.render.plots.scene import Content, Point
+    from symobs.render.printers.latex_printer import LatexPrinter
+    from symobs.render.printers.text_printer import TextPrinter
+
+_COLOURS = {"ink": "#1e3c6e", "text": "black", "pale": "0.78"}
+_SHADE = "#e4e7ed"
+_FONT: dict[str, Any] = {"family": ["STIXGeneral", "DejaVu Sans"], "math_fontfamily": "stix"}
+_SPACE = 0.28 * FONT_SIZE
+_RESOLUTION = 220
+_HORIZONTAL, _VERTICAL = {"west": "left", "east": "right"}, {"north": "top", "south": "bottom"}
+#: Nothing that changes from run to run.
+_METADATA: dict[str, dict[str, Any]] = {
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Producer": None},
+}
+
+
+def require_matplotlib() -> None:
+    """Raise `UsageError` where matplotlib is missing."""
+    try:
+        import matplotlib.figure  # noqa: F401
+    except ImportError:
+        message = "pictures in PNG and PDF need matplotlib"
+        raise UsageError(message, repair="pip install matplotlib, or name a file that ends in .svg or .tex") from None
+
+
+def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
+    """Return a picture with its caption as `png` or `pdf`."""
+    require_matplotlib()
+    from matplotlib.figure import Figure
+
+    write = _writer(latex, text)
+    scene = scene_of(picture, lambda content: _size(write(content)))
+    room = max(scene.whole.right - scene.whole.left, NARROWEST)
+    rows = [_joined(row) for row in _caption(picture, scene, write, room)]
+    box = scene.whole
+    right = max([box.right, *(box.left + 6 + _size(row)[0] for row in rows)])
+    whole = Box(box.left, box.bottom - ABOVE - ROW * len(rows), right, box.top)
+    figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))
+    axes.axis("off")
+    _draw(scene, axes, write)
+    for place, row in enumerate(rows):
+        axes.text(box.left + 3, box.bottom - ABOVE - ROW * (place + 0.5), row, fontsize=FONT_SIZE, va="center", **_FONT)
+    buffer = BytesIO()
+    figure.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
+    return buffer.getvalue()
+
+
+def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
+    """Return what writes mathematics for matplotlib: LaTeX where its TeX understands that, else plain text."""
+    from matplotlib.mathtext import MathTextParser
+
+    parser: Any = MathTextParser("path")
+
+    def write(content: Content) -> str:
+        if isinstance(content, str):
+            return content.replace("-", "−").replace("$", r"\$")
+        written = f"${latex.inline(content)}$"
+        try:
+            parser.parse(written)
+        except ValueError:
+            return text.inline(content).replace("$", r"\$")
+        return written
+
+    return write
+
+
+@lru_cache(maxsize=1024)
+def _size(written: str) -> tuple[float, float]:
+    """Return how wide and high matplotlib writes."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    font = FontProperties(**_FONT, size=FONT_SIZE)
+    extents = TextPath((0, 0), written, prop=font).get_extents()
+    return float(extents.x1), max(float(extents.height) + 1.5, 0.9 * FONT_SIZE)
+
+
+def _caption(picture: Picture, scene: Scene, write: Callable[[Content], str], room: float) -> list[list[list[str]]]:
+    """Return the rows of the caption; mathematics that is too long for its row is broken after its signs."""
+
+    def mathematics(content: Formula | Relation) -> list[str]:
+        whole = write(content)
+        return [whole] if _size(whole)[0] <= room / 2 else _broken(whole)
+
+    words = words_of(below(caption(picture), scene), lambda word: word.replace("$", r"\$"), mathematics)
+    return rows_of(words, lambda piece: _size(piece)[0], _SPACE, room)
+
+
+def _broken(written: str) -> list[str]:
+    """Return mathematics in parts that end with a sign, none inside parentheses or braces."""
+    parts, depth = [""], 0
+    for place, character in enumerate(written[1:-1]):
+        depth += (character in "({") - (character in ")}")
+        parts[-1] += character
+        if character in "+-=" and depth == 0 and place:
+            parts.append("")
+    return [f"${part}$" for part in parts if part] if written.startswith("$") else written.split(" ")
+
+
+def _joined(row: list[list[str]]) -> str:
+    """Return a row as one text, parts of one formula that follow one another put together again."""
+    return " ".join("".join(word) for word in row).replace("$ $", "")
+
+
+# -- drawing ----------------------------------------------------------------------------------------------------------
+
+
+def _draw(scene: Scene, axes: Any, write: Callable[[Content], str]) -> None:
+    if scene.shades:
+        _fill(axes, scene.shades, _SHADE)
+    for stroke in scene.strokes:
+        _stroke(axes, stroke)
+    for sign in scene.signs:
+        _sign(axes, sign)
+    for text in scene.texts:
+        anchors = {
+            "ha": _HORIZONTAL.get(text.anchor, "center"),
+            "va": _VERTICAL.get(text.anchor, "center_baseline" if text.anchor == "east" else "center"),
+        }
+        axes.text(*text.place, write(text.content), fontsize=FONT_SIZE, **anchors, **_FONT)
+
+
+def _fill(axes: Any, areas: tuple[tuple[Point, ...], ...], colour: str) -> None:
+    """Fill areas as one path: two that touch show no seam."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    corners = [point for area in areas for point in (*area, area[0])]
+    codes = [code for area in areas for code in _codes(len(area), Path)]
+    axes.add_patch(PathPatch(Path(corners, codes), facecolor=colour, edgecolor="none", zorder=0))
+
+
+def _codes(corners: int, path: Any) -> Iterator[int]:
+    yield path.MOVETO
+    yield from (path.LINETO for _ in range(corners - 1))
+    yield path.CLOSEPOLY
+
+
+def _stroke(axes: Any, stroke: Stroke) -> None:
+    style = STYLES[stroke.style]
+    dashes: dict[str, Any] = {"linestyle": (0, tuple(d / style.width for d in style.dashes))} if style.dashes else {}
+    xs, ys = zip(*stroke.points, strict=True)
+    colour = _COLOURS[style.colour]
+    axes.plot(xs, ys, color=colour, linewidth=style.width, solid_capstyle="butt", zorder=1, **dashes)
+    if stroke.style == "axis":
+        (x0, y0), (x1, y1) = stroke.points[-2:]
+        _fill(axes, (arrow_head(Sign("arrow", (x1, y1), (x1 - x0, y1 - y0))),), colour)
+
+
+def _sign(axes: Any, sign: Sign) -> None:
+    from matplotlib.patches import Circle
+
+    ink = _COLOURS["ink"]
+    radius = RADIUS.get(sign.kind, 0.0)
+    x, y = sign.place
+    match sign.kind:
+        case "dot":
+            axes.add_patch(Circle(sign.place, radius, facecolor=ink, edgecolor="none", zorder=2))
+        case "ring":
+            axes.add_patch(Circle(sign.place, radius, facecolor="white", edgecolor=ink, linewidth=0.8, zorder=2))
+        case "arrow":
+            _fill(axes, (arrow_head(sign),), ink)
+        case _:
+            for turn in (1, -1):
+                ends = (x - radius, x + radius), (y - turn * radius, y + turn * radius)
+                axes.plot(*ends, color=ink, linewidth=0.8, zorder=2)

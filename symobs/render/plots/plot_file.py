@@ -1,0 +1,75 @@
+"""Files with the picture of a result: SVG and TikZ by ourselves, PNG and PDF by matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symobs.derivation import Plot
+from symobs.errors import DerivationRejected, UsageError
+from symobs.render.page.narrator import printer_for
+from symobs.render.plots.matplotlib_writer import drawn_by_matplotlib, require_matplotlib
+from symobs.render.plots.svg import svg_file
+from symobs.render.plots.tikz import tikz_file
+from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.render.printers.text_printer import TextPrinter
+from symobs.result import Document
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symobs.derivation import Step
+    from symobs.figures.plot import Picture
+    from symobs.result import Result
+
+SUFFIXES = (".svg", ".png", ".pdf", ".tex")
+_BY_MATPLOTLIB = {".png": "png", ".pdf": "pdf"}
+
+
+def check_target(path: str) -> None:
+    """Raise `UsageError` for a file that no picture can be written to, before anything is computed for it."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in SUFFIXES:
+        message = f"the suffix {suffix[:20]!r} names no format of pictures" if suffix else "a picture needs a suffix"
+        raise UsageError(message, where="--plot", repair=f"name a file that ends in {', '.join(SUFFIXES)}")
+    if suffix in _BY_MATPLOTLIB:
+        require_matplotlib()
+
+
+def picture_file(results: Sequence[Result], path: str) -> bytes:
+    """Return the picture of the first result that has one, in the format that the suffix of `path` names."""
+    check_target(path)
+    result = next((result for result in results if result.picture is not None), None)
+    if result is None or result.picture is None:
+        message = f"there is no picture of {', '.join(result.task for result in results)}"
+        raise UsageError(
+            message, where="--plot", repair="leave --plot out, or ask for a task whose page shows a picture"
+        )
+    _require_checked(result.picture, result)
+    return _written(result.picture, result, Path(path).suffix.lower())
+
+
+def _written(picture: Picture, result: Result, suffix: str) -> bytes:
+    document = Document("", "", (result,))
+    latex, text = printer_for(document, LatexPrinter), printer_for(document, TextPrinter)
+    match suffix:
+        case ".svg":
+            return svg_file(picture, text).encode()
+        case ".tex":
+            return tikz_file(picture, latex).encode()
+        case _:
+            return drawn_by_matplotlib(picture, _BY_MATPLOTLIB[suffix], latex, text)
+
+
+def _require_checked(picture: Picture, result: Result) -> None:
+    """Raise `DerivationRejected` unless the result's checked page shows this picture: no other was held to be true."""
+    result.derivation.check()
+    if picture not in set(_shown(result.derivation.steps)):
+        raise DerivationRejected("the page shows another picture", repair="please report this: it is a bug of symobs")
+
+
+def _shown(steps: Sequence[Step]) -> Iterator[Picture]:
+    for step in steps:
+        if isinstance(step, Plot):
+            yield step.picture
+        yield from _shown(getattr(step, "steps", ()))

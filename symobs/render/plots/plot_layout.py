@@ -1,0 +1,320 @@
+"""From pictures to scenes: frames, ticks, and everything in its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, cos, floor, hypot, log10, pi, sin
+from typing import TYPE_CHECKING, assert_never
+
+from symobs._dataclass import dataclass
+from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula import Literal, Relation
+from symobs.render.page.plot_captions import drawn, part, radius_of, symbol
+from symobs.render.plots import time_axis
+from symobs.render.plots.curve_labels import Surroundings, labelled, walk
+from symobs.render.plots.scene import (
+    RADIUS,
+    Box,
+    Scene,
+    Sign,
+    Stroke,
+    Text,
+    chained,
+    clipped,
+    clipped_area,
+    segment_in,
+    thinned,
+    whole_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from fractions import Fraction
+
+    from symobs.figures.plot import End, Interval, Picture
+    from symobs.render.plots.scene import Content, Measure, Point
+
+WIDEST, HIGHEST = 270.0, 205.0  # points
+_LINE, _LONGEST_END = 290.0, 0.3
+_SMALLEST_SIDE = 100.0
+#: Windows that are not much longer than high are drawn with equal scales.
+_EQUAL_UP_TO = 2.0
+_TICK, _BEYOND, _LETTER = 3.0, 11.0, 4.0
+_TICKS = 5
+_CURVES = {True: "boundary", False: "divider"}
+_SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
+
+
+def scene_of(picture: Picture, measure: Measure) -> Scene:
+    """Return what a picture comes to on paper; `measure` says how large a format writes."""
+    match picture:
+        case RegionPicture():
+            return _region(picture, measure)
+        case LinePicture():
+            return _line(picture, measure)
+        case PoleMap():
+            return _poles(picture, measure)
+        case TimeResponse():
+            return _courses(picture, measure)
+        case _:
+            assert_never(picture)
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """A window of the plane and the rectangle on paper that shows it."""
+
+    horizontal: tuple[float, float]
+    vertical: tuple[float, float]
+    width: float
+    height: float
+
+    @property
+    def box(self) -> Box:
+        return Box(0.0, 0.0, self.width, self.height)
+
+    def at(self, x: float | Fraction, y: float | Fraction) -> Point:
+        """Return the point on paper of a place in the plane."""
+        (left, right), (bottom, top) = self.horizontal, self.vertical
+        return (float(x) - left) / (right - left) * self.width, (float(y) - bottom) / (top - bottom) * self.height
+
+    def lines(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
+        """Return the parts of a line in the plane that the frame shows."""
+        return [thinned(run) for run in clipped([self.at(x, y) for x, y in places], self.box)]
+
+    def areas(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
+        """Return the part of a polygon that the frame shows."""
+        area = clipped_area([self.at(x, y) for x, y in places], self.box)
+        return [thinned((*area, area[0]))[:-1]] if area else []
+
+
+def _decimal(interval: Interval) -> tuple[float, float]:
+    return float(interval[0]), float(interval[1])
+
+
+# -- regions ----------------------------------------------------------------------------------------------------------
+
+
+def _region(picture: RegionPicture, measure: Measure) -> Scene:
+    frame = _frame_of(picture.window)
+    shades = tuple(part for area in picture.areas for part in frame.areas(area))
+    runs: dict[tuple[Relation, bool], list[tuple[Point, ...]]] = {}
+    for curve in drawn(picture):
+        runs.setdefault((curve.equation, curve.boundary), []).extend(frame.lines(curve.points))
+    curves = {key: chained(lines) for key, lines in runs.items() if lines}
+    strokes = [Stroke(line, _CURVES[boundary]) for (_, boundary), lines in curves.items() for line in lines]
+    signs = tuple(Sign(_SIGNS[mark.kind], frame.at(*mark.place)) for mark in picture.marks)
+    lines = tuple(stroke.points for stroke in strokes)
+    pale = tuple(_zero_lines(frame))
+    around = Surroundings(frame.box, lines, tuple(_box(sign) for sign in signs), pale, shades)
+    boundaries = {equation: tuple(lines) for (equation, boundary), lines in curves.items() if boundary}
+    labels, numbered = labelled(boundaries, around, measure)
+    axes, written = _axes(frame, (symbol(picture.axes[0]), symbol(picture.axes[1])), measure)
+    crossed = [text.box(measure(text.content)).grown(1.0) for text in labels]
+    zeros = [Stroke(piece, "zero") for line in pale for piece in _between(line, crossed)]
+    texts = (*written, *labels)
+    whole = whole_of(axes, texts, measure)
+    return Scene(frame.box, whole, shades, (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
+
+
+def _between(line: tuple[Point, Point], boxes: Iterable[Box]) -> list[tuple[Point, Point]]:
+    """Return what is left of a line that goes right or up outside boxes."""
+    pieces = [line]
+    for box in boxes:
+        crossed = [(piece, segment_in(*piece, box)) for piece in pieces]
+        pieces = []
+        for piece, inside in crossed:
+            pieces += [piece] if inside is None else [(piece[0], inside[0]), (inside[1], piece[1])]
+    return [(a, b) for a, b in pieces if a != b]
+
+
+def _frame_of(window: tuple[Interval, Interval]) -> _Frame:
+    """Return the frame of a window: equal scales where that makes no strip of it."""
+    horizontal, vertical = map(_decimal, window)
+    ratio = (horizontal[1] - horizontal[0]) / (vertical[1] - vertical[0])
+    if not 1 / _EQUAL_UP_TO <= ratio <= _EQUAL_UP_TO:
+        ratio = WIDEST / HIGHEST
+    width = min(WIDEST, ratio * HIGHEST)
+    return _Frame(horizontal, vertical, width, width / ratio)
+
+
+def _box(sign: Sign) -> Box:
+    x, y = sign.place
+    return Box(x, y, x, y).grown(RADIUS.get(sign.kind, 0.0) + 1.0)
+
+
+# -- axes -------------------------------------------------------------------------------------------------------------
+
+
+def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[Text]]:
+    """Return axes on the left and below, with ticks and names."""
+    width, height = frame.width, frame.height
+    strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
+    texts = [Text(names[0], (width + _BEYOND + _LETTER, 0), "west")]
+    texts += [Text(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
+    for value, label in ticks(*frame.horizontal):
+        x, _ = frame.at(value, 0)
+        strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
+        texts.append(Text(label, (x, -_TICK - 3), "north"))
+    for value, label in ticks(*frame.vertical, _fitting(height, measure)):
+        _, y = frame.at(0, value)
+        strokes.append(Stroke(((0, y), (-_TICK, y)), "tick"))
+        texts.append(Text(label, (-_TICK - 2, y), "east"))
+    return strokes, texts
+
+
+def _fitting(height: float, measure: Measure) -> int:
+    """Return how many ticks find room above one another."""
+    return max(2, min(_TICKS, int(height / (2 * measure("0")[1]))))
+
+
+def _zero_lines(frame: _Frame) -> Iterator[tuple[Point, Point]]:
+    """Yield the lines through zero, where they are inside."""
+    x, y = frame.at(0, 0)
+    if 0 < x < frame.width:
+        yield (x, 0), (x, frame.height)
+    if 0 < y < frame.height:
+        yield (0, y), (frame.width, y)
+
+
+def ticks(low: float, high: float, most: int = _TICKS) -> list[tuple[float, str]]:
+    """Return about `most` round numbers of an interval and how they are written."""
+    raw = (high - low) / most
+    power = 10.0 ** floor(log10(raw))
+    step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= raw * (1 - 1e-9))
+    digits = max(0, -floor(log10(step) + 1e-9))
+    first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
+    return [(index * step, f"{index * step:.{digits}f}" if index else "0") for index in range(first, last + 1)]
+
+
+# -- intervals --------------------------------------------------------------------------------------------------------
+
+
+def _line(picture: LinePicture, measure: Measure) -> Scene:
+    """A line with thick pieces; labels of ends that would overlap stand on further rows."""
+    low, high = _decimal(picture.window)
+    frame = _Frame((low, high), (0.0, 1.0), _LINE, 1.0)
+
+    def at(value: float | Fraction) -> float:
+        return frame.at(value, 0)[0]
+
+    strokes = [Stroke(((0, 0), (_LINE + _BEYOND, 0)), "axis")]
+    ends: dict[float, Content] = {}
+    for begin, end in picture.pieces:
+        strokes.append(Stroke(((at(begin.place if begin else low), 0), (at(end.place if end else high), 0)), "piece"))
+        ends |= {at(found.place): _label(found, measure) for found in (begin, end) if found is not None}
+    signs = [Sign(_SIGNS[kind], (at(place), 7.0)) for place, kind in picture.marks if kind != "excluded"]
+    signs += [Sign("ring", (x, 0)) for x in {*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")}]
+    texts = [Text(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
+    strokes += [Stroke((text.place, (text.place[0], 0)), "zero") for text in texts[1:] if text.place[1] < -3 * _TICK]
+    covered = [text.box(measure(text.content)) for text in texts]
+    for value, number in ticks(low, high):
+        text = Text(number, (at(value), -_TICK - 2), "north")
+        box = text.box(measure(number))
+        if all(abs(at(value) - x) > RADIUS["ring"] for x in ends):
+            strokes.append(Stroke(((at(value), 1.5), (at(value), -1.5)), "tick"))
+        if not any(box.grown(_LETTER).meets(other) for other in covered):
+            texts.append(text)
+    whole = whole_of([*strokes, Stroke(((0, 11.0), (0, -_TICK)), "tick")], texts, measure)
+    return Scene(frame.box, whole, (), tuple(strokes), tuple(signs), tuple(texts))
+
+
+def _label(end: End, measure: Measure) -> Content:
+    """Return what is written at an end: a decimal number where the exact one is too long for the picture."""
+    if isinstance(end.label, str):
+        return end.label
+    exact = Literal(end.label)
+    return exact if measure(exact)[0] <= _LONGEST_END * _LINE else f"≈{float(end.place):.4g}"
+
+
+def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
+    """Yield the labels of ends below the line, each on the first row where it is clear of the others."""
+    rows: list[float] = []
+    row_height = measure("0")[1] + 2.0
+    for x, content in sorted(ends.items(), key=lambda item: item[0]):
+        width, height = measure(content)
+        row = next((row for row, right in enumerate(rows) if right + _LETTER <= x - width / 2), len(rows))
+        rows[row:] = [x + width / 2] if row == len(rows) or row == len(rows) - 1 else [x + width / 2, *rows[row + 1 :]]
+        yield Text(content, (x, -_TICK - 2 - row * max(row_height, height)), "north")
+
+
+# -- poles ------------------------------------------------------------------------------------------------------------
+
+
+def _poles(picture: PoleMap, measure: Measure) -> Scene:
+    """The plane of poles with equal scales, the stable part shaded, arrows on the paths."""
+    frame = _square_frame(picture.window)
+    (left, _), (bottom, top) = frame.horizontal, frame.vertical
+    if picture.discrete:
+        radius = float(radius_of(picture))
+        edge = [(radius * cos(2 * pi * k / 180), radius * sin(2 * pi * k / 180)) for k in range(181)]
+        stable = edge[:-1]
+    else:
+        margin = -float(picture.margin or 0)
+        edge = [(margin, bottom), (margin, top)]
+        stable = [(left, bottom), (margin, bottom), (margin, top), (left, top)]
+    axes, texts = _axes(frame, (part("Re"), part("Im")), measure)
+    zeros = [Stroke(line, "zero") for line in _zero_lines(frame)]
+    strokes = [*zeros, *axes, *(Stroke(line, "boundary") for line in frame.lines(edge))]
+    signs: list[Sign] = []
+    for path in picture.paths:
+        runs = frame.lines(path)
+        strokes += [Stroke(run, "path") for run in runs]
+        signs += [arrow for run in runs for arrow in _arrows(run)]
+        ends = ((kind, frame.at(*place)) for kind, place in (("cross", path[0]), ("ring", path[-1])))
+        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Box(*place, *place))]
+    whole = whole_of(strokes, texts, measure)
+    return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
+
+
+# -- courses ----------------------------------------------------------------------------------------------------------
+
+
+def _courses(picture: TimeResponse, measure: Measure) -> Scene:
+    """Signals over time, each with its name beside it."""
+    frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
+    counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
+    lines = [
+        tuple(replace(counted, horizontal=(0.0, len(course.heights) - 1.0)).lines(enumerate(course.heights)))
+        for course in picture.courses
+    ]
+    pale = tuple(_zero_lines(frame))
+    every = tuple(line for parts in lines for line in parts)
+    names = {time_axis.name_of(course): parts for course, parts in zip(picture.courses, lines, strict=True)}
+    labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
+    axes, written = _axes(frame, (symbol(time_axis.axis_of(picture)),), measure)
+    styles = ["zero" if picture.discrete else time_axis.style_of(course) for course in picture.courses]
+    sampled = picture.courses if picture.discrete else ()
+    signs = tuple(
+        Sign(time_axis.sign_of(course), frame.at(*place)) for course in sampled for place in picture.points(course)
+    )
+    strokes = [Stroke(line, style) for style, parts in zip(styles, lines, strict=True) for line in parts]
+    texts = (*written, *labels)
+    zeros = (Stroke(line, "zero") for line in pale)
+    whole = whole_of(axes, texts, measure)
+    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
+
+
+def _square_frame(window: tuple[Interval, Interval]) -> _Frame:
+    """Return a frame with equal scales; a strip is given more room on both sides."""
+    horizontal, vertical = map(_decimal, window)
+    scale = min(WIDEST / (horizontal[1] - horizontal[0]), HIGHEST / (vertical[1] - vertical[0]))
+    horizontal, vertical = (_widened(interval, _SMALLEST_SIDE / scale) for interval in (horizontal, vertical))
+    width, height = ((high - low) * scale for low, high in (horizontal, vertical))
+    return _Frame(horizontal, vertical, width, height)
+
+
+def _widened(interval: tuple[float, float], least: float) -> tuple[float, float]:
+    low, high = interval
+    more = max(0.0, least - (high - low)) / 2
+    return low - more, high + more
+
+
+def _arrows(run: Sequence[Point]) -> Iterator[Sign]:
+    """Yield heads in the middle of a path, or at its thirds where it is long."""
+    length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(run))
+    if length < 4 * RADIUS["ring"]:
+        return
+    for place, direction, _ in walk(run, length / 2 if length > WIDEST / 2 else length):
+        yield Sign("arrow", (place[0] + 2 * direction[0], place[1] + 2 * direction[1]), direction)

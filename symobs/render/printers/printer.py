@@ -1,0 +1,366 @@
+"""The printer: one walk over a formula with its precedences; a format supplies the glyphs.
+
+A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
+`A - L C` is printed as its author wrote it; only exact values are spelled out (`scalars.spelled`).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symobs.exact import EIGENVALUE, Matrix, Scalar, written
+from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.kernel.generators import known
+from symobs.exact.time_functions.root_sum import RootSum
+from symobs.formula import (
+    Apply,
+    At,
+    Block,
+    Decimals,
+    Derivative,
+    Formula,
+    Identity,
+    Integral,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Relation,
+    Sum,
+    Transpose,
+    children,
+    with_children,
+)
+from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
+from symobs.render.printers.glyphs import B, Glyphs, Level
+from symobs.render.printers.scalars import is_leaf, spelled, spelled_matrix
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symobs.exact.kernel.generators import Function
+    from symobs.notation import LetterForm
+
+#: Letters that are functions of time; in discrete time they carry the index k.
+SIGNALS = frozenset(
+    {
+        "x",
+        "x_hat",
+        "e",
+        "u",
+        "y",
+        "y_hat",
+        "x_1",
+        "x_2",
+        "x_2_hat",
+        "e_2",
+        "x_hat_1",
+        "x_hat_2",
+        "z_o",
+        "w_o",
+        "v_r",
+        "x_d",
+        "e_d",
+    }
+)
+
+
+_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def _with_index(latex: str, index: str) -> str:
+    stem, below, own = latex.partition("_")
+    return f"{stem}_{{{own.strip('{}')},{index}}}" if below else f"{stem}_{index}"
+
+
+class Printer(Glyphs[B]):
+    """Formula → mathematics of one format."""
+
+    def __init__(
+        self, variable: str = "s", symbols: Mapping[str, str] | None = None, *, discrete: bool = False
+    ) -> None:
+        """Print polynomials in `variable`; `symbols` are the declared forms of parameters."""
+        self.variable = variable
+        self.symbols = dict(symbols or {})
+        self.letters: Mapping[str, LetterForm] = LETTERS
+        self.discrete = discrete
+        self.known: dict[Scalar, B] = {}
+
+    @abstractmethod
+    def inline(self, item: Formula | Relation) -> str:
+        """Return mathematics for a line of text, without delimiters."""
+
+    @abstractmethod
+    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+        """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+
+    # -- letters --------------------------------------------------------------------------------------------------
+
+    def letter_latex(self, name: str) -> str:
+        """Return the LaTeX of a letter, its variable put in, of a component `x[1` of a signal, or of a parameter."""
+        if "[" in name:
+            return _with_index(self.letter_latex(name.partition("[")[0]), name.partition("[")[2])
+        form = self.letters.get(name)
+        return form.latex.replace("{v}", self.variable) if form else symbol_latex(name, self.symbols.get(name))
+
+    def letter_text(self, name: str) -> str:
+        """Return a letter as a terminal shows it, its variable put in, or a parameter."""
+        if "[" in name:
+            text = self.letter_text(name.partition("[")[0])
+            return text + ("," if text[-1].isnumeric() else "") + name.partition("[")[2].translate(_BELOW)
+        form = self.letters.get(name)
+        return form.text.replace("{v}", self.variable) if form else symbol_text(name)
+
+    def function_latex(self, name: str) -> str:
+        """Return the LaTeX of a function's name."""
+        known = self.letters[name].latex if name in self.letters else FUNCTIONS.get(name, ("",))[0]
+        return known or rf"\operatorname{{{name.replace('_', ' ')}}}"
+
+    # -- the walk -------------------------------------------------------------------------------------------------
+
+    def relation(self, item: Relation) -> B:
+        """Print a chain of equations and comparisons."""
+        parts = [self.typeset(item.members[0])]
+        for operator, member in zip(item.operators, item.members[1:], strict=True):
+            parts += [self.comparison(operator), self.typeset(member)]
+        return self.joined(parts, Level.SUM)
+
+    def typeset(self, formula: Formula) -> B:
+        """Print a formula."""
+        match formula:
+            case Letter(name):
+                return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
+            case Literal(Scalar() as value):
+                return self.scalar(value)
+            case Literal(Matrix() as value):
+                written = spelled_matrix(value, self.variable)
+                return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
+            case Decimals(Scalar() as value):
+                return self.decimals(value)
+            case Decimals(Matrix() as value):
+                return self.matrix([[self.decimals(entry) for entry in row] for row in value.rows])
+            case Identity():
+                return self.identity()
+            case Sum() | Negative():
+                return self.joined(self.sum_parts(formula), Level.SUM)
+            case Product():
+                return self.product(formula)
+            case Quotient():
+                return self.quotient(formula)
+            case Power(base, exponent):
+                return self.typeset(base) if exponent == 1 else self.raised(self.base(base), exponent)
+            case Transpose(operand):
+                return self.transposed(self.base(operand))
+            case Apply(function, argument):
+                return self.application(function, argument)
+            case Block(rows):
+                return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
+            case Derivative(operand, name):
+                return self.derivative(operand, name)
+            case At(operand, name, instant):
+                return self.at_instant(operand, {name: instant})
+            case Integral(integrand, _, name, lower, upper):
+                limits = self.scalar(lower), self.scalar(upper)
+                return self.integral(limits, self.at_least(Level.PRODUCT, self.typeset(integrand)), self.symbol(name))
+        raise TypeError(formula)
+
+    def scalar(self, value: Scalar) -> B:
+        """An exact scalar, spelled out once."""
+        box = self.known.get(value)
+        if box is None:
+            function = known(next(iter(value.names))) if is_leaf(value) and value.names else None
+            if function is not None:
+                box = self.function_of_time(function)
+            else:
+                box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+            self.known[value] = box
+        return box
+
+    def decimals(self, value: Scalar) -> B:
+        """A number with its digits after the point."""
+        box = self.digits(written(value))
+        is_negative = value.fraction() < 0
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
+
+    def function_of_time(self, function: Function) -> B:
+        """e^{−t}, sin ωt, √3; a root that has a letter of its own is written by it."""
+        if function.name in self.symbols:
+            return self.named(self.symbols[function.name])
+        if function.kind == "exp":
+            return self.exponential(function.argument)
+        if isinstance(function, RealRoot):
+            return self.named(rf"{function.number.truncated()}\ldots")
+        if isinstance(function, RootSum):
+            q, below = (self.typeset(spelled(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
+            over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
+            return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
+        argument = self.scalar(function.argument)
+        if function.kind == "sqrt":
+            return self.root(argument)
+        is_plain = argument.level >= Level.PRODUCT and not isinstance(spelled(function.argument, ""), Quotient)
+        box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
+        return replace(box, level=Level.POWER)
+
+    def sum_parts(self, formula: Formula) -> list[B]:
+        """The terms of a sum with their signs between them."""
+        parts: list[B] = []
+        for negative, term in signed_terms(formula, self.variable):
+            if parts or negative:
+                parts.append(self.sign(negative=negative, leading=not parts))
+            parts.append(self.at_least(Level.PRODUCT, self.typeset(term)))
+        return parts
+
+    def product(self, formula: Product) -> B:
+        """Juxtaposed factors, with a dot before a number that is not the first."""
+        ((negative, body),) = signed_terms(formula, self.variable, flat=False)
+        parts = self.factor_boxes(body)
+        sign = [self.sign(negative=True, leading=True)] if negative else []
+        return self.joined([*sign, *self.spaced(parts)], Level.SUM if negative else Level.PRODUCT)
+
+    def spaced(self, parts: Sequence[B]) -> list[B]:
+        """Factors with what stands between them."""
+        row: list[B] = []
+        for part in parts:
+            between = self.between(row[-1], part) if row else None
+            row += [part] if between is None else [between, part]
+        return row
+
+    def factor_boxes(self, formula: Formula) -> list[B]:
+        """The factors of a product, each parenthesised where it must be."""
+        parts = factors(formula, self.variable)
+        return [self.factor(part, last=index + 1 == len(parts)) for index, part in enumerate(parts)]
+
+    def factor(self, formula: Formula, *, last: bool) -> B:
+        """One factor; a function's argument is closed off from the factors that follow."""
+        if not isinstance(formula, Apply):
+            return self.at_least(Level.FRACTION, self.typeset(formula))
+        if last:
+            return self.typeset(formula)
+        return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
+
+    def quotient(self, formula: Quotient) -> B:
+        """A fraction; the minus of its numerator stands in front."""
+        ((negative, body),) = signed_terms(formula, self.variable, flat=False)
+        if isinstance(body, Quotient):
+            box = self.fraction(self.typeset(body.numerator), self.typeset(body.denominator))
+        else:
+            box = self.typeset(body)
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if negative else box
+
+    def base(self, formula: Formula) -> B:
+        """What carries an exponent or a transposition sign."""
+        if isinstance(formula, Literal) and isinstance(formula.value, Matrix):
+            return self.plain_matrix(formula.value)
+        return self.at_least(Level.ATOM, self.typeset(formula))
+
+    def application(self, function: str, argument: Formula) -> B:
+        """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
+        inner = self.base(argument) if is_matrix else self.typeset(argument)
+        if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
+            inner = self.grouped(inner)
+        return self.applied(function, inner)
+
+    def derivative(self, operand: Formula, name: str) -> B:
+        """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        if name != "t":
+            return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)), name)
+        if isinstance(operand, Letter) and is_of_time(operand.name):
+            return self.rate(self.letter(operand.name, ""))
+        if self.discrete:
+            if isinstance(operand, Letter):
+                return self.letter(operand.name, "k+1")
+            return self.typeset(shifted(operand))
+        if isinstance(operand, Letter):
+            return self.letter(operand.name, "dot")
+        return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)))
+
+    def symbol(self, name: str) -> B:
+        """A parameter's name."""
+        return self.leaf(Scalar.symbol(name))
+
+    def at_instant(self, operand: Formula, instants: dict[str, Scalar]) -> B:
+        """B(σ), Φ(t₁, t₀); what is no letter, or one that shows its time, has t = t₁ behind a bar."""
+        match operand:
+            case At(inner, name, instant):
+                return self.at_instant(inner, {name: instant, **instants})
+            case Letter(name) if name in TIMED:
+                shown = [self.scalar(instants.get(time, Scalar.symbol(time))) for time in TIMED[name]]
+                return self.called(self.letter(f"{name}_", ""), shown)
+            case Letter(name) if not shows_time(name):
+                return self.called(self.letter(name, ""), [self.scalar(instant) for instant in instants.values()])
+        equations = [
+            self.joined([self.symbol(name), self.comparison("="), self.scalar(instant)], Level.SUM)
+            for name, instant in instants.items()
+        ]
+        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), equations)
+
+    def called(self, function: B, arguments: Sequence[B]) -> B:
+        """A function before its arguments in parentheses."""
+        inside = [arguments[0]]
+        for argument in arguments[1:]:
+            inside += [self.separators()[0], argument]
+        return self.joined([function, self.grouped(self.joined(inside, Level.SUM))], Level.ATOM)
+
+    def plain_matrix(self, matrix: Matrix) -> B:
+        """A matrix, entry by entry."""
+        if 0 in matrix.shape:
+            return self.empty(matrix.shape)
+        return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in matrix.rows])
+
+    def block_entry(self, formula: Formula) -> B:
+        """A block; a zero matrix among blocks is 0."""
+        if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero:
+            return self.leaf(Scalar.of(0))
+        return self.typeset(formula)
+
+    def at_least(self, level: Level, box: B) -> B:
+        """Parenthesise a box that binds less tightly."""
+        return box if box.level >= level else self.grouped(box)
+
+
+def shifted(formula: Formula) -> Formula:
+    """Return the formula of the next instant, the shift carried one level inwards."""
+    return with_children(formula, tuple(Derivative(part) for part in children(formula)))
+
+
+def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[tuple[bool, Formula]]:
+    """Return the terms of a sum as (whether subtracted, term); a minus inside a first factor counts.
+
+    With `flat=False` a sum stays one term.
+    """
+    match formula:
+        case Sum(terms) if flat:
+            return [part for term in terms for part in signed_terms(term, variable)]
+        case Negative(operand):
+            return [(True, operand)]
+        case Literal(Scalar() as value) if not is_leaf(value):
+            written = spelled(value, variable)
+            return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
+        case Product((first, *rest)):
+            ((negative, body),) = signed_terms(first, variable, flat=False)
+            return [(True, Product((body, *rest)))] if negative else [(False, formula)]
+        case Quotient(above, below):
+            ((negative, body),) = signed_terms(above, variable, flat=False)
+            return [(True, Quotient(body, below))] if negative else [(False, formula)]
+        case _:
+            return [(False, formula)]
+
+
+def factors(formula: Formula, variable: str) -> list[Formula]:
+    """Return the factors of nested products, values spelled out."""
+    match formula:
+        case Product(parts):
+            return [factor for part in parts for factor in factors(part, variable)]
+        case Literal(Scalar() as value) if not is_leaf(value):
+            written = spelled(value, variable)
+            return factors(written, variable) if isinstance(written, Product) else [formula]
+        case Literal(Matrix() as table):
+            opened = spelled_matrix(table, variable)
+            return list(opened.factors) if isinstance(opened, Product) else [formula]
+        case _:
+            return [formula]

@@ -1,0 +1,98 @@
+"""Roots of a polynomial in a sentence: `-2, -2`, `-20 ± 20i`, `-1 ± √2`, or the equation of those without a form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isqrt
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.exact import Scalar
+from symobs.formula import Letter, Literal, Relation
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.exact.algebraic.polynomial_roots import Root
+    from symobs.formula import Formula, Roots
+    from symobs.render.printers.printer import Printer
+
+
+@dataclass(frozen=True)
+class RootGlyphs:
+    """What a format adds to its printer for roots; `among` writes those that satisfy an equation."""
+
+    square_root: Callable[[str], str]
+    plus_minus: str
+    among: Callable[[str, str], str]
+    number: Callable[[int], str] = str
+    minus: str = "-"
+    plus: str = "+"
+    imaginary: str = "i"
+    fraction: Callable[[str], str] = str
+    written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
+
+
+LATEX = RootGlyphs(lambda inside: rf"\sqrt{{{inside}}}", r"\pm ", lambda s, equation: rf"\{{{s}:{equation}\}}")
+TEXT = RootGlyphs(
+    lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
+    " ± ",
+    lambda s, equation: f"{{{s}: {equation}}}",
+    fraction="({})".format,
+)
+
+
+def listed(roots: Roots, printer: Printer[Any], glyphs: RootGlyphs) -> list[str]:
+    """Return the roots one after the other, a pair as one item."""
+    return [_written(root, paired, printer, glyphs) for root, paired in _grouped(roots.values)]
+
+
+def _grouped(values: tuple[Root, ...]) -> Iterator[tuple[Root, bool]]:
+    """Yield each root with whether it stands for a pair; the open roots of a factor are one group."""
+    remaining = list(values)
+    while remaining:
+        root = remaining.pop(0)
+        if not root.is_closed:
+            group = [other for other in remaining if other.factor == root.factor and other.index != root.index]
+            for index in {other.index for other in group}:
+                remaining.remove(next(other for other in group if other.index == index))
+            yield root, False
+            continue
+        partner = replace(root, sign=-root.sign)
+        is_pair = not root.radicand.is_zero and partner in remaining
+        if is_pair:
+            remaining.remove(partner)
+        yield root, is_pair
+
+
+def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs) -> str:  # noqa: FBT001
+    if not root.is_closed:
+        equation = Relation((Literal(root.factor), Literal(Scalar.of(0))), ("=",))
+        return glyphs.among(glyphs.written(printer, Letter("s")), glyphs.written(printer, equation))
+    if root.radicand.is_zero:
+        return glyphs.written(printer, Literal(root.centre))
+    centre = "" if root.centre.is_zero else glyphs.written(printer, Literal(root.centre))
+    distance = _distance(root, printer, glyphs)
+    if paired:
+        return f"{centre}{glyphs.plus_minus}{distance}".strip()
+    sign = glyphs.minus if root.sign < 0 else glyphs.plus * bool(centre)
+    return f"{centre}{sign}{distance}"
+
+
+def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
+    """√radicand, its square factors before the root, i behind it."""
+    if not root.radicand.is_constant:
+        whole, below = root.radicand, root.radicand.denominator
+        half = isqrt(below.fraction().numerator) if below.is_constant else 0
+        if half > 1 and half**2 == below.fraction():
+            front = glyphs.fraction(glyphs.written(printer, Literal(Scalar.of(1) / half)))
+            return front + glyphs.square_root(glyphs.written(printer, Literal(whole * below)))
+        return glyphs.square_root(glyphs.written(printer, Literal(whole)))
+    outside, inside, imaginary = root.surd()
+    under = "" if inside == 1 else glyphs.square_root(glyphs.number(int(inside)))
+    unit = under + glyphs.imaginary * imaginary
+    if outside.denominator == 1:
+        return glyphs.number(outside.numerator) * (outside != 1 or not unit) + unit
+    above = Scalar.of(outside.numerator)
+    front = glyphs.written(printer, Literal(above / outside.denominator))
+    return glyphs.fraction(front) + unit

@@ -1,0 +1,340 @@
+"""How a scalar is spelled: its order and shape, as formulas whose leaves are whole numbers and single symbols.
+
+Powers of the variable descend and their coefficients are collected; sums begin with a positive term where they have
+one; a coefficient is factored where that is shorter.  The spelling always has the scalar's value.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import gcd
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.kernel.generators import known, square_root_of
+from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+#: Beyond this many terms a polynomial is not factored for the sake of its looks.
+FACTORED_UP_TO = 120
+
+#: A common denominator of more terms, or more bits, is not put in front of a matrix.
+FRONT_UP_TO = 40
+FRONT_BITS = 200
+
+_BITS_AT_ONCE = 10_000
+_CLEARLY = 0.85
+_PARENTHESES = 0.4
+
+Monomial = tuple[int, tuple[tuple[str, int], ...]]
+
+
+def is_leaf(value: Scalar) -> bool:
+    """Whether a scalar is written as one glyph: a whole number that is not negative, or a symbol."""
+    if value.is_constant:
+        number = value.fraction()
+        return number.denominator == 1 and number >= 0
+    if not value.denominator.is_one or value.size != 2:
+        return False
+    ((coefficient, powers),) = value.terms()
+    return coefficient == 1 and len(powers) == 1 and powers[0][1] == 1
+
+
+@lru_cache(maxsize=4096)
+def spelled(value: Scalar, variable: str) -> Formula:
+    """Return the formula that writes `value` out."""
+    if is_leaf(value):
+        return Literal(value)
+    if any("(" in name for name in value.names):
+        from symobs.render.printers.time_functions import moves, spelled_moving  # noqa: PLC0415 - it spells with what is here
+
+        if any(moves(name) for name in value.names):
+            return spelled_moving(value)
+    if value.denominator.degree(variable) > 0:
+        return _rational_function(value, variable)
+    if value.degree(variable) > 0:
+        return _polynomial(value, variable)
+    return _constant(value)
+
+
+# -- with the variable ------------------------------------------------------------------------------------------------
+
+
+def _rational_function(value: Scalar, variable: str) -> Formula:
+    """Numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
+    above, below = value.numerator, value.denominator
+    negative = _leads_with_minus(above, variable)
+    fraction = Quotient(spelled(-above if negative else above, variable), _denominator(below, variable))
+    return Negative(fraction) if negative else fraction
+
+
+def _leads_with_minus(value: Scalar, variable: str) -> bool:
+    return isinstance(_terms_of(spelled(value, variable))[0], Negative)
+
+
+def _denominator(value: Scalar, variable: str) -> Formula:
+    """A whole number dividing all coefficients goes in front: 2(s² + s + 2)."""
+    content = gcd(*(coefficient for coefficient, _ in value.terms()))
+    collected = spelled(value, variable)
+    if content == 1 or not isinstance(collected, Sum):
+        return collected
+    return Product((Literal(Scalar.of(content)), spelled(value / content, variable)))
+
+
+def _polynomial(value: Scalar, variable: str) -> Formula:
+    """Descending powers; over one denominator where that is clearly shorter."""
+    coefficients = value.coefficients(variable)
+    separate = _collected(coefficients, variable)
+    if value.denominator.is_one:
+        return _with_content(value, coefficients, separate, variable)
+    whole = Quotient(_collected(value.numerator.coefficients(variable), variable), _constant(value.denominator))
+    is_gentle = coefficients[0].denominator.is_one or value.denominator.is_constant
+    patience = 1.5 if is_gentle else 1.0
+    if size(separate) <= patience * size(whole):
+        return separate
+    first = _terms_of(whole.numerator)[0]
+    if isinstance(first, Negative):
+        opposite = _collected((-value.numerator).coefficients(variable), variable)
+        return Negative(Quotient(opposite, whole.denominator))
+    return whole
+
+
+def _with_content(value: Scalar, coefficients: Sequence[Scalar], separate: Formula, variable: str) -> Formula:
+    """An expression in parameters that divides all coefficients goes in front, where that is clearly shorter."""
+    content = common_divisor([coefficient for coefficient in coefficients if not coefficient.is_zero])
+    if content.is_constant or content == value:
+        return separate
+    rest = _collected((value / content).coefficients(variable), variable)
+    front = product((_constant(content), rest))
+    return front if size(front) < _CLEARLY * size(separate) else separate
+
+
+def common_divisor(values: Sequence[Scalar]) -> Scalar:
+    """The greatest common divisor of polynomials; 1 as soon as it is a number."""
+    divisor = values[0]
+    for value in values[1:]:
+        if divisor.is_constant:
+            return Scalar.of(1)
+        divisor = divisor / (divisor / value).numerator
+    return divisor
+
+
+def _collected(coefficients: Sequence[Scalar], variable: str) -> Formula:
+    degree = len(coefficients) - 1
+    terms: list[Formula] = []
+    for index, coefficient in enumerate(coefficients):
+        if not coefficient.is_zero:
+            terms += _times_power(coefficient, _power(Literal(_symbol(variable)), degree - index))
+    return sum_of(terms)
+
+
+def _times_power(coefficient: Scalar, power: Formula | None) -> list[Formula]:
+    """The terms of coefficient · power: one, except that a constant coefficient is left open."""
+    body = _constant(coefficient)
+    if power is None:
+        return list(_terms_of(body))
+    if coefficient.is_one:
+        return [power]
+    if (-coefficient).is_one:
+        return [Negative(power)]
+    if isinstance(body, Sum) and all(isinstance(term, Negative) for term in body.terms):
+        return [Negative(product((_constant_positive(body), power)))]
+    if isinstance(body, Negative):
+        return [Negative(product((body.operand, power)))]
+    return [product((body, power))]
+
+
+def _constant_positive(body: Sum) -> Sum:
+    return Sum(tuple(term.operand if isinstance(term, Negative) else Negative(term) for term in body.terms))
+
+
+# -- without the variable ---------------------------------------------------------------------------------------------
+
+
+def _constant(value: Scalar) -> Formula:
+    """A number or an expression in parameters, as sum, product or fraction, whichever is shortest."""
+    if is_leaf(value):
+        return Literal(value)
+    if value.denominator.is_one:
+        return _shortest(value)
+    above, below = value.numerator, value.denominator
+    top, bottom = _shortest(above), _shortest(below)
+    if isinstance(_terms_of(top)[0], Negative):
+        turned = _shortest(-below)
+        if not isinstance(_terms_of(turned)[0], Negative):
+            return Quotient(_shortest(-above), turned)
+        return Negative(Quotient(_shortest(-above), bottom))
+    return Quotient(top, bottom)
+
+
+def _shortest(value: Scalar) -> Formula:
+    """An integer polynomial in parameters: expanded, or factored where that is shorter."""
+    expanded = _expanded(value.terms())
+    if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
+        return expanded
+    factored = _factored(value)
+    is_sign_only = isinstance(factored, Negative) and isinstance(factored.operand, Sum)
+    return factored if size(factored) < size(expanded) and not is_sign_only else expanded
+
+
+def _expanded(terms: Sequence[Monomial]) -> Formula:
+    return sum_of([_monomial(*term) for term in human_order(terms)])
+
+
+def human_order(terms: Iterable[Monomial]) -> list[Monomial]:
+    """Order by descending degree, then by the alphabet; the first positive term leads."""
+    ordered = sorted(terms, key=_rank)
+    lead = next((index for index, (coefficient, _) in enumerate(ordered) if coefficient > 0), 0)
+    return [ordered[lead], *ordered[:lead], *ordered[lead + 1 :]] if ordered else []
+
+
+def _rank(term: Monomial) -> tuple[int, list[tuple[str, int]]]:
+    powers = sorted(term[1], key=lambda item: (item[0].lower(), item[0]))
+    return -sum(power for _, power in powers), [(name.lower(), -power) for name, power in powers]
+
+
+def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
+    factors = [
+        _power(Literal(_symbol(name)), exponent) for name, exponent in sorted(_roots_together(powers), key=_place)
+    ]
+    parts = [factor for factor in factors if factor is not None]
+    if abs(coefficient) != 1 or not parts:
+        parts.insert(0, Literal(Scalar.of(abs(coefficient))))
+    whole = product(parts)
+    return Negative(whole) if coefficient < 0 else whole
+
+
+def _place(power: tuple[str, int]) -> tuple[int, str]:
+    """Symbols by the alphabet, roots of numbers before them, the time and other roots behind."""
+    name, root = power[0], known(power[0])
+    if root is not None:
+        return (0 if root.argument.is_constant else 2), name
+    return (3 if name in {"t", "T"} else 1), name.lower()
+
+
+def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, int]]:
+    """Write √3 √5 as √15."""
+    roots = {name: f.argument for name, e in powers if e == 1 and (f := known(name)) and f.argument.is_constant}
+    if len(roots) < 2:
+        return powers
+    together = square_root_of(roots.values())
+    return [*((name, e) for name, e in powers if name not in roots), (together, 1)]
+
+
+def _factored(value: Scalar) -> Formula:
+    """Number · symbols · sums; a minus disappears into a sum that may be turned round."""
+    unit, factors = value.factors()
+    number = int(unit.fraction())
+    symbols: list[tuple[str, int]] = []
+    sums: list[tuple[Scalar, int]] = []
+    for factor, power in factors:
+        terms = factor.terms()
+        if len(terms) == 1:
+            symbols.append((terms[0][1][0][0], power))
+        else:
+            sums.append((factor, power))
+    for index, (factor, power) in enumerate(sums):
+        if number < 0 and power % 2 and any(coefficient < 0 for coefficient, _ in factor.terms()):
+            sums[index], number = (-factor, power), -number
+    brackets = [_power(_expanded(factor.terms()), power) for factor, power in sums]
+    head = _monomial(abs(number), symbols)
+    parts = [] if isinstance(head, Literal) and head.value == Scalar.of(1) and brackets else [head]
+    whole = product([*parts, *(bracket for bracket in brackets if bracket is not None)])
+    return Negative(whole) if number < 0 else whole
+
+
+# -- small builders ---------------------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1024)
+def _symbol(name: str) -> Scalar:
+    return Scalar.symbol(name)
+
+
+def _power(base: Formula, exponent: int) -> Formula | None:
+    if exponent == 0:
+        return None
+    return base if exponent == 1 else Power(base, exponent)
+
+
+def product(factors: Iterable[Formula]) -> Formula:
+    """Return a product, products among the factors opened."""
+    flat: list[Formula] = []
+    for factor in factors:
+        flat += factor.factors if isinstance(factor, Product) else (factor,)
+    return flat[0] if len(flat) == 1 else Product(tuple(flat))
+
+
+def _terms_of(formula: Formula) -> tuple[Formula, ...]:
+    return formula.terms if isinstance(formula, Sum) else (formula,)
+
+
+def sum_of(terms: Sequence[Formula]) -> Formula:
+    """Return a sum; of one term the term, of none 0."""
+    if not terms:
+        return Literal(Scalar.of(0))
+    return terms[0] if len(terms) == 1 else Sum(tuple(terms))
+
+
+def decimal(number: int) -> str:
+    """Return the digits of a whole number; `str` refuses to write more than some thousands of them."""
+    if number.bit_length() < _BITS_AT_ONCE:
+        return str(number)
+    low = number.bit_length() * 3 // 20
+    front, back = divmod(number, 10**low)
+    return decimal(front) + decimal(back).zfill(low)
+
+
+def size(formula: Formula) -> float:
+    """Return about how many glyphs a spelling takes."""
+    match formula:
+        case Literal(Scalar() as value):
+            return len(decimal(value.fraction().numerator)) if value.is_constant else _size_of_symbol(value)
+        case Sum(terms):
+            return sum(size(term) for term in terms) + (len(terms) - 1) / 2
+        case Negative(Sum() as operand):
+            return size(operand) + 0.5 + _PARENTHESES
+        case Negative(operand):
+            return size(operand) + 0.5
+        case Product(factors):
+            return sum(size(factor) + _PARENTHESES * isinstance(factor, Sum) for factor in factors)
+        case Power(base, _):
+            return size(base) + _PARENTHESES * isinstance(base, Sum) + 0.5
+        case Quotient(above, below):
+            return size(above) + size(below) + 1
+        case _:
+            return 1.0
+
+
+def _size_of_symbol(value: Scalar) -> float:
+    """A symbol, or a function with its argument."""
+    function = known(next(iter(value.names)))
+    return 1.0 if function is None else 1.0 + size(spelled(function.argument, ""))
+
+
+@lru_cache(maxsize=1024)
+def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
+    """Return the matrix, or 1/d times one without fractions where d is the denominator of most of its entries."""
+    denominators = [entry.denominator for entry in matrix.entries if not entry.is_zero]
+    if len(denominators) < 2 or any(below.is_one for below in denominators):
+        return Literal(matrix)
+    common = _least_common_multiple(dict.fromkeys(denominators))
+    if common is None or 2 * denominators.count(common) < len(denominators):
+        return Literal(matrix)
+    front, cleared = spelled(Scalar.of(1) / common, variable), matrix * common
+    inside = sum(size(spelled(entry, variable)) for entry in cleared.entries)
+    kept = sum(size(spelled(entry, variable)) for entry in matrix.entries)
+    return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
+
+
+def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
+    """The least common multiple, unless it grows too long to be written."""
+    multiple = Scalar.of(1)
+    for value in values:
+        multiple = multiple * (value / multiple).numerator
+        largest = max(abs(coefficient) for coefficient, _ in multiple.terms())
+        if multiple.size > FRONT_UP_TO or largest.bit_length() > FRONT_BITS:
+            return None
+    return multiple

@@ -1,0 +1,38 @@
+"""Results that own their claims, and the registries of tasks, methods and formats (trusted)."""
+
+from symobs.result.registry import (
+    Method,
+    Task,
+    choose,
+    format_named,
+    formats,
+    method,
+    methods,
+    output_format,
+    render,
+    task,
+    task_in_time,
+    task_named,
+    tasks,
+)
+from symobs.result.result import Case, Document, Result, Stratum
+
+__all__ = [
+    "Case",
+    "Document",
+    "Method",
+    "Result",
+    "Stratum",
+    "Task",
+    "choose",
+    "format_named",
+    "formats",
+    "method",
+    "methods",
+    "output_format",
+    "render",
+    "task",
+    "task_in_time",
+    "task_named",
+    "tasks",
+]

@@ -1,0 +1,106 @@
+"""What leaves the library: exact values as SymPy objects and as JSON, and the faces of a result."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.conditions import Condition
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.exact.kernel.generators import PI, symbols_named
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
+
+
+class Faces:
+    """The formats of a result under names of their own, and what a notebook shows of it."""
+
+    def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
+        """Return the result in a format, in a convention."""
+        raise NotImplementedError
+
+    @property
+    def symbols(self) -> dict[str, str]:
+        """Every symbol of the result with its sign."""
+        result: Any = self
+        names = set(result.plant.symbols.signs) | set(result.plant.field.names)
+        for value in result.answer.values():
+            names |= getattr(value, "names", frozenset())
+        names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t", PI}
+        return {name: result.plant.symbols.sign(name) for name in sorted(names)}
+
+    def to_latex(self) -> str:
+        """Return the derivation as a LaTeX article."""
+        return str(self.to("latex"))
+
+    def to_html(self) -> str:
+        """Return the derivation as an HTML page of its own."""
+        return str(self.to("html"))
+
+    def to_markdown(self) -> str:
+        """Return the derivation as Markdown."""
+        return str(self.to("markdown"))
+
+    def to_json(self) -> str:
+        """Return the result as JSON."""
+        return str(self.to("json"))
+
+    def _repr_latex_(self) -> str:
+        return str(self.to("fragment"))
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
+        kinds = {"plain": "text", "markdown": "markdown", "latex": "fragment", "html": "html_fragment"}
+        return {f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}
+
+
+def to_json(value: Any) -> Any:
+    """Return JSON of a value: exact strings, nested lists, JSON integers and booleans."""
+    if isinstance(value, Matrix):
+        return [[str(entry) for entry in row] for row in value.rows]
+    if isinstance(value, (Scalar, Complex, Factored, Root, Shifted)):
+        return str(value)
+    if isinstance(value, Condition):
+        return f"{value.expression} {_RELATIONS[value.operator]} 0"
+    if isinstance(value, (list, tuple)):
+        return [to_json(entry) for entry in value]
+    if isinstance(value, dict):
+        return {key: to_json(entry) for key, entry in value.items()}
+    return value
+
+
+def vector(value: Matrix) -> list[str]:
+    """Return a column as a flat list."""
+    return [str(entry) for entry in value.entries]
+
+
+def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
+    """Return the SymPy object of a value; what has none (texts, integers) stays."""
+    from symobs.exact.sympy_bridge import conversion  # noqa: PLC0415 - SymPy only when asked for
+
+    if isinstance(value, Matrix):
+        return conversion.matrix_to_sympy(value, objects)
+    if isinstance(value, Scalar):
+        return conversion.scalar_to_sympy(value, objects)
+    if isinstance(value, Factored):
+        return conversion.factored_to_sympy(value, objects)
+    if isinstance(value, Complex):
+        return conversion.complex_to_sympy(value, objects)
+    if isinstance(value, Root):
+        return conversion.root_to_sympy(value, objects)
+    if isinstance(value, Shifted):
+        return conversion.scalar_to_sympy(value.value, objects) - conversion.root_to_sympy(value.root, objects)
+    if isinstance(value, Condition):
+        return conversion.relation_to_sympy(value.expression, value.operator, objects)
+    if isinstance(value, tuple) and value and all(isinstance(row, tuple) and _are_factored(row) for row in value):
+        return conversion.table_to_sympy(value, objects)
+    if isinstance(value, (list, tuple)):
+        return tuple(to_sympy(entry, objects) for entry in value)
+    if isinstance(value, dict):
+        return {key: to_sympy(entry, objects) for key, entry in value.items()}
+    return value
+
+
+def _are_factored(row: tuple[Any, ...]) -> bool:
+    return bool(row) and all(isinstance(entry, Factored) for entry in row)

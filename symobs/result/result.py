@@ -1,0 +1,284 @@
+"""Results: answers that cannot exist unless their claims hold (trusted).
+
+The constructor checks the claims, and they belong to the result's type, not to the method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from dataclasses import fields as parts_of
+from functools import cache, cached_property, partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, overload
+
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement, check_all
+from symobs.conditions import Condition, vanishing_factors
+from symobs.convention import STANDARD, Convention, convention_named
+from symobs.derivation import translated
+from symobs.derivation.builder import Page
+from symobs.errors import CertificateRejected, DerivationRejected
+from symobs.result.conversions import Faces
+from symobs.result.registry import render
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from symobs.derivation import Derivation
+    from symobs.exact import Matrix, Scalar
+    from symobs.figures.plot import Picture
+    from symobs.system import StateSpace
+
+
+#: The formats that are texts.
+Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text"]
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is true on a stratum: the relations that describe it, and the full result there (None: undecided)."""
+
+    when: tuple[Condition, ...]
+    substitution: Mapping[str, Scalar]
+    result: Result | None
+
+
+class Stratum(NamedTuple):
+    """A case as a Python user meets it: SymPy relations, and the result where they hold (None: undecided)."""
+
+    when: tuple[Any, ...]
+    result: Result | None
+
+
+@dataclass(frozen=True, eq=False)
+class Result(Faces):
+    """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
+
+    plant: StateSpace
+    method: str
+    answer: Mapping[str, Any]
+    certificates: tuple[Certificate, ...] = field(init=False)
+    #: The method whose page is asked for; `auto` leaves the page free to be the most readable one.
+    page_method: str = field(default="auto", kw_only=True)
+
+    task: ClassVar[str]
+    #: Whether the answers are functions of time, or of a horizon.
+    in_time: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        """Check every claim; raises `CertificateRejected`."""
+        object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
+        try:
+            object.__setattr__(self, "certificates", check_all(self.claims(), self.plant.relations))
+        except UNREADABLE as error:
+            message = f"the answer of {self.task} is no answer: {error}"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle what the result was made of: whoever reads it back checks the claims again."""
+        made = {name: getattr(self, name) for name in _made_of(type(self))}  # type: ignore[arg-type]
+        return (partial(type(self), **made | {"answer": dict(self.answer)}), ())
+
+    def __eq__(self, other: object) -> bool:
+        """Compare what two results were made of: plant, method, answers, and what is asked of the page."""
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))  # type: ignore[arg-type]
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.plant, self.method, self.page_method, tuple(self.answer)))
+
+    def __bool__(self) -> NoReturn:
+        message = f"a result is neither true nor false; ask for its verdict: {self.task}(...).verdict == 'yes'"
+        raise TypeError(message)
+
+    # -- what a subclass says ----------------------------------------------------------------------------------------
+
+    def claims(self) -> Iterator[Claim | Statement]:
+        """Yield what must hold."""
+        raise NotImplementedError
+
+    def write(self, page: Page) -> None:
+        """Write the derivation."""
+        raise NotImplementedError
+
+    @property
+    def verdict(self) -> str:
+        """`yes`, `no`, `conditional` or `undecided`."""
+        return "conditional" if self._binding_conditions else "yes"
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """The values whose vanishing costs existence: determinants of 𝒪, 𝒞."""
+        return ()
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The signals besides x, x̂ and u that the page starts with, and their sizes."""
+        return {}
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The answers in the order of the JSON object; further ones may be derived from the first."""
+        return self.answer
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of this result and of those it is made of."""
+        return self.certificates
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """Whether an observer of reduced order is part of it, which some conventions write in letters of their own."""
+        return False
+
+    @property
+    def picture(self) -> Picture | None:
+        """The picture of the answer that the page shows, where there is one."""
+        return None
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """What is true where a condition of existence fails."""
+        return ()
+
+    # -- conditions ----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be a plant: what its data divide by."""
+        m = self.plant.matrices
+        divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
+        factors = vanishing_factors(divisors, self.plant.symbols.signs)
+        return tuple(Condition("domain", factor) for factor in factors)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The exact conditions under which the answer holds, what the declared signs imply left out."""
+        known = {condition.expression for condition in self.domain}
+        factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
+        new = [factor for factor in factors if factor not in known and self.plant.variable not in factor.names]
+        return (*self.domain, *(Condition("claim", factor) for factor in new))
+
+    @property
+    def _binding_conditions(self) -> tuple[Condition, ...]:
+        """The conditions that make a verdict conditional: all but those of the domain."""
+        return tuple(condition for condition in self.holds_where if condition.kind != "domain")
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""
+        return replace(self, answer={**self.answer, name: value})
+
+    def asked(self, method_name: str) -> Self:
+        """Return the same result with the page of a method; its claims do not speak of the page."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, page_method=method_name)
+        other.__dict__.pop("derivation", None)
+        return other
+
+    # -- faces ---------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def derivation(self) -> Derivation:
+        """The derivation, written and checked when first asked for."""
+        page = Page(self.plant, self.free_signals)
+        self.write(page)
+        written = page.derivation()
+        established = written.check()
+        for name, value in self.data.items():
+            if name in established.values and established.values[name] != value:
+                message = f"the page speaks of another {name}"
+                raise DerivationRejected(message, repair="please report this: it is a bug of symobs", line=name)
+        return written
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """What the letters of the data must mean on the page: the plant's matrices."""
+        m = self.plant.matrices
+        return {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an answer as SymPy objects; Python asks here too where a property of the class has failed."""
+        for kind in type(self).__mro__:
+            if name in vars(kind):
+                return vars(kind)[name].__get__(self)  # its own error, not that there is no such name
+        from symobs.result.conversions import to_sympy  # noqa: PLC0415 - SymPy is the face only
+
+        objects = {} if name.startswith("_") else self.plant.symbols.objects
+        if name == "conditions":
+            return to_sympy(self.holds_where, objects)
+        if name == "cases":
+            return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
+        if name.startswith("_") or name not in self.fields:
+            message = f"{type(self).__name__} has no attribute {name!r}"
+            raise AttributeError(message)
+        if name not in self._objects:
+            self._objects[name] = to_sympy(self.fields[name], objects)
+        return self._objects[name]
+
+    @cached_property
+    def _objects(self) -> dict[str, Any]:
+        """The answers as SymPy objects, as far as they were asked for: large ones take seconds to make."""
+        return {}
+
+    def __dir__(self) -> Iterable[str]:
+        own = (name for name in super().__dir__() if not name.startswith("_"))
+        return sorted({*own, "conditions", "cases", *self.fields})
+
+    @overload
+    def to(self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full") -> bytes: ...
+
+    @overload
+    def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
+
+    @overload
+    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
+
+    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
+        """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
+
+        `detail` says how much of the derivation is told: full, outline or answer.
+        """
+        return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
+
+    def __repr__(self) -> str:
+        """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
+        parts = {name: value for name, value in self.answer.items() if value is not None}
+        long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
+        shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
+        verdict = "" if long else f", verdict={self.verdict!r}"
+        return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
+
+
+#: Answers of more terms than this are not written out by `repr`.
+_TERMS_SHOWN = 500
+
+
+@cache
+def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
+    """Return what the constructor of a result takes; where results are compared, without what only speeds it up."""
+    return tuple(part.name for part in parts_of(kind) if part.init and (part.compare or not compared))
+
+
+def _denominators(values: Iterable[Any]) -> list[Scalar]:
+    """Return the denominators of scalars and matrices."""
+    return [value.common_denominator() for value in values if hasattr(value, "common_denominator")]
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
+
+    title: str
+    source: str
+    results: tuple[Result, ...]
+    convention: Convention = STANDARD
+    text: str = ""
+    detail: str = field(default="full", kw_only=True)
+    templates: Path | None = field(default=None, kw_only=True)
+
+    @cached_property
+    def derivations(self) -> tuple[Derivation, ...]:
+        """The checked derivations of the results, in the signs of the convention."""
+        return tuple(translated(result.derivation, self.convention) for result in self.results)

@@ -1,0 +1,179 @@
+"""Routh's table of a polynomial, with the two rules for zeros, and the check of such a table.
+
+The rows of a₀ sⁿ + … + aₙ are headed by the powers sⁿ, sⁿ⁻¹, …, s⁰.  The first two hold the coefficients, every other
+
+    r[k] = (q₀ p[k + 1] − p₀ q[k + 1]) / q₀
+
+where q is the row above and p the row above that.  Where a row begins with 0 and is not zero, a small ε > 0 stands in
+place of this 0.  Where a row is zero, the row above holds the auxiliary polynomial, and its derivative stands in place
+of the zeros.  With parameters, zero means identically zero.
+"""
+
+from __future__ import annotations
+
+from itertools import chain, pairwise
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.exact import Scalar, from_coefficients
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+#: How a row came about.
+ORIGINS = ("coefficients", "recurrence", "epsilon", "auxiliary")
+
+
+@dataclass(frozen=True)
+class RouthRow:
+    """The row of one power of the variable: its entries, and how it came about (one of `ORIGINS`)."""
+
+    power: int
+    entries: tuple[Scalar, ...]
+    origin: str
+
+
+@dataclass(frozen=True)
+class RouthTable:
+    """The rows from sⁿ to s⁰; `epsilon` is the generator that stands for a small positive number, empty where none does."""
+
+    rows: tuple[RouthRow, ...]
+    epsilon: str = ""
+
+    @property
+    def first_column(self) -> tuple[Scalar, ...]:
+        """The entries whose signs decide."""
+        return tuple(row.entries[0] for row in self.rows)
+
+    @property
+    def is_regular(self) -> bool:
+        """Whether no zero had to be replaced."""
+        return all(row.origin in {"coefficients", "recurrence"} for row in self.rows)
+
+    def auxiliary(self, row: RouthRow, variable: str) -> Scalar:
+        """Return the auxiliary polynomial whose derivative a row is: it has the entries of the row above."""
+        above = self.rows[self.rows.index(row) - 1]
+        with_gaps = chain.from_iterable((entry, Scalar.of(0)) for entry in above.entries)
+        return from_coefficients(list(with_gaps)[: above.power + 1], variable)
+
+
+def routh_table(coefficients: Sequence[Scalar], taken: Iterable[str] = ()) -> RouthTable:
+    """Return the table of the polynomial with these coefficients, highest power first.
+
+    ε has none of the names `taken`, which other things have.  Raises ValueError where the first coefficient is zero.
+    """
+    if not coefficients or coefficients[0].is_zero:
+        raise ValueError("the first coefficient of the polynomial of a table is not zero")
+    epsilon = _free_name({*taken, *chain.from_iterable(c.names for c in coefficients)})
+    order = len(coefficients) - 1
+    rows = [RouthRow(order, tuple(coefficients[0::2]), "coefficients")]
+    for power in range(order - 1, -1, -1):
+        if power == order - 1:
+            natural, origin = tuple(coefficients[1::2]), "coefficients"
+        else:
+            natural, origin = _recurrence(rows[-2].entries, rows[-1].entries, power), "recurrence"
+        rows.append(_usable(RouthRow(power, natural, origin), rows[-1], epsilon))
+    return RouthTable(tuple(rows), epsilon if any(row.origin == "epsilon" for row in rows) else "")
+
+
+def _free_name(taken: set[str]) -> str:
+    """Return ε, or the first ε with an index that nothing else is called."""
+    name, index = "epsilon", 0
+    while name in taken:
+        index += 1
+        name = f"epsilon_{index}"
+    return name
+
+
+def _recurrence(p: Sequence[Scalar], q: Sequence[Scalar], power: int) -> tuple[Scalar, ...]:
+    return tuple((q[0] * _at(p, k + 1) - p[0] * _at(q, k + 1)) / q[0] for k in range(power // 2 + 1))
+
+
+def _at(row: Sequence[Scalar], place: int) -> Scalar:
+    """Return an entry, 0 beyond the end of the row."""
+    return row[place] if place < len(row) else Scalar.of(0)
+
+
+def _usable(row: RouthRow, above: RouthRow, epsilon: str) -> RouthRow:
+    """Return the row that stands in the table: with what replaces a zero by which the next row would be divided."""
+    first, *others = row.entries
+    if first:
+        return row
+    if any(others):
+        return RouthRow(row.power, (Scalar.symbol(epsilon), *others), "epsilon")
+    return RouthRow(row.power, _derivative(above), "auxiliary")
+
+
+def _derivative(above: RouthRow) -> tuple[Scalar, ...]:
+    """Return the coefficients of the derivative of the polynomial that a row holds."""
+    return tuple(entry * (above.power - 2 * k) for k, entry in enumerate(above.entries) if above.power > 2 * k)
+
+
+# -- the check -----------------------------------------------------------------------------------------------------------
+
+
+def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
+    """Tell whether this is the table of the polynomial with these coefficients.
+
+    Nothing is divided: a row is held to the two above it by cross-multiplication.
+    """
+    rows = table.rows
+    shape = [(row.power, len(row.entries)) for row in rows]
+    if not coefficients or shape != [(power, power // 2 + 1) for power in range(len(coefficients) - 1, -1, -1)]:
+        return False
+    if table.epsilon in set().union(*(c.names for c in coefficients)) or not all(table.first_column):
+        return False
+    if bool(table.epsilon) != any(row.origin == "epsilon" for row in rows):
+        return False
+    top = rows[0]
+    if top.origin != "coefficients" or top.entries != tuple(coefficients[0::2]):
+        return False
+    return all(
+        _follows(row, above, before, table.epsilon, coefficients)
+        for before, above, row in zip((None, *rows), rows, rows[1:], strict=False)
+    )
+
+
+def _follows(
+    row: RouthRow, above: RouthRow, before: RouthRow | None, epsilon: str, coefficients: Sequence[Scalar]
+) -> bool:
+    """Tell whether a row is what the two rows above it ask for; below the first one it holds every other coefficient."""
+    if before is None:
+        factor, wanted, rule = Scalar.of(1), tuple(coefficients[1::2]), "coefficients"
+    else:
+        p, q = before.entries, above.entries
+        factor, rule = q[0], "recurrence"
+        wanted = tuple(q[0] * _at(p, k + 1) - p[0] * _at(q, k + 1) for k in range(len(row.entries)))
+    if row.origin == "auxiliary":
+        return not any(wanted) and all(
+            entry == (above.power - 2 * k) * above.entries[k] for k, entry in enumerate(row.entries)
+        )
+    agree = [entry * factor == product for entry, product in zip(row.entries, wanted, strict=True)]
+    if row.origin == "epsilon":
+        is_epsilon = row.entries[0] == Scalar.symbol(epsilon)
+        return is_epsilon and wanted[0].is_zero and any(wanted) and all(agree[1:])
+    return row.origin == rule and all(agree)
+
+
+# -- what the first column says --------------------------------------------------------------------------------------------
+
+
+def sign_changes(table: RouthTable) -> int:
+    """Return how often the first column of a table without parameters changes sign, as ε tends to 0 from above.
+
+    It is the number of roots with Re s > 0, except that ε may mislead: where there are roots on the imaginary axis, and
+    where it stands in several places, which one ε makes equally small.
+    """
+    return sum(left != right for left, right in pairwise(_sign(entry, table.epsilon) for entry in table.first_column))
+
+
+def _sign(value: Scalar, epsilon: str) -> int:
+    """Return 1 or −1: the sign of a value that is not 0, for all small ε > 0."""
+    lowest = [_lowest(part, epsilon) for part in (value.numerator, value.denominator)]
+    return 1 if (lowest[0] > 0) == (lowest[1] > 0) else -1
+
+
+def _lowest(polynomial: Scalar, epsilon: str) -> int:
+    """Return the coefficient of the lowest power of ε."""
+    found: Iterator[Scalar] = (c for c in reversed(polynomial.coefficients(epsilon)) if c)
+    return next(found).fraction().numerator

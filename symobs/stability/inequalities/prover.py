@@ -1,0 +1,276 @@
+"""Why a value is positive wherever others are: a search that needs no other program; `proof` checks what it finds.
+
+*Shifted positivity*: where a known value is linear in a parameter p, its coefficient g₁ of certain sign, put
+p = (t − g₀)/g₁ with a new t > 0, the known value.  When enough parameters are replaced, every term of the goal may
+have the sign +.  Read backwards that is an identity: goal · (powers of g₁) = Σ (certain) · products of known values.
+Where terms of both signs are left, `combination` looks for such an identity by linear programming.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.conditions import sign_of
+from symobs.exact import Scalar
+from symobs.stability.inequalities.positive_combination import combination
+from symobs.stability.inequalities.proof import (
+    ONE,
+    UNIT,
+    ZERO,
+    Combined,
+    Opposite,
+    Product,
+    Step,
+    by_signs,
+    contradiction,
+    from_contradiction,
+)
+from symobs.stability.inequalities.z3_and_qepcad import is_free
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+#: How many views are tried for one goal, how many ways on from each, and how large a polynomial may become.
+_VIEWS, _WAYS, _TERMS = 24, 3, 400
+#: A known value of more terms is left aside.
+_SOLVED = 60
+#: How often a combination is looked for.
+_PROGRAMS = 3
+_DOWN = {"negative", "nonpositive", "zero"}
+
+
+@dataclass(frozen=True)
+class Open:
+    """A polynomial in the names of a view, and the known value it is in the old names."""
+
+    polynomial: Scalar
+    value: Scalar
+
+
+@dataclass()
+class _Budget:
+    """What is left to be tried for one goal."""
+
+    views: int
+    programs: int
+
+
+@dataclass(frozen=True)
+class View:
+    """The problem after some substitutions: new names stand for known values."""
+
+    signs: Mapping[str, str]
+    stands_for: Mapping[str, Scalar] = field(default_factory=dict)
+    open: tuple[Open, ...] = ()
+    steps: tuple[Step, ...] = ()
+
+    def products(self, polynomial: Scalar) -> tuple[Product, ...]:
+        """Return a polynomial of the view as a sum of products of known values, with coefficients in the old names."""
+        found: dict[tuple[Scalar, ...], Scalar] = {}
+        for number, powers in polynomial.each_term():
+            coefficient, factors = Scalar.of(number), list[Scalar]()
+            for name, exponent in powers:
+                if name in self.stands_for:
+                    factors += [self.stands_for[name]] * exponent
+                else:
+                    coefficient = coefficient * Scalar.symbol(name) ** exponent
+            found[tuple(factors)] = found.get(tuple(factors), ZERO) + coefficient
+        below = polynomial.denominator
+        return tuple((coefficient / below, factors) for factors, coefficient in found.items())
+
+
+def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...] | None:
+    """Return steps from the known values, all positive, to goal > 0; None where none are found."""
+    if goal in known:
+        return ()
+    if sign_of(goal, signs) == "positive":
+        return (by_signs(goal),)
+    if not _is_manageable(goal):
+        return None
+    budget = _Budget(_VIEWS, _PROGRAMS)
+    return _prove_in(goal, goal, _first_view(known, signs), budget)
+
+
+def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...] | None:
+    """Return steps from the known values to 0 > 0; None where none are found."""
+    for value in known:
+        if sign_of(value, signs) in _DOWN:
+            return (contradiction(value),)
+    budget = _Budget(_VIEWS, _PROGRAMS)
+    return _prove_in(ZERO, ZERO, _first_view(known, signs), budget)
+
+
+def prove_by_opposite(
+    value: Scalar, multiple: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]
+) -> tuple[Step, ...] | None:
+    """Return the steps to value > 0 where −value > 0 is contradictory and a multiple of the value is known."""
+    cofactor = multiple / value
+    other = Combined(-cofactor, ((ONE, (-value,)),), ((ONE, (multiple,)),))
+    found = refute((-value, -cofactor, *known), signs)
+    return None if found is None else (Opposite(value, multiple, (other, *found)),)
+
+
+def _is_manageable(value: Scalar) -> bool:
+    return value.size <= _TERMS and all(map(is_free, value.names)) and value.denominator.is_constant
+
+
+def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> View:
+    ordered = sorted((v for v in known if v.size <= _SOLVED and _is_manageable(v)), key=lambda v: (v.size, str(v)))
+    return View(dict(signs), open=tuple(Open(value, value) for value in ordered))
+
+
+def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _Budget) -> tuple[Step, ...] | None:
+    """Return the steps to a goal whose form in the view is `image`."""
+    budget.views -= 1
+    if not goal.is_zero and sign_of(image, view.signs) == "positive":
+        steps = _read_back(goal, image, view)
+        if steps is not None:
+            return steps
+    for known in view.open:
+        if sign_of(known.polynomial, view.signs) in _DOWN:
+            return _from_impossible(goal, known, view)
+    tried = False
+    for moved, put in _ways_on(image, view):
+        if budget.views <= 0:
+            return None
+        tried = True
+        moved_image = image.substitute(put)
+        if moved_image.size > _TERMS:
+            continue
+        steps = _prove_in(goal, moved_image, moved, budget)
+        if steps is not None:
+            return steps
+    if tried or not budget.programs:
+        return None
+    budget.programs -= 1
+    return _by_combination(goal, image, view)
+
+
+def _ways_on(image: Scalar, view: View) -> Iterator[tuple[View, Mapping[str, Scalar]]]:
+    """Yield the views in which one more parameter is replaced by a known value."""
+    found = []
+    for place, known in enumerate(view.open):
+        names = known.polynomial.names - set(view.stands_for) if known.polynomial.size <= _SOLVED else ()
+        for name in names:
+            sign = view.signs.get(name, "real")
+            if known.polynomial.degree(name) != 1 or sign in {"nonnegative", "nonpositive"}:
+                continue
+            lead = known.polynomial.coefficients(name)[0]
+            if sign_of(lead, view.signs) in {"positive", "negative"}:
+                rank = (sign in {"positive", "negative"}, name not in image.names, lead.size, known.polynomial.size)
+                found.append((rank, place, name))
+    for _, place, name in sorted(found)[:_WAYS]:
+        way = _replaced(view, place, name)
+        if way is not None:
+            yield way
+
+
+def _replaced(view: View, place: int, name: str) -> tuple[View, Mapping[str, Scalar]] | None:
+    """Return the view in which a new name stands for the known value at `place`, and what `name` becomes."""
+    known = view.open[place]
+    new = f"_{len(view.stands_for) + 1}"
+    lead, rest = known.polynomial.coefficients(name)
+    put = {name: (Scalar.symbol(new) - rest) / lead}
+    signs = {**view.signs, new: "positive"}
+    steps = view.steps
+    waiting = [Open(o.polynomial.substitute(put), o.value) for k, o in enumerate(view.open) if k != place]
+    sign = view.signs.get(name, "real")
+    if sign in {"positive", "negative"}:  # what was declared of the old name is now something known
+        own = Scalar.symbol(name) if sign == "positive" else -Scalar.symbol(name)
+        steps = (*steps, by_signs(own))
+        waiting.append(Open(own.substitute(put), own))
+    moved = View(signs, {**view.stands_for, new: known.value}, (), steps)
+    for item in waiting:
+        if item.polynomial.size > _TERMS:
+            continue
+        stripped = _stripped(item, moved)
+        if stripped is not None:
+            moved = stripped
+    return moved, put
+
+
+def _stripped(item: Open, view: View) -> View | None:
+    """Add a known value, less the factors whose sign is certain in the view; None where nothing is left of it."""
+    if sign_of(item.polynomial, view.signs) == "positive":
+        return None
+    unit, factors = item.polynomial.factors()
+    kept, certain, below = Scalar.of(1 if unit.fraction() > 0 else -1), Scalar.of(abs(unit.fraction())), ONE
+    for factor, power in factors:
+        sign = sign_of(factor, view.signs)
+        if sign not in {"positive", "negative"}:
+            kept = kept * factor**power
+            continue
+        oriented = factor if sign == "positive" else -factor
+        kept = kept if sign == "positive" or power % 2 == 0 else -kept
+        if power > 0:
+            certain = certain * oriented**power
+        else:
+            below = below * oriented**-power
+    if not kept.denominator.is_constant:
+        return None
+    if kept.is_constant or (certain * below).is_one:
+        return replace(view, open=(*view.open, Open(item.polynomial, item.value)))
+    value = kept.substitute(view.stands_for)
+    given = tuple((c, (item.value, *factors)) for c, factors in view.products(below))
+    step = Combined(value, view.products(certain), given)
+    return replace(view, open=(*view.open, Open(kept, value)), steps=(*view.steps, step))
+
+
+def _read_back(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
+    """Return the steps to a goal whose image is positive: each factor is a sum of products of known values."""
+    unit, factors = image.factors()
+    steps, above, below, sign = list(view.steps), list[Scalar](), list[Scalar](), unit.fraction()
+    for factor, power in factors:
+        found = sign_of(factor, view.signs)
+        if found not in {"positive", "negative"}:
+            return None
+        oriented = factor if found == "positive" else -factor
+        sign = sign if found == "positive" or power % 2 == 0 else -sign
+        value = oriented.substitute(view.stands_for)
+        steps.append(Combined(value, UNIT, view.products(oriented)))
+        (above if power > 0 else below).extend([value] * abs(power))
+    if sign < 0:
+        return None
+    return (*steps, Combined(goal, ((ONE, tuple(below)),), ((Scalar.of(sign), tuple(above)),)))
+
+
+def _over_positive(value: Scalar, view: View) -> tuple[Scalar, Scalar] | None:
+    """Return numerator and denominator with a denominator that is positive in the view."""
+    sign = sign_of(value.denominator, view.signs)
+    if sign == "positive":
+        return value.numerator, value.denominator
+    return (-value.numerator, -value.denominator) if sign == "negative" else None
+
+
+def _from_impossible(goal: Scalar, known: Open, view: View) -> tuple[Step, ...] | None:
+    """Return the steps from a known value v that is never positive: v = −N/D gives D v + N = 0."""
+    parts = _over_positive(-known.polynomial, view)
+    if parts is None:
+        return None
+    above, below = parts
+    total = [(c, (known.value, *factors)) for c, factors in view.products(below)]
+    return _finished(goal, (*view.steps, Combined(ZERO, (), (*total, *view.products(above)))))
+
+
+def _finished(goal: Scalar, steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    """Return steps to a contradiction as steps to the goal."""
+    return steps if goal.is_zero else (*steps, from_contradiction(goal))
+
+
+def _by_combination(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
+    """Return the steps where multiples of what is known add up to a multiple of the image."""
+    parts = _over_positive(image, view)
+    if parts is None:
+        return None
+    found = combination(parts[0], [known.polynomial for known in view.open], view.signs)
+    if found is None:
+        return None
+    total = [*view.products(found.certain), *((square.substitute(view.stands_for), ()) for square in found.squares)]
+    for factor, places in found.multiples:
+        values = tuple(view.open[place].value for place in places)
+        total += [(c, (*values, *factors)) for c, factors in view.products(factor)]
+    if found.multiplier.is_zero:
+        return _finished(goal, (*view.steps, Combined(ZERO, (), tuple(total))))
+    return (*view.steps, Combined(goal, view.products(found.multiplier * parts[1]), tuple(total)))

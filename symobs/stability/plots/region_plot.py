@@ -1,0 +1,314 @@
+"""A region as a picture: where the window lies, the areas, the curves with points that are on them, the marks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from math import cos, pi
+from typing import TYPE_CHECKING
+
+from symobs.exact import Scalar
+from symobs.exact.algebraic.real_algebraic import FIRST_BITS, RealNumber, real_roots
+from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
+from symobs.formula import Literal, Relation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from symobs.exact.cad.decomposition import Slab, Wall
+    from symobs.figures.plot import Interval, Place
+    from symobs.stability.regions.interval_region import LineRegion
+    from symobs.stability.regions.plane_region import Cell, PlaneRegion
+
+#: Nodes in every slab; they crowd towards the walls, where branches turn.
+NODES = 48
+#: This part of the way from a wall to the middle of a slab is close to the wall.
+_CLOSE = 64
+#: Beyond this many samples only the stable ones are marked.
+MOST_MARKS = 16
+#: Nodes lie on this grid of the window: numbers of many digits cost time over every one of them.
+_NODE_GRID = 1 << 14
+#: How often nodes are added where a branch is farther off a straight line than this part of the window.
+_PASSES, _STRAIGHT = 2, Fraction(1, 100)
+#: Coordinates are rounded to this fraction of the window.
+_GRID = 1 << 20
+#: What lies farther out than this many times the usual distance does not widen the window.
+_FAR = 8
+
+
+def picture_of_plane(region: PlaneRegion) -> RegionPicture:
+    """Return the picture of a region of two parameters."""
+    window = _window(region)
+    areas, curves = [], []
+    for number, slab in enumerate(region.plane.slabs):
+        stable = [cell for cell in region.cells if cell.slab == number and cell.allowed]
+        found = _nodes(region, slab, window)
+        if len(found) < 2:
+            continue
+        nodes, rows = list(found), list(found.values())
+        areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
+        curves += _branches(region, slab, number, nodes, rows, window)
+    curves += _verticals(region, window)
+    seen = [cell for cell in region.cells if cell.allowed and _inside(cell.sample, window)]
+    shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
+    marks = [Mark(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
+    marks += [Mark(hole.near, "excluded") for hole in region.holes]
+    return RegionPicture(region.names, window, tuple(areas), tuple(curves), tuple(marks))
+
+
+def oriented(picture: RegionPicture, names: Sequence[str]) -> RegionPicture:
+    """Return the picture with the first of the names across."""
+    if picture.axes == tuple(names):
+        return picture
+
+    def turned(places: Iterable[Place]) -> tuple[Place, ...]:
+        return tuple((y, x) for x, y in places)
+
+    return replace(
+        picture,
+        axes=(picture.axes[1], picture.axes[0]),
+        window=(picture.window[1], picture.window[0]),
+        areas=tuple(map(turned, picture.areas)),
+        curves=tuple(replace(curve, points=turned(curve.points)) for curve in picture.curves),
+        marks=tuple(replace(mark, place=turned([mark.place])[0]) for mark in picture.marks),
+    )
+
+
+# -- the window -------------------------------------------------------------------------------------------------------
+
+
+def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
+    """Return the ranges of both parameters: the corners and the samples of the region, and room around them."""
+    xs, ys = [], []
+    for cell in region.cells:
+        if not cell.stable:
+            continue
+        slab = region.plane.slabs[cell.slab]
+        xs += [cell.sample[0], *(_middle(end) for end in (slab.left, slab.right) if end is not None)]
+        ys.append(cell.sample[1])
+        for x in (slab.x, *_near_ends(slab)):
+            heights = _heights(region, x)
+            ys += [heights[k] for k in (cell.height - 1, cell.height) if 0 <= k < len(heights)]
+    if not xs:
+        xs = [_middle(wall.x) for wall in region.plane.walls]
+        ys = [cell.sample[1] for cell in region.cells]
+    return range_around(xs), range_around(ys)
+
+
+def _near_ends(slab: Slab) -> list[Fraction]:
+    """Return points of a slab close to its walls."""
+    ends = [slab.left.interval()[1]] if slab.left is not None else []
+    ends += [slab.right.interval()[0]] if slab.right is not None else []
+    near = [(end + (slab.x - end) / _CLOSE).limit_denominator(1 << 20) for end in ends]
+    inside = [x for x in near if slab.left is None or slab.left < RealNumber.of(x)]
+    return [x for x in inside if slab.right is None or RealNumber.of(x) < slab.right]
+
+
+def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interval:
+    """Return a range around most values, with `spread` around all of them, with round ends."""
+    known = sorted(values) or [Fraction(0)]
+    middle = known[len(known) // 2]
+    distances = sorted(abs(value - middle) for value in known)
+    usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
+    near = known if spread else [value for value in known if abs(value - middle) <= _FAR * usual]
+    low, high = near[0], near[-1]
+    if spread:
+        room = (high - low) / 8 or Fraction(1)
+    else:
+        room = max((high - low) * Fraction(3, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(middle) / 5)
+    step = _round_step(high - low + 2 * room)
+    return _down(low - room, step), -_down(-high - room, step)
+
+
+def _round_step(width: Fraction) -> Fraction:
+    """Return 1, 2 or 5 times a power of ten, about a twentieth of a width."""
+    step = Fraction(1)
+    while step * 20 < width:
+        step *= 10
+    while step * 2 > width:
+        step /= 10
+    return next((step / k for k in (20, 10, 5, 4, 2) if step / k * 10 >= width / 3), step)
+
+
+def _down(value: Fraction, step: Fraction) -> Fraction:
+    return Fraction((value / step).__floor__()) * step
+
+
+def _middle(number: RealNumber) -> Fraction:
+    low, high = number.interval()
+    return (low + high) / 2
+
+
+def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
+    return all(low <= value <= high for value, (low, high) in zip(place, window, strict=True))
+
+
+# -- branches ---------------------------------------------------------------------------------------------------------
+
+
+def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -> dict[Fraction, list[Fraction]]:
+    """Return rational points of a slab inside the window with the heights of all branches there, ascending.
+
+    They are crowded towards its ends, and stand where a branch meets the border.
+    """
+    (left, right), (bottom, top) = window
+    low = left if slab.left is None else max(left, slab.left.interval(FIRST_BITS)[1])
+    high = right if slab.right is None else min(right, slab.right.interval(FIRST_BITS)[0])
+    if low >= high:
+        return {}
+    found = {
+        low + (high - low) * Fraction(round((1 - cos(pi * k / NODES)) * (1 << 29)), 1 << 30) for k in range(NODES + 1)
+    }
+    for curve in region.plane.curves:
+        if curve.degree:
+            for height in (bottom, top):
+                found |= {x for root in real_roots(curve.on_horizontal(height)) if low < (x := _middle(root)) < high}
+    grid = (right - left) / _NODE_GRID
+    rounded = {round(x / grid) * grid for x in found}
+    inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
+    within = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    nodes = {x: _heights(region, x) for x in within}
+    for _ in range(_PASSES):
+        nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)
+    return nodes
+
+
+def _finer(region: PlaneRegion, nodes: dict[Fraction, list[Fraction]], off: Fraction) -> dict[Fraction, list[Fraction]]:
+    """Return the nodes and the middles between them where some branch is farther than this off the straight line."""
+    found = dict(nodes)
+    for (x, low), (z, high) in pairwise(nodes.items()):
+        middle = (x + z) / 2
+        between = _heights(region, middle)
+        if any(abs(2 * b - a - c) > 2 * off for a, b, c in zip(low, between, high, strict=True)):
+            found[middle] = between
+    return dict(sorted(found.items()))
+
+
+def _heights(region: PlaneRegion, x: Fraction) -> list[Fraction]:
+    """Return the heights of all branches over x, from below."""
+    return sorted(_middle(root) for found in region.plane.roots_over(x) for root in found)
+
+
+def _clipped(value: Fraction, bounds: Interval) -> Fraction:
+    return min(max(value, bounds[0]), bounds[1])
+
+
+def _area(
+    cell: Cell, nodes: Sequence[Fraction], rows: Sequence[Sequence[Fraction]], window: tuple[Interval, Interval]
+) -> tuple[Place, ...]:
+    """Return the polygon of a cell inside the window; nothing where it lies outside."""
+    vertical = window[1]
+    below = [_clipped(row[cell.height - 1], vertical) if cell.height else vertical[0] for row in rows]
+    above = [_clipped(row[cell.height], vertical) if cell.height < len(row) else vertical[1] for row in rows]
+    if all(low >= high for low, high in zip(below, above, strict=True)):
+        return ()
+    lower = list(zip(nodes, below, strict=True))
+    upper = list(zip(nodes, above, strict=True))
+    return _rounded([*lower, *reversed(upper)], window)
+
+
+def _rounded(places: Iterable[Place], window: tuple[Interval, Interval]) -> tuple[Place, ...]:
+    """Return places on a fine grid of the window, each once in a row."""
+    grids = [(high - low) / _GRID for low, high in window]
+    found: list[Place] = []
+    for x, y in places:
+        place = (round(x / grids[0]) * grids[0], round(y / grids[1]) * grids[1])
+        if not found or found[-1] != place:
+            found.append(place)
+    return tuple(found)
+
+
+def _branches(
+    region: PlaneRegion,
+    slab: Slab,
+    number: int,
+    nodes: Sequence[Fraction],
+    rows: Sequence[Sequence[Fraction]],
+    window: tuple[Interval, Interval],
+) -> list[Curve]:
+    """Return the pieces of branches inside the window."""
+    stable = region.stable_in(number)
+    bottom, top = window[1]
+    found = []
+    for place, branch in enumerate(slab.branches):
+        equation = equation_of(region.plane.curves[branch.curve].scalar)
+        piece: list[Place] = []
+        slack = (top - bottom) / _GRID
+        for x, row in zip(nodes, rows, strict=True):
+            if bottom - slack <= row[place] <= top + slack:
+                piece.append((x, _clipped(row[place], window[1])))
+            elif len(piece) > 1:
+                found.append((piece, equation, stable[place] or stable[place + 1]))
+                piece = []
+            else:
+                piece = []
+        if len(piece) > 1:
+            found.append((piece, equation, stable[place] or stable[place + 1]))
+    curves = [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
+    return [curve for curve in curves if len(curve.points) > 1]
+
+
+def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[Curve]:
+    """Return the vertical lines among the critical curves in pieces: a boundary where something stable stands beside."""
+    found = []
+    (left, right), (bottom, top) = window
+    for wall in region.plane.walls:
+        for curve in region.plane.vertical_at(wall):
+            x = _middle(wall.x)
+            if not left <= x <= right:
+                continue
+            equation = equation_of(region.plane.curves[curve].scalar)
+            beside = _beside(region, wall, (right - left) / _GRID)
+            heights = {y for place in beside for y in _heights(region, place) if bottom < y < top}
+            for low, high in _pieces(sorted({bottom, top, *heights}), (top - bottom) / 100):
+                points = ({region.names[0]: place, region.names[1]: (low + high) / 2} for place in beside)
+                stable = any(region.critical.allows(p) and region.critical.is_stable(p) for p in points)
+                found.append(Curve(_rounded([(x, low), (x, high)], window), equation, stable))
+    return found
+
+
+def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:
+    """Return a point close to a wall on either side, inside the slabs there."""
+    found = []
+    for end, slab in zip(wall.x.interval(), region.plane.slabs[wall.index : wall.index + 2], strict=True):
+        place = end + (slab.x - end) * min(Fraction(1, _CLOSE), step / abs(slab.x - end))
+        found.append(place.limit_denominator(1 << 40))
+    return found
+
+
+def _pieces(ends: Sequence[Fraction], least: Fraction) -> list[tuple[Fraction, Fraction]]:
+    """Return the intervals between ends that are not closer than this."""
+    kept = [ends[0]]
+    kept += [end for end in ends[1:-1] if end - kept[-1] > least and ends[-1] - end > least]
+    return list(pairwise([*kept, ends[-1]]))
+
+
+def equation_of(polynomial: Scalar, parameters: Sequence[str] = ()) -> Relation:
+    """Return the equation of a curve, solved for a parameter that stands alone in it."""
+    for name in sorted(polynomial.names, key=lambda n: (n not in parameters, n)):
+        if polynomial.degree(name) == 1:
+            lead, rest = polynomial.coefficients(name)
+            others = (lead.names | rest.names).intersection(parameters) if parameters else lead.names | rest.names
+            if not others or (lead.is_constant and polynomial.degrees()[0] == 1):
+                return Relation((Literal(Scalar.symbol(name)), Literal(-rest / lead)), ("=",))
+    constant = polynomial.substitute(dict.fromkeys(polynomial.names, Scalar.of(0)))
+    return Relation((Literal(polynomial - constant), Literal(-constant)), ("=",))
+
+
+# -- one parameter ----------------------------------------------------------------------------------------------------
+
+
+def picture_of_line(region: LineRegion) -> LinePicture:
+    """Return the picture of a region of one parameter."""
+    ends = [_middle(end) for piece in region.intervals for end in (piece.low, piece.high) if end is not None]
+    window = range_around(ends or [Fraction(0)])
+    pieces = tuple((_end(piece.low), _end(piece.high)) for piece in region.intervals)
+    return LinePicture(region.name, window, pieces, tuple((piece.sample, "stable") for piece in region.intervals))
+
+
+def _end(number: RealNumber | None) -> End | None:
+    if number is None:
+        return None
+    closed = number.closed_form()
+    return End(_middle(number), closed if closed is not None else number.decimal(4))

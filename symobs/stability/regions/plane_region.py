@@ -1,0 +1,311 @@
+"""The region of two parameters in which a polynomial is stable: its cells, its components, its holes."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING
+
+from symobs._dataclass import dataclass
+from symobs.exact import TooLarge
+from symobs.exact.cad.decomposition import Branch, Plane, Slab, Wall
+from symobs.exact.cad.fiber import Fibre, curves_between, fibre, place_between, point_between
+from symobs.stability.regions.short_list import Sample
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from fractions import Fraction
+
+    from symobs.exact import RealNumber, Scalar
+    from symobs.stability.criteria.critical_polynomials import Critical
+
+#: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
+LARGEST_PROJECTION = 170
+#: With the conditions of a short list besides, it may be this much larger.
+_LARGER = 3
+
+
+@dataclass(frozen=True)
+class Cell:
+    """An open cell: its place (slab, height in the stack), a rational point in it, and whether it is stable there.
+
+    What the declared signs do not allow is not `allowed`, and not stable.
+    """
+
+    slab: int
+    height: int
+    sample: tuple[Fraction, Fraction]
+    stable: bool
+    allowed: bool = True
+
+
+@dataclass(frozen=True)
+class Component:
+    """A connected component of the region: the numbers of its cells, and whether it is bounded."""
+
+    cells: tuple[int, ...]
+    bounded: bool
+
+
+@dataclass(frozen=True)
+class Hole:
+    """An isolated point that is not in the region though everything around it is; `y` is None where it has no closed form."""
+
+    x: RealNumber
+    y: RealNumber | None
+    near: tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True)
+class PlaneRegion:
+    """All (x, y), `names`, at which the polynomial is stable, as cells of the plane divided by its critical curves."""
+
+    critical: Critical
+    names: tuple[str, str]
+
+    @cached_property
+    def plane(self) -> Plane:
+        """The plane divided by the critical curves."""
+        return Plane(self.critical.factors, self.names)
+
+    @cached_property
+    def cells(self) -> tuple[Cell, ...]:
+        """All cells, slab by slab from left to right, each stack from below."""
+        found = []
+        for index, slab in enumerate(self.plane.slabs):
+            for height, y in enumerate(slab.samples):
+                point = self._point(slab.x, y)
+                allowed = self.critical.allows(point)
+                stable = allowed and self.critical.is_stable(point)
+                found.append(Cell(index, height, (slab.x, y), stable, allowed))
+        return tuple(found)
+
+    @cached_property
+    def _numbers(self) -> dict[tuple[int, int], int]:
+        return {(cell.slab, cell.height): number for number, cell in enumerate(self.cells)}
+
+    def cell_at(self, slab: int, height: int) -> Cell:
+        """Return the cell at a place."""
+        return self.cells[self._numbers[slab, height]]
+
+    def stable_in(self, slab: int) -> tuple[bool, ...]:
+        """Return which cells of a stack are stable."""
+        count = len(self.plane.slabs[slab].samples)
+        return tuple(self.cell_at(slab, height).stable for height in range(count))
+
+    def bounds(self, cell: Cell) -> tuple[Slab, Branch | None, Branch | None]:
+        """Return the slab of a cell and the branches below and above it."""
+        slab = self.plane.slabs[cell.slab]
+        branches: tuple[Branch | None, ...] = (None, *slab.branches, None)
+        return slab, branches[cell.height], branches[cell.height + 1]
+
+    @cached_property
+    def fibres(self) -> dict[int, Fibre]:
+        """What lies on those walls that have stable cells on both sides, or where a stable cell may run off to infinity."""
+        found: dict[int, Fibre] = {}
+        for wall in self.plane.walls:
+            left, right = any(self.stable_in(wall.index)), any(self.stable_in(wall.index + 1))
+            if (left and right) or ((left or right) and self.plane.runs_off(wall)):
+                found[wall.index] = fibre(self.plane, wall)
+        return found
+
+    @cached_property
+    def joins(self) -> tuple[tuple[int, int, int, int], ...]:
+        """Stable cells that meet at a wall: (number on the left, on the right, wall, number of the separator)."""
+        return tuple(self._joins())
+
+    def _joins(self) -> Iterator[tuple[int, int, int, int]]:
+        for index, found in self.fibres.items():
+            if self.plane.vertical_at(self.plane.walls[index]):
+                continue
+            for gap, (low, high) in enumerate(zip(found.left, found.right, strict=True)):
+                left, right = self._numbers[index, low], self._numbers[index + 1, high]
+                if self.cells[left].stable != self.cells[right].stable:
+                    message = "a stable cell meets one that is not"
+                    raise AssertionError(message)
+                if self.cells[left].stable:
+                    yield left, right, index, gap
+
+    @cached_property
+    def components(self) -> tuple[Component, ...]:
+        """The connected components, from left to right."""
+        leader = {number: number for number, cell in enumerate(self.cells) if cell.stable}
+
+        def find(number: int) -> int:
+            while leader[number] != number:
+                number = leader[number]
+            return number
+
+        for left, right, _, _ in self.joins:
+            first, second = sorted((find(left), find(right)))
+            leader[second] = first
+        together: dict[int, list[int]] = {}
+        for number in leader:
+            together.setdefault(find(number), []).append(number)
+        return tuple(
+            Component(tuple(members), not any(self._is_unbounded(number) for number in members))
+            for members in together.values()
+        )
+
+    def _is_unbounded(self, number: int) -> bool:
+        cell = self.cells[number]
+        slab, below, above = self.bounds(cell)
+        if below is None or above is None or slab.left is None or slab.right is None:
+            return True
+        count = len(slab.samples)
+        for index, side in ((cell.slab - 1, "right"), (cell.slab, "left")):
+            found = self.fibres.get(index)
+            if found and cell.height in found.unbounded(getattr(found, side), count):
+                return True
+        return False
+
+    @cached_property
+    def _places_of_holes(self) -> tuple[tuple[int, int], ...]:
+        """The holes by wall and number on it."""
+        return tuple(
+            (index, number)
+            for index, found in self.fibres.items()
+            if not self.plane.vertical_at(self.plane.walls[index])
+            for number in found.alone
+            if self.cell_at(index, found.left[number]).stable
+        )
+
+    @cached_property
+    def holes(self) -> tuple[Hole, ...]:
+        """The isolated points that are missing."""
+        found = []
+        for index, number in self._places_of_holes:
+            low, high = self.fibres[index].separators[number : number + 2]
+            found.append(self._hole(self.plane.walls[index], low, high))
+        return tuple(found)
+
+    def _hole(self, wall: Wall, low: Fraction, high: Fraction) -> Hole:
+        y = point_between(self.plane, wall, low, high)
+        bottom, top = place_between(self.plane, wall, low, high)
+        return Hole(wall.x, y, (wall.x.interval()[0], (bottom + top) / 2))
+
+    @cached_property
+    def cuts(self) -> tuple[tuple[int, int], ...]:
+        """Branches (slab, number in the stack) with stable cells on both sides: they are not in the region."""
+        return tuple(
+            (slab, place)
+            for slab in range(len(self.plane.slabs))
+            for place, pair in enumerate(_pairs(self.stable_in(slab)))
+            if all(pair)
+        )
+
+    @cached_property
+    def walls_cut(self) -> tuple[tuple[int, int], ...]:
+        """Pieces (wall, separator) of vertical critical lines with stable cells on both sides: they are not in the region."""
+        return tuple(
+            (index, gap)
+            for index, found in self.fibres.items()
+            if self.plane.vertical_at(self.plane.walls[index])
+            for gap, (low, high) in enumerate(zip(found.left, found.right, strict=True))
+            if self.cell_at(index, low).stable and self.cell_at(index + 1, high).stable
+        )
+
+    # -- for the inequalities ----------------------------------------------------------------------------------------
+
+    def samples(self, further: Sequence[Scalar]) -> list[Sample]:
+        """Return a point of every open cell, none of the further polynomials changing its sign inside one."""
+        plane = self.divided(further)
+        if plane is self.plane:
+            return [Sample(self._point(*cell.sample), cell.stable) for cell in self.cells if cell.allowed]
+        if plane not in self._sampled:
+            points = [self._point(slab.x, y) for slab in plane.slabs for y in slab.samples]
+            allowed = [point for point in points if self.critical.allows(point)]
+            self._sampled[plane] = [Sample(point, self.critical.is_stable(point)) for point in allowed]
+        return self._sampled[plane]
+
+    @cached_property
+    def _sampled(self) -> dict[Plane, list[Sample]]:
+        return {}
+
+    def divided(self, further: Sequence[Scalar]) -> Plane:
+        """Return the plane divided by further irreducible polynomials besides."""
+        others = [polynomial for polynomial in further if polynomial not in self.critical.factors]
+        if not others:
+            return self.plane
+        key = frozenset(others)
+        if key not in self._finer:
+            polynomials = (*self.critical.factors, *others)
+            if projection_size(polynomials, self.names) > _LARGER * LARGEST_PROJECTION:
+                raise TooLarge("the conditions of stability are of too high a degree")
+            self._finer[key] = Plane(polynomials, self.names)
+        return self._finer[key]
+
+    @cached_property
+    def _finer(self) -> dict[frozenset[Scalar], Plane]:
+        return {}
+
+    def _point(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        return {self.names[0]: x, self.names[1]: y}
+
+    def surrounded(self) -> tuple[Scalar, ...]:
+        """Return critical factors that vanish on every curve with the region on both sides."""
+        curves = [self.plane.slabs[slab].branches[place].curve for slab, place in self.cuts]
+        for index, _ in self.walls_cut:
+            curves += self.plane.vertical_at(self.plane.walls[index])
+        factors = dict.fromkeys(self.critical.factors[curve] for curve in curves)
+        return tuple(factor for factor in factors if factor in self.critical.proper)
+
+    def through_holes(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Return for every isolated point that is missing the critical factors that vanish there."""
+        found = []
+        for index, number in self._places_of_holes:
+            separators = self.fibres[index].separators
+            curves = curves_between(self.plane, self.plane.walls[index], *separators[number : number + 2])
+            found.append(tuple(self.critical.factors[curve] for curve in curves))
+        return tuple(found)
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing is stable."""
+        return self.critical.never or not any(cell.stable for cell in self.cells)
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether every point that is allowed is stable."""
+        stable = all(cell.stable for cell in self.cells if cell.allowed)
+        return stable and not self.surrounded() and not self.holes
+
+    @property
+    def bounded(self) -> bool:
+        """Whether every component is bounded."""
+        return all(component.bounded for component in self.components)
+
+
+def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
+    return list(pairwise(values))
+
+
+@lru_cache(maxsize=64)
+def plane_region(critical: Critical, names: tuple[str, str]) -> PlaneRegion:
+    """Return the region, its stacks standing over that name in whose place the other has the lower degree."""
+
+    def height(name: str) -> tuple[int, int]:
+        degrees = [factor.degree(name) for factor in critical.factors]
+        return max(degrees, default=0), sum(degrees)
+
+    first, second = names
+    return PlaneRegion(critical, (second, first) if height(first) < height(second) else (first, second))
+
+
+def can_be_divided(region: PlaneRegion) -> bool:
+    """Tell whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
+    if region.critical.never:
+        return True
+    if projection_size(region.critical.factors, region.names) > LARGEST_PROJECTION:
+        return False
+    try:
+        return region.components is not None
+    except TooLarge:
+        return False
+
+
+def projection_size(polynomials: Sequence[Scalar], names: tuple[str, str]) -> int:
+    """Return a bound of the degrees of all discriminants and resultants together."""
+    degrees = [(polynomial.degree(names[0]), polynomial.degree(names[1])) for polynomial in polynomials]
+    total = sum(max(0, 2 * high - 1) * wide for wide, high in degrees)
+    return total + sum(one[0] * other[1] + one[1] * other[0] for one, other in combinations(degrees, 2))

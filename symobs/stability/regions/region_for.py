@@ -1,0 +1,37 @@
+"""Which kind of region a polynomial has, and whether it can be had in reasonable time."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from symobs.exact import TooLarge
+from symobs.stability.regions.interval_region import LineRegion
+from symobs.stability.regions.plane_region import PlaneRegion, can_be_divided, plane_region
+from symobs.stability.regions.short_list import short_list
+
+if TYPE_CHECKING:
+    from symobs.stability.criteria.critical_polynomials import Critical
+
+
+@lru_cache(maxsize=64)
+def region_in(critical: Critical, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
+    """Return the exact region in one or two parameters, None in more or where the plane is too much to divide.
+
+    A parameter that may be 0 and not beyond has a boundary that belongs to it, which open cells do not see.
+    """
+    if any(critical.signs.get(name) in {"nonnegative", "nonpositive"} for name in names):
+        return None
+    if len(names) == 1:
+        return LineRegion(critical, names[0])
+    if len(names) != 2:
+        return None
+    found = plane_region(critical, (names[0], names[1]))
+    if not can_be_divided(found):
+        return None
+    try:
+        if not critical.never and not found.empty:
+            short_list(found)
+    except TooLarge:
+        return None
+    return found

@@ -1,0 +1,373 @@
+"""Plants: ẋ = A x + B u, y = C x + D u, with exact entries.  Shapes and exactness are checked here and only here."""
+
+from __future__ import annotations
+
+from copy import copy
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismatch, SymobsError
+from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
+from symobs.expression import parse_polynomial
+from symobs.system.matrices import Matrices
+from symobs.system.reading import has_decimals, read_matrix, read_scalar
+from symobs.system.symbols import Symbols
+from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
+from symobs.system.transfer_function_text import MOST_STATES, Written, read_transfer_function, realise
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+
+class StateSpace:
+    """A linear plant: ẋ = A x + B u, y = C x + D u (x(k+1) = … in discrete time).
+
+    A  n×n, B  n×m, C  p×n, D  p×m; each a MATLAB-style text `"[0 1; 0 -1]"`, nested lists of integers and texts, or a
+    SymPy matrix.  B, C may be left out where a task does not need them; D is zero if left out.
+    dt       0 continuous time; True or a positive value: discrete time
+    symbols  name → sign ("positive", …, "real"); when given, no other names exist
+
+    The name t is the time: a plant with t in a matrix is time-varying, ẋ = A(t) x + B(t) u, and need not declare it.
+
+    Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
+    """
+
+    def __init__(
+        self,
+        A: object,
+        B: object = None,
+        C: object = None,
+        D: object = None,
+        dt: object = 0,
+        *,
+        symbols: Mapping[str, Any] | Symbols | None = None,
+        transfer_function: Written | None = None,
+    ) -> None:
+        """Read the matrices and check that they fit."""
+        known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
+        known = known.seen([A, B, C, D])
+        A, B, C, D = (_as_rows(name, value) for name, value in zip("ABCD", (A, B, C, D), strict=True))
+        named, texts = known.with_time(), [value for value in (A, B, C, D) if isinstance(value, str)]
+        errors: list[SymobsError] = []
+        parts: dict[str, Matrix | None] = {}
+        for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
+            try:
+                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts)
+            except SymobsError as error:
+                errors.append(error)
+        if parts.get("D") == Matrix.zeros(1, 1):
+            parts["D"] = None
+        if "A" in parts:
+            errors += _shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
+        if errors:
+            _raise_all(errors)
+        self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
+        self.symbols = known
+        self.time = read_time(dt, known)
+        self.written = transfer_function
+        self.polynomial: Scalar | None = None
+        self.is_from_floats = False
+        self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
+        self.equations: tuple[Scalar, ...] = ()
+        self.nonzero: tuple[Scalar, ...] = ()
+        given = [part for part in parts.values() if part is not None]
+        known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
+        if any("t" in part.field.position and "t" in part.names for part in given):
+            self._let_vary()
+        given = [part for part in given if self.variable in part.field.position]
+        clash = self.variable in known.signs or any(self.variable in part.names for part in given)
+        if clash and not self.is_time_varying:
+            message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
+            raise InputError(message, where="plant", repair="give the parameter another name")
+
+    @classmethod
+    def from_transfer_function(
+        cls, transfer_function: object, dt: object = 0, *, symbols: Mapping[str, Any] | Symbols | None = None
+    ) -> StateSpace:
+        """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
+
+        b(s)/a(s) + d with a(s) = sⁿ + a₁ sⁿ⁻¹ + … + aₙ gives ones above the diagonal, last row −aₙ … −a₁, B = eₙ and
+        C the coefficients of b, constant first.  Raises `InputError` where the function is not proper or constant.
+        """
+        known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
+        time = read_time(dt, known)
+        known = known.seen(transfer_function, time.variable)
+        where = "plant.transfer_function"
+        written = read_transfer_function(transfer_function, known, time.variable, where)
+        A, B, C, D = realise(written.value, time.variable, where)
+        return cls(A, B, C, D, dt, symbols=known, transfer_function=written)
+
+    @classmethod
+    def from_polynomial(
+        cls, polynomial: object, dt: object = 0, *, symbols: Mapping[str, Any] | Symbols | None = None
+    ) -> StateSpace:
+        """Return ẋ = A x with A the companion matrix of a polynomial of s (z in discrete time), divided by its lead.
+
+        Raises `InputError` where it is no polynomial of degree 1 or more.
+        """
+        known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
+        time = read_time(dt, known)
+        known = known.seen(polynomial, time.variable)
+        where, variable = "specification.polynomial", time.variable
+        if isinstance(polynomial, str):
+            value = parse_polynomial(polynomial, variable, known.names, where=where)
+        else:
+            value = read_scalar(polynomial, known, where)
+        lead, *rest = value.coefficients(variable)
+        if not rest or not value.is_polynomial_in(variable):
+            message = f"{value} is not a polynomial in {variable} of degree 1 or more"
+            raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
+        if len(rest) > MOST_STATES:
+            message = f"a polynomial of degree {len(rest)}, more than {MOST_STATES}"
+            raise BudgetExceeded(message, where=where, repair="give one of lower degree")
+        plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
+        plant.polynomial = value
+        return plant
+
+    @classmethod
+    def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
+        """Return the plant of a python-control system; each float is read as its shortest decimal.
+
+        The page says so.  Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
+        """
+        from symobs.system.other_programs import from_control  # noqa: PLC0415 - it stands on this module
+
+        return from_control(system, symbols=symbols)
+
+    # -- what the kernel sees ----------------------------------------------------------------------------------------
+
+    @property
+    def order(self) -> int:
+        """The number n of states."""
+        return self.matrices.A.shape[0]
+
+    @property
+    def inputs(self) -> int:
+        """The number m of inputs; 0 where B is not given."""
+        return self.matrices.B.shape[1] if self.matrices.has_input else 0
+
+    @property
+    def outputs(self) -> int:
+        """The number p of outputs; 0 where C is not given."""
+        return self.matrices.C.shape[0] if self.matrices.has_output else 0
+
+    @property
+    def variable(self) -> str:
+        """`s` in continuous, `z` in discrete time."""
+        return self.time.variable
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether time is discrete."""
+        return isinstance(self.time, Discrete)
+
+    @property
+    def is_time_varying(self) -> bool:
+        """Whether the matrices may contain the time t."""
+        return isinstance(self.time, TimeVarying)
+
+    def _let_vary(self) -> None:
+        """Take t as the time; raises `InputError` where there is no such time."""
+        if self.is_discrete or self.origin is not None:
+            message = "t is the time, and " + (
+                "in discrete time no matrix may contain it" if self.is_discrete else "a transfer function has none"
+            )
+            raise InputError(message, where="plant", repair="give the parameter another name")
+        self.time = TimeVarying()
+
+    def in_time(self) -> StateSpace:
+        """Return the same plant as one whose matrices may contain t; raises `InputError` in discrete time."""
+        if self.is_time_varying:
+            return self
+        if self.is_discrete:
+            message = "the plant is given in discrete time"
+            raise InputError(
+                message, where="plant.dt", repair="leave dt out: a time-varying plant is in continuous time"
+            )
+        m = self.matrices
+        plant = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=self.symbols)
+        plant.matrices, plant.time, plant.is_from_floats = m, TimeVarying(), self.is_from_floats
+        plant.equations, plant.nonzero = self.equations, self.nonzero
+        return plant
+
+    @property
+    def origin(self) -> Scalar | None:
+        """The transfer function in lowest terms where the plant is given by one."""
+        return None if self.written is None else self.written.value
+
+    @property
+    def apart(self) -> tuple[Scalar, ...]:
+        """Polynomials in the parameters that the data divide by, though no entry of a matrix does."""
+        return () if self.written is None else self.written.apart
+
+    @cached_property
+    def field(self) -> Field:
+        """Q(parameters of the plant)."""
+        m = self.matrices
+        return m.A.field | m.B.field | m.C.field | m.D.field
+
+    def substitute(self, values: Mapping[str, Scalar]) -> StateSpace:
+        """Return the plant with parameters replaced; raises ZeroDivisionError where it ceases to exist."""
+        m = self.matrices
+        B = m.B.substitute(values) if m.has_input else None
+        C = m.C.substitute(values) if m.has_output else None
+        D = m.D.substitute(values) if m.has_input and m.has_output else None
+        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+        images = [equation.substitute(values).numerator for equation in self.equations]
+        nonzero = [value.substitute(values).numerator for value in self.nonzero]
+        return plant.restricted([image for image in images if not image.is_zero], nonzero)
+
+    def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
+        """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
+        ideal = Ideal.of((*self.equations, *equations))
+        if not ideal.generators:
+            return self
+        m, plant = self.matrices, copy(self)
+        plant.__dict__.pop("field", None)
+        plant.matrices = Matrices(
+            modulo(m.A, ideal),
+            modulo(m.B, ideal) if m.has_input else None,
+            modulo(m.C, ideal) if m.has_output else None,
+            modulo(m.D, ideal),
+        )
+        plant.equations, plant.nonzero = ideal.generators, tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        return plant
+
+    def simplified(self, value: Scalar) -> Scalar:
+        """Return a value in the parameters as simple as what is known of them allows; 0 where it is that."""
+        return self.ideal.simplified(value) if self.ideal is not None else value
+
+    def admits(self, value: Scalar | Matrix) -> bool:
+        """Tell whether a value has a meaning here: whether its denominator is not one of what is known to be 0."""
+        return self.ideal is None or value.common_denominator() not in self.ideal
+
+    @property
+    def ideal(self) -> Ideal | None:
+        """What is known to be 0, None where nothing is."""
+        return Ideal.of(self.equations) if self.equations else None
+
+    @property
+    def relations(self) -> tuple[Scalar, ...]:
+        """What vanishes for the parameters considered: the equations, and 1 − w p for each p that does not vanish."""
+        return (*self.equations, *map(apart_from_zero, self.nonzero))
+
+    def knowing(self, *values: object) -> StateSpace:
+        """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
+        return self.with_symbols(self.symbols.seen(list(values), self.variable))
+
+    def with_symbols(self, symbols: Symbols) -> StateSpace:
+        """Return the same plant where these symbols are known."""
+        if symbols is self.symbols:
+            return self
+        plant = copy(self)
+        plant.symbols = symbols
+        return plant
+
+    def require(self, *names: str, task: str) -> None:
+        """Raise `InputError` unless the matrices a task uses are given."""
+        missing = [n for n in names if (n == "B" and not self.inputs) or (n == "C" and not self.outputs)]
+        if missing:
+            message = f"{task} needs {' and '.join(missing)}"
+            example = f'{missing[0]} = "{"[0; 1]" if missing[0] == "B" else "[1 0]"}"'
+            raise InputError(message, where=f"plant.{missing[0]}", repair=f"give it, for example {example}")
+
+    # -- the face ----------------------------------------------------------------------------------------------------
+
+    def _face(self, name: str) -> Any:
+        from symobs.exact.sympy_bridge.conversion import matrix_to_sympy  # noqa: PLC0415 - SymPy is the face only
+
+        return matrix_to_sympy(getattr(self.matrices, name), self.symbols.objects)
+
+    @property
+    def A(self) -> Any:
+        """The state matrix as a SymPy `ImmutableMatrix`."""
+        return self._face("A")
+
+    @property
+    def B(self) -> Any:
+        """The input matrix as a SymPy `ImmutableMatrix`."""
+        return self._face("B")
+
+    @property
+    def C(self) -> Any:
+        """The output matrix as a SymPy `ImmutableMatrix`."""
+        return self._face("C")
+
+    @property
+    def D(self) -> Any:
+        """The feedthrough matrix as a SymPy `ImmutableMatrix`."""
+        return self._face("D")
+
+    @property
+    def dt(self) -> Any:
+        """0 in continuous time, True or the period in discrete time."""
+        if isinstance(self.time, Continuous):
+            return 0
+        return True if self.time.period is None else self.time.period.fraction()
+
+    def __eq__(self, other: object) -> bool:
+        """Compare entries, time, the symbols with their signs and printed forms, and how the plant was given."""
+        return self._value == other._value if isinstance(other, StateSpace) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.matrices)
+
+    @property
+    def _value(self) -> tuple[object, ...]:
+        signs = {name: sign for name, sign in self.symbols.signs.items() if sign != "real"}
+        given = self.origin, self.polynomial, self.is_from_floats, self.is_in_decimals
+        return (self.matrices, self.time, signs, self.symbols.latex, given, self.equations, self.nonzero)
+
+    def __repr__(self) -> str:
+        m = self.matrices
+        shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
+        return f"StateSpace({', '.join(shown)}, dt={self.dt})"
+
+
+def _as_rows(name: str, value: Any) -> Any:
+    """Return a matrix in rows: a flat list is a column of B, a row of C or D, and a number is one of one entry."""
+    if (
+        name == "A"
+        or value is None
+        or isinstance(value, (str, Matrix))
+        or (hasattr(value, "shape") and len(value.shape) == 2)
+    ):
+        return value
+    listed = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(listed, (list, tuple)):
+        return [[value]]
+    if any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
+        return value
+    return [[entry] for entry in listed] if name == "B" else [list(listed)]
+
+
+def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
+    A, B, C, D = parts["A"], parts["B"], parts["C"], parts["D"]
+    errors: list[SymobsError] = []
+
+    def expect(name: str, wanted: str, came: Matrix) -> None:
+        message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
+        errors.append(
+            ShapeMismatch(message, where=f"plant.{name}", repair=f"write {name} as {wanted.split(',', maxsplit=1)[0]}")
+        )
+
+    if A is None:
+        return [InputError("A is missing", where="plant.A", repair='give the state matrix, for example "[0 1; 0 -1]"')]
+    order = A.shape[0]
+    if order == 0 or A.shape[1] != order:
+        expect("A", "a square matrix", A)
+        return errors
+    if B is not None and (B.shape[0] != order or B.shape[1] == 0):
+        expect("B", f"a matrix of {order} rows, one for each state", B)
+    if C is not None and (C.shape[1] != order or C.shape[0] == 0):
+        expect("C", f"a matrix of {order} columns, one for each state", C)
+    if D is not None and not errors:
+        rows, columns = (C.shape[0] if C is not None else 0), (B.shape[1] if B is not None else 0)
+        if D.shape != (rows, columns):
+            expect("D", f"a {rows}×{columns} matrix, outputs by inputs", D)
+    return errors
+
+
+def _raise_all(errors: Sequence[SymobsError]) -> None:
+    """Raise one error as it is, several together."""
+    raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))

@@ -1,0 +1,121 @@
+"""Transfer functions as they are written, and their controllable canonical form."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.errors import BudgetExceeded, InputError
+from symobs.exact import Matrix, Scalar, companion, product_of
+from symobs.expression import parse_scalar
+from symobs.expression.written_fraction import parse_fraction
+from symobs.system.reading import read_scalar
+from symobs.system.symbols import is_sympy
+
+if TYPE_CHECKING:
+    from symobs.system.symbols import Symbols
+
+#: A realisation of more states is refused: designs and tests for it would not end.
+MOST_STATES = 200
+
+
+@dataclass(frozen=True)
+class Written:
+    """A rational function of the variable as it is written: above / below, with what they have in common."""
+
+    above: Scalar
+    below: Scalar
+    variable: str
+
+    @cached_property
+    def value(self) -> Scalar:
+        """The function in lowest terms."""
+        return self.above / self.below
+
+    @cached_property
+    def _common(self) -> tuple[tuple[Scalar, int], ...]:
+        return (self.below / self.value.denominator).numerator.factors()[1]
+
+    @property
+    def cancelled(self) -> Scalar:
+        """What cancels of the poles: a polynomial, 1 where nothing does."""
+        return product_of(factor**power for factor, power in self._common if self.variable in factor.names)
+
+    @property
+    def apart(self) -> tuple[Scalar, ...]:
+        """What cancels and has only parameters: polynomials that are 0 nowhere that the function has a meaning."""
+        return tuple(factor for factor, _ in self._common if self.variable not in factor.names)
+
+
+def read_transfer_function(value: object, symbols: Symbols, variable: str, where: str) -> Written:
+    """Return the function that a text, a SymPy expression, a number or two lists of coefficients stand for."""
+    if isinstance(value, str):
+        found = parse_scalar(value, symbols.names, variable=variable, where=where)
+        written = parse_fraction(value, symbols.names, variable=variable, where=where)
+    elif is_sympy(value):
+        found, written = read_scalar(value, symbols, where), _of_sympy(value, where)
+    elif isinstance(value, (list, tuple)):
+        written = _of_coefficients(value, symbols, variable, where)
+        found = written[0] / written[1]
+    else:
+        found, written = read_scalar(value, symbols, where), None
+    above, below = written or (found.numerator, found.denominator)
+    common = above.denominator * below.denominator  # numbers, unless a polynomial came with coefficients 1/m
+    return Written((above * common).numerator, (below * common).numerator, variable)
+
+
+def _of_sympy(value: Any, where: str) -> tuple[Scalar, Scalar] | None:
+    """Return numerator and denominator of a SymPy expression as they stand, None where they are complex."""
+    from symobs.exact.sympy_bridge.conversion import fraction_from_sympy  # noqa: PLC0415 - a SymPy object came in
+
+    above, below = fraction_from_sympy(value, where)
+    return (above.real, below.real) if above.is_real and below.is_real else None
+
+
+def _of_coefficients(value: list[Any] | tuple[Any, ...], symbols: Symbols, variable: str, where: str) -> Any:
+    """Return the two polynomials of lists of coefficients, the highest power first."""
+    if len(value) == 2 and all(map(is_sympy, value)):
+        return [read_scalar(part, symbols, f"{where}[{number}]") for number, part in enumerate(value)]
+    if len(value) != 2 or not all(isinstance(part, (list, tuple)) and part for part in value):
+        message = "the coefficients of one numerator and of one denominator are expected"
+        raise InputError(message, where=where, repair=f"write [[1], [1, 2, 0]] for 1/({variable}^2 + 2*{variable})")
+    s, found = Scalar.symbol(variable), []
+    for number, part in enumerate(value):
+        total = Scalar.of(0)
+        for place, entry in enumerate(part):
+            total = total * s + read_scalar(entry, symbols, f"{where}[{number}][{place}]")
+        found.append(total)
+    if found[1].is_zero:
+        raise InputError("the denominator is 0", where=f"{where}[1]", repair="give a coefficient that is not 0")
+    return found
+
+
+def realise(value: Scalar, variable: str, where: str = "transfer_function") -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """Return the controllable canonical form (A, B, C, D) of a proper rational function."""
+    denominator = value.denominator.coefficients(variable)
+    order = len(denominator) - 1
+    numerator = value.numerator.coefficients(variable)
+    if order < 1:
+        message = f"{value} has no pole, so it has no state"
+        example = f"1/({variable}*({variable}+1))"
+        raise InputError(
+            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
+        )
+    if order > MOST_STATES:
+        message = f"a transfer function of order {order}, more than {MOST_STATES}"
+        raise BudgetExceeded(message, where=where, repair="give one of lower order")
+    if len(numerator) > order + 1:
+        message = f"{value} is not proper: degree {len(numerator) - 1} over degree {order}"
+        raise InputError(message, where=where, repair="the degree of the numerator may not exceed the denominator's")
+    lead = denominator[0]
+    monic = [c / lead for c in denominator[1:]]
+    padded = [Scalar.of(0)] * (order + 1 - len(numerator)) + [c / lead for c in numerator]
+    feedthrough = padded[0]
+    rest = [b - feedthrough * a for a, b in zip(monic, padded[1:], strict=True)]
+    return (
+        companion(monic),
+        Matrix.unit(order, order - 1),
+        Matrix.row(list(reversed(rest))),
+        Matrix.of([[feedthrough]]),
+    )

@@ -1,0 +1,341 @@
+"""Conditions are right: results specialised at random rational points, judged by plain arithmetic of fractions.
+
+At points where the conditions of a result hold, its values meet the claim of the plant at that point.  Where a
+denominator of the plant vanishes there is no plant.  Where a factor of det 𝒪 or det 𝒞 vanishes the rank drops, and
+either no gain exists or a case of the result says why one survives, and that case is right on its stratum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.conditions import never_zero
+from symobs.exact import Matrix, Scalar
+from symobs.exact.kernel.generators import known, symbols_in
+from symobs.problem import Problem, read
+from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
+from tests.support.independent_algebra.plain import (
+    assignable,
+    at_number,
+    has_sign,
+    matrix_at,
+    observability_rows,
+    random_fraction,
+    rank_of,
+    seeded,
+    value_at,
+)
+from tests.support.independent_algebra.plain_fractions import World
+from tests.support.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.result import Result
+
+POINTS, FEW = 200, 20
+#: Points on a stratum: one parameter is solved for, the others are random.
+ON_STRATUM = 15
+
+BUILT = {
+    f"fixed_modes_{'_'.join(str(-pole) for pole in poles)}": f"""
+        tasks = ["observability", "observer", "characteristic_polynomial"]
+        [symbols]
+        c = "real"
+        [plant]
+        A = "[0 1; -2 -3]"
+        C = "[1 c]"
+        [specification]
+        poles = {poles}
+    """
+    for poles in ([-1, -5], [-1, -2])
+} | {
+    "domain": """
+        tasks = ["observability", "controllability", "transfer_function", "characteristic_polynomial", "compensator"]
+        [symbols]
+        m = "real"
+        k = "nonnegative"
+        d = "real"
+        p = "real"
+        q = "nonzero"
+        [plant]
+        A = "[0 1; -k/m -d/(m + k)]"
+        B = "[0; 1/m]"
+        C = "[1 p/q]"
+        [specification]
+        control_poles = [-1, "-d"]
+        observer_polynomial = "s^2 + p s + 1/m"
+    """,
+    "third_order": """
+        tasks = ["observability", "controllability", "compensator", "transfer_function"]
+        [symbols]
+        a = "real"
+        b = "positive"
+        c = "real"
+        [plant]
+        A = "[-1 0 0; 0 a 0; 1 0 -b]"
+        B = "[1; 1; c]"
+        C = "[1 c 1]"
+        [specification]
+        control_poles = ["-b", "-1 + i", "-1 - i"]
+        observer_poles = [-1, "a", -4]
+    """,
+}
+
+FOLDER = ROOT / "worked_examples"
+FILES = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+NAMES = [*FILES, *BUILT]
+
+
+@cache
+def solved(name: str) -> tuple[Problem, tuple[Result, ...]]:
+    problem = read(FILES[name].read_text(encoding="utf-8") if name in FILES else BUILT[name])
+    results = problem.solve()
+    return replace(problem, specification=read_once(problem.plant, problem.specification)), results
+
+
+def names_of(problem: Problem, results: tuple[Result, ...]) -> list[str]:
+    """Return the parameters of plant and answers."""
+    found = set(problem.plant.field.names) | set(problem.plant.symbols.signs)
+    for result in results:
+        for value in result.answer.values():
+            if isinstance(value, (Scalar, Matrix)):
+                found |= symbols_in(value) - {result.plant.variable, problem.plant.variable}
+        found |= {"t"} if result.in_time else set()
+    return sorted(found)
+
+
+def points(problem: Problem, names: list[str], seed: object) -> Iterator[dict[str, Fraction]]:
+    """Yield random points that respect the declared signs."""
+    generator, sign = seeded(seed), problem.plant.symbols.sign
+    size = 16 if "t" in names else 1  # exponentials of large numbers have too many digits
+    while True:
+        yield {name: random_fraction(generator, sign(name)) / size for name in names}
+
+
+def setting(problem: Problem, point: dict[str, Fraction]) -> Setting | None:
+    """Return plant and specification at a point, None where they do not exist."""
+    try:
+        return Setting.of(problem.plant, problem.specification, point)
+    except ZeroDivisionError:
+        return None
+
+
+def scalars(point: dict[str, Fraction]) -> dict[str, Scalar]:
+    return {name: Scalar.of(value) for name, value in point.items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
+    problem, results = solved(name)
+    names = names_of(problem, results)
+    tested = dict.fromkeys(results, 0)
+    wanted = POINTS if names else 1
+    for point in islice(points(problem, names, name), 4 * wanted):
+        at = setting(problem, point)
+        if at is None:
+            continue
+        assert Matrix.of(at.A) == problem.plant.substitute(scalars(point)).matrices.A
+        for result in results:
+            if tested[result] < wanted and conditions_hold(result.holds_where, point):
+                says(result, at)
+                tested[result] += 1
+        if set(tested.values()) == {wanted}:
+            break
+    assert set(tested.values()) == {wanted}
+
+
+def says(result: Result, at: Setting) -> int:
+    """Hold all that a result says of a point against the plant there; return in how many ways it says it."""
+    parts = list(applicable(result, at.point))
+    for part in parts:
+        assert part is result or matrix_at(part.plant.matrices.A, at.point) == at.A
+        HOLDS[result.task](part, at)
+    has_claim = result.verdict != "no" and result.task not in {"observability", "controllability"}
+    if result not in parts and has_claim and conditions_hold(result.holds_where, at.point):
+        HOLDS[result.task](result, at)  # the claim of an answer is an identity, true on the strata of its cases too
+    return len(parts)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
+    """No denominator is left out: each factor of one is a condition or excluded by the declared signs.
+
+    A factor with functions in it, 1 - exp(-2 a T), is not 0 at random points where the conditions hold.
+    """
+    problem, results = solved(name)
+    signs = problem.plant.symbols.signs
+    everywhere = list(islice(points(problem, names_of(problem, results), name), POINTS))
+    for result in results:
+        listed = {condition.expression for condition in result.holds_where}
+        for value in result.answer.values():
+            for entry in value.entries if isinstance(value, Matrix) else [value] if isinstance(value, Scalar) else []:
+                factors = {factor for factor, _ in entry.denominator.factors()[1]}
+                inner = {factor for factor in factors if not {problem.plant.variable, "t"} & factor.names}
+                moving = {factor for factor in inner if any(map(known, factor.names))}
+                assert all(factor in listed or never_zero(factor, signs) for factor in inner - moving)
+                for point in everywhere[: FEW if moving else 0]:
+                    if conditions_hold(result.holds_where, point):
+                        world = World(0, problem.plant.variable, signs, meanings=dict(point))
+                        assert all(world.value(factor) != 0 for factor in moving)
+
+
+def zeros(problem: Problem, names: list[str], factor: Scalar, seed: object) -> Iterator[dict[str, Fraction]]:
+    """Yield points where a factor vanishes, solved for a parameter in which it is linear, the others random."""
+    linear = [name for name in sorted(factor.names) if factor.degree(name) == 1]
+    for point in islice(points(problem, names, seed), ON_STRATUM):
+        for name in linear:
+            lead, constant = (value_at(c, point) for c in factor.coefficients(name))
+            if lead:
+                yield {**point, name: -constant / lead}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_where_a_domain_condition_fails_there_is_no_plant(name: str) -> None:
+    problem, results = solved(name)
+    names, m = names_of(problem, results), problem.plant.matrices
+    entries = [entry for part in (m.A, m.B, m.C, m.D) for entry in part.entries]
+    factors = {factor for entry in entries for factor, _ in entry.denominator.factors()[1]}
+    domain = {c.expression for result in results for c in result.holds_where if c.kind == "domain"}
+    assert domain == {factor for factor in factors if not never_zero(factor, problem.plant.symbols.signs)}
+    for factor in factors:
+        found = list(zeros(problem, names, factor, name))
+        assert found
+        for point in found:
+            assert setting(problem, point) is None
+            with pytest.raises(ZeroDivisionError):
+                problem.plant.substitute(scalars(point))
+
+
+def ranked(result: Any) -> list[tuple[Any, bool]]:
+    """Return the parts of a result that stand on a rank, and whether the pair is the dual one."""
+    if result.task == "compensator":
+        return [(result.feedback, True), (result.estimator, False)]
+    if result.task == "transfer_function":  # either rank may drop there: tests/unit/analysis/test_transfer_function.py
+        return []
+    square = result.task not in {"observability", "controllability"} or result.test_determinant is not None
+    return [(result, result.task in {"controllability", "state_feedback"})] if square and result.existence else []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_where_an_existence_factor_vanishes_the_rank_drops_and_the_case_is_right(name: str) -> None:
+    problem, results = solved(name)
+    names, signs = names_of(problem, results), problem.plant.symbols.signs
+    for result in results:
+        for part, dual in ranked(result):
+            for determinant in part.existence:
+                for factor, _ in determinant.numerator.factors()[1]:
+                    possible = not never_zero(factor, signs)
+                    stratum = [case for case in result.case_tree if factor in {c.expression for c in case.when}]
+                    assert bool(stratum) == possible
+                    decided = 0
+                    for point in zeros(problem, names, factor, name):
+                        decided += on_stratum(problem, result, dual=dual, point=point)
+                    assert bool(decided) == possible
+
+
+def on_stratum(problem: Problem, result: Any, *, dual: bool, point: dict[str, Fraction]) -> int:
+    """Check the drop of the rank, and what the cases say; where declared signs exclude the point nothing is said."""
+    at = setting(problem, point)
+    if at is None:
+        return 0
+    A, C = at.pair(dual=dual)
+    assert rank_of(observability_rows(A, C)) < len(A)
+    if not all(has_sign(value, problem.plant.symbols.sign(name)) for name, value in point.items()):
+        return 0
+    return says(result, at)
+
+
+def test_there_are_strata_among_the_examples() -> None:
+    """The test above is not empty: gains that survive, gains that do not, and rank drops were all met."""
+    verdicts = {
+        (r.task, c.result.verdict)
+        for name in NAMES
+        for r in solved(name)[1]
+        for c in r.case_tree
+        if c.result is not None
+    }
+    tasks = {"observer", "compensator"}
+    assert verdicts >= {*((task, verdict) for task in tasks for verdict in ("yes", "no")), ("observability", "no")}
+    assert sum(bool(names_of(*solved(name))) for name in FILES) >= 8
+
+
+# -- A = [0 1; −2 −3], C = [1 c]: at c = 1 the mode −1 is not observable, at c = 1/2 the mode −2 -----------------------
+
+
+@pytest.mark.parametrize(("poles", "survivors"), [([-1, -5], {1}), ([-1, -2], {1, Fraction(1, 2)})])
+def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivors: set[Fraction]) -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
+    result = symobs.observer(plant, poles=poles)
+    cases = {case.substitution["c"].fraction(): case.result for case in result.case_tree}
+    assert set(cases) == {1, Fraction(1, 2)}
+    for c, mode in ((Fraction(1), -1), (Fraction(1, 2), -2)):
+        at, found = Setting.of(plant, {"poles": poles}, {"c": c}), cases[c]
+        # PBH: the mode is an eigenvalue of A with an eigenvector that the output does not see
+        pencil = [[entry - (mode if i == j else 0) for j, entry in enumerate(row)] for i, row in enumerate(at.A)]
+        assert rank_of(pencil) == rank_of([*pencil, *at.C]) == 1
+        assert (
+            (at_number(at.wanted[""], Fraction(mode)) == 0) == assignable(at.A, at.C, at.wanted[""]) == (c in survivors)
+        )
+        assert found is not None
+        assert found.verdict == ("yes" if c in survivors else "no")
+        assert [str(root) for root in found.fields["fixed_modes"]] == [str(mode)]
+        HOLDS["observer"](found, at)
+    page = " ".join(str(result.to("text")).split())
+    for mode in (-1, -2):
+        survives = "is among" if mode in poles else "is not among"
+        assert f"its fixed mode {mode} {survives} the poles asked for" in page
+    if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1
+        assert matrix_at(result.answer["L"], {"c": Fraction(1)}) == [[-3], [6]]
+        with pytest.raises(ZeroDivisionError):
+            matrix_at(result.answer["L"], {"c": Fraction(1, 2)})
+
+
+# -- what generic answers must not hide --------------------------------------------------------------------------------
+
+
+def test_a_gain_that_exists_at_one_point_is_found_there() -> None:
+    """The fixed mode is a: no gain in general, one at a = −2 and a = −3."""
+    plant = symobs.StateSpace("[a 0; 0 -1]", None, "[0 1]")
+    result = symobs.observer(plant, poles=[-2, -3])
+    assert result.verdict == "no"
+    for a, possible in ((Fraction(-2), True), (Fraction(-3), True), (Fraction(-1), False), (Fraction(4), False)):
+        at = Setting.of(plant, {"poles": [-2, -3]}, {"a": a})
+        assert assignable(at.A, at.C, at.wanted[""]) == possible
+        (found,) = applicable(result, at.point)
+        assert found.verdict == ("yes" if possible else "no")
+        HOLDS["observer"](found, at)
+
+
+def test_a_rank_below_n_says_where_it_drops_further() -> None:
+    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -3]", None, "[0 1 c]")
+    result = symobs.observability(plant)
+    for c, expected in ((Fraction(0), 1), (Fraction(1), 2), (Fraction(-2, 3), 2)):
+        at = Setting.of(plant, {}, {"c": c})
+        (found,) = applicable(result, at.point)
+        assert found.fields["rank"] == rank_of(observability_rows(at.A, at.C)) == expected
+        HOLDS["observability"](found, at)
+
+
+def test_two_outputs_lose_the_rank_only_together() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", None, "[a 0; b 0]")
+    result = symobs.observability(plant)
+    for a, b, expected in ((0, 0, 0), (0, 1, 2), (1, 0, 2), (1, 1, 2)):
+        at = Setting.of(plant, {}, {"a": Fraction(a), "b": Fraction(b)})
+        (found,) = applicable(result, at.point)
+        assert found.fields["rank"] == rank_of(observability_rows(at.A, at.C)) == expected
+
+
+@pytest.mark.parametrize("pole", ["-1/(c - 1)", "-1/(2*c - 1)"])
+def test_a_stratum_on_which_nothing_is_asked_for_is_no_case(pole: str) -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
+    result = symobs.observer(plant, poles=[pole, -5])
+    assert len(result.case_tree) == 1
+    assert result.to("text")

@@ -1,0 +1,190 @@
+"""One place each: a method, a task and an output format are each one new file, found by the command line at once."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support.tools.command_line import ROOT, Run, fresh
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+METHOD = '''
+"""A second way to a gain."""
+
+from symobs.design.full_order.observer import ObserverDesign
+from symobs.result import method
+from symobs.specification import DesiredPolynomial
+from symobs.system import StateSpace
+
+
+@method("observer/dummy", source="nobody, Theorem 0")
+def dummy(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
+    """Take what Ackermann's formula gives."""
+    return ObserverDesign.of(plant, desired, "dummy")
+'''
+
+LIAR = METHOD.replace(
+    'return ObserverDesign.of(plant, desired, "dummy")',
+    'right = ObserverDesign.of(plant, desired, "dummy")\n'
+    '    return right.with_answer("L", right.answer["L"] + right.answer["L"])',
+)
+
+TASK = '''
+"""A task that asks what another answers."""
+
+from __future__ import annotations
+
+from symobs.analysis.rank.observability import Observability
+from symobs.result import Result, method, task
+from symobs.specification import Name, Poles
+from symobs.system import StateSpace
+
+
+@method("dummy_task/direct", source="nobody, Theorem 1")
+def direct(plant: StateSpace) -> Observability:
+    """Look at the rank."""
+    return Observability.of(plant, "direct")
+
+
+@task
+def dummy_task(plant: StateSpace, *, dummy_poles: Poles = None, method: Name = "auto") -> Result:
+    """Decide what nobody asked."""
+    plant.require("C", task="dummy_task")
+    return direct(plant)
+'''
+
+FORMAT = '''
+"""A format for the hurried."""
+
+from typing import ClassVar
+
+from symobs.result import Document
+from symobs.result import output_format
+
+
+@output_format
+class Dummy:
+    """One line a result."""
+
+    name: ClassVar[str] = "dummy"
+    suffix: ClassVar[str] = ".dum"
+
+    def render(self, document: Document) -> str:
+        """Return task, method and verdict of every result."""
+        return "".join(f"{result.task} {result.method} {result.verdict}\\n" for result in document.results)
+'''
+
+PROBLEM = """
+task = "observer"
+[plant]
+A = "[0 1; 0 -1]"
+C = "[1 0]"
+[specification]
+poles = [-10, -10]
+"""
+
+
+class Copy:
+    """A copy of the checkout, to which files are added, and a folder to run it in."""
+
+    def __init__(self, folder: Path) -> None:
+        self.checkout, self.folder = folder / "checkout", folder / "elsewhere"
+        self.folder.mkdir(parents=True)
+        for part in ("symobs", "latex_templates"):
+            shutil.copytree(ROOT / part, self.checkout / part, ignore=shutil.ignore_patterns("__pycache__"))
+
+    def add(self, path: str, text: str) -> None:
+        assert not (self.checkout / path).exists()
+        (self.checkout / path).write_text(text.lstrip(), encoding="utf-8")
+
+    def run(self, *arguments: str, stdin: str = "") -> Run:
+        return fresh(*arguments, folder=self.folder, checkout=self.checkout, stdin=stdin.encode())
+
+
+@pytest.fixture(name="copy")
+def copied(tmp_path: Path) -> Copy:
+    return Copy(tmp_path)
+
+
+def test_a_method_is_one_new_file(copy: Copy) -> None:
+    assert "dummy" not in copy.run("methods").out
+    refused = copy.run("solve", "-", stdin=f'{PROBLEM}method = "dummy"\n')
+    assert refused.code == 3
+    assert "specification.method: 'dummy' is not a method of observer" in refused.err
+
+    copy.add("symobs/design/dummy.py", METHOD)
+    listed = copy.run("methods")
+    assert "    dummy: Take what Ackermann's formula gives.\n        nobody, Theorem 0\n" in listed.out
+    solved = copy.run("solve", "-", "--format", "json", stdin=f'{PROBLEM}method = "dummy"\n[expect]\nL = "[19; 81]"\n')
+    assert (solved.code, solved.err) == (0, "")
+    assert json.loads(solved.out)["results"][0]["method"] == "dummy"
+    option = copy.run("observer", "--A", "[0]", "--C", "[1]", "--poles", "-1", "--method", "dummy")
+    assert option.code == 0
+    assert option.out.startswith("\\documentclass")
+
+
+def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
+    """Without one the gain and the check of its claim are printed; no other method's story is borrowed."""
+    page = 'page=lambda page, design, side, desired: page.define("L", design.answer["L"], say="gain_with_roots")'
+    copy.add("symobs/design/dummy.py", METHOD)
+    copy.add("symobs/design/second.py", METHOD.replace("dummy", "second").replace('0"', f'0", {page}'))
+    told = {
+        name: copy.run("solve", "-", "--format", "text", stdin=f'{PROBLEM}method = "{name}"\n').out
+        for name in ("ackermann", "dummy", "second")
+    }
+    assert "Ackermann" in told["ackermann"]
+    assert "Ackermann" not in told["dummy"] + told["second"]
+    for text in told.values():
+        assert "✓ det(sI - A + L C) = s² + 20s + 100" in text
+    assert "A gain that assigns it is" in told["dummy"]
+    assert "With zeros in the places" in told["second"]
+    assert "A gain that assigns it is" not in told["second"] + told["ackermann"]
+
+
+def test_a_method_that_lies_cannot_answer(copy: Copy) -> None:
+    copy.add("symobs/design/dummy.py", LIAR)
+    run = copy.run("solve", "-", stdin=f'{PROBLEM}method = "dummy"\n')
+    assert (run.code, run.out) == (1, "")
+    assert run.err.startswith("the claim det(s*I - A + L*C) = phi(s) does not hold")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [TASK, TASK.replace("from __future__ import annotations\n", "").replace("Poles = None", "Poles | None = None")],
+)
+def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
+    copy.add("symobs/design/dummy_task.py", text)
+    assert "  dummy_task " in copy.run("--help").out
+    assert "dummy_task: Decide what nobody asked.\n    direct: Look at the rank.\n" in copy.run("methods").out
+    schema = json.loads(copy.run("schema").out)
+    assert "dummy_task" in schema["properties"]["task"]["enum"]
+    assert schema["properties"]["specification"]["properties"]["dummy_poles"]["tasks"] == ["dummy_task"]
+    file = 'tasks = ["observability", "dummy_task"]\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
+    solved = copy.run("solve", "-", "--format", "json", stdin=f'{file}[specification]\ndummy_poles = "-1"\n')
+    assert (solved.code, solved.err) == (0, "")
+    option = copy.run("dummy-task", "--A", "[0 1; 0 -1]", "--C", "[0 1]", "--dummy-poles", "-1", "--format", "json")
+    assert option.code == 4
+    sheet = copy.run("sheet", "-", "--format", "text", stdin=file)
+    assert (sheet.code, sheet.err) == (0, "")
+    assert "Decide what nobody asked." in sheet.out
+    assert "Is the pair (C, A) observable?" in sheet.out
+    unknown = copy.run("solve", "-", stdin=f"{file}[specification]\ndummy_pole = 1\n")
+    assert unknown.err == "specification.dummy_pole: unknown key; did you mean dummy_poles?\n"
+
+
+def test_a_format_is_one_new_file(copy: Copy) -> None:
+    refused = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
+    assert refused.code == 2
+    copy.add("symobs/render/dummy.py", FORMAT)
+    solved = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
+    assert (solved.code, solved.err) == (0, "")
+    assert solved.out.startswith("observer ")
+    assert solved.out.endswith(" yes\n")
+    assert copy.run("solve", "-", "-o", "page.dum", stdin=PROBLEM).code == 0
+    assert (copy.folder / "page.dum").read_text(encoding="utf-8") == solved.out
+    assert "dummy" in copy.run("solve", "-", "--format", "hug", stdin=PROBLEM).err

@@ -1,0 +1,377 @@
+"""The fields of a result that follow from its answer and are claimed by nothing, computed again in plain fractions."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from itertools import islice
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs.exact import Factored, Matrix, Root, Scalar
+from symobs.exact.kernel.generators import known, symbols_in
+from symobs.expression import parse_scalar
+from symobs.formula import Literal
+from symobs.problem import read
+from tests.support.claims.claims import Setting, conditions_hold
+from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
+from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_regions import region_holds
+from tests.support.independent_algebra.plain import (
+    at_number,
+    hidden,
+    is_hurwitz,
+    is_schur,
+    matrix_at,
+    multiply,
+    observability_rows,
+    random_fraction,
+    seeded,
+    subtract,
+    transposed,
+    value_at,
+)
+from tests.support.independent_algebra.plain_fractions import World, determinant, identity, inverse, plus, times
+from tests.support.independent_algebra.series import CONTEXT, Series, digits
+from tests.support.paths import ROOT
+from tests.support.tampering.mutations import parts_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from _pytest.mark import ParameterSet
+
+    from symobs.result import Result
+    from tests.support.independent_algebra.plain import Point, Polynomial, Rows
+
+FOLDER = ROOT / "worked_examples"
+EVERY: list[tuple[str, Result]] = [
+    (f"{path.stem}: {where}", part)
+    for path in sorted(FOLDER.glob("*.toml"))
+    for result in read(path.read_text(encoding="utf-8")).solve()
+    for where, part in parts_of(result)
+]
+
+
+def has_functions(part: Result) -> bool:
+    """Whether an answer contains exponentials, sines or the like."""
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    return part.in_time or any(known(name) for value in values for name in value.names)
+
+
+PARTS = [(name, part) for name, part in EVERY if not has_functions(part)]
+MOVING = [pytest.param(part, id=name) for name, part in EVERY if has_functions(part)]
+MODES = {"observability": "unobservable_modes", "controllability": "uncontrollable_modes"}
+#: Points where a region is compared with the roots, and those where everything else is.
+MANY, FEW = 400, 3
+
+
+def parts(*tasks: str) -> list[ParameterSet]:
+    return [pytest.param(part, id=name) for name, part in PARTS if not tasks or part.task in tasks]
+
+
+def points(part: Result, count: int) -> Iterator[Point]:
+    """Yield values for every name, small ones with the declared signs, at which the answer exists."""
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix, Factored))]
+    names = {part.plant.variable, *part.plant.field.names}.union(*(value.names for value in values))
+    for seed in range(count):
+        draw = seeded((seed, part.task))
+        point = {name: random_fraction(draw, part.plant.symbols.sign(name)) for name in sorted(names)}
+        try:
+            for value in values:
+                at(value, point)
+        except ZeroDivisionError:
+            continue
+        yield point
+
+
+def at(value: Any, point: Point) -> Any:
+    """Read a value of the kernel at a point; roots as the product of (s − root)."""
+    if isinstance(value, Matrix):
+        return matrix_at(value, point)
+    if isinstance(value, Factored):
+        return value_at(value.unit, point) * prod(value_at(factor, point) ** power for factor, power in value.factors)
+    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+        return [[at(entry, point) for entry in row] for row in value]
+    if isinstance(value, tuple):
+        return product_of_roots(value, point)
+    return None if value is None else value_at(value, point)
+
+
+def product_of_roots(roots: Sequence[Root], point: Point) -> Fraction:
+    """Multiply (s − root) out: pairs of square roots together, roots without closed form as their whole factor."""
+    waiting, total = list(roots), Fraction(1)
+    while waiting:
+        root = waiting.pop()
+        s, centre, radicand = point[root.variable], value_at(root.centre, point), value_at(root.radicand, point)
+        if not root.is_closed:
+            others = [r for r in waiting if r.factor == root.factor and r.index != root.index]
+            partners = list({r.index: r for r in others}.values())
+            assert len(partners) + 1 == root.factor.degree(root.variable)
+            total *= value_at(root.factor, point)
+        elif root.radicand.is_zero:
+            partners, total = [], total * (s - centre)
+        else:
+            partners = [Root(root.factor, root.variable, root.centre, root.radicand, -root.sign)]
+            total *= (s - centre) ** 2 - radicand
+        for partner in partners:
+            waiting.remove(partner)
+    return total
+
+
+def characteristic_at(A: Rows, s: Fraction) -> Fraction:
+    return determinant(subtract(times(s, identity(len(A))), A))
+
+
+def blocks(*rows: tuple[Rows, Rows]) -> Rows:
+    return [left + right for pair in rows for left, right in zip(*pair, strict=True)]
+
+
+def hidden_at(A: Rows, C: Rows, s: Fraction) -> Fraction:
+    """Return the polynomial of A on the kernel of 𝒪."""
+    return at_number(hidden(A, C), s)
+
+
+def computed(part: Result, point: Point) -> dict[str, Any]:
+    """Return what the derived fields must be at a point, from the plant and the claimed answer alone."""
+    m, s = part.plant.matrices, point[part.plant.variable]
+    A, B, C, D = (matrix_at(matrix, point) for matrix in (m.A, m.B, m.C, m.D))
+    answer = {name: at(value, point) for name, value in part.answer.items() if isinstance(value, (Matrix, Scalar))}
+    if part.task in {"observability", "controllability"}:
+        pair = (transposed(A), transposed(B)) if part.task == "controllability" else (A, C)
+        O = observability_rows(*pair)
+        square = determinant(O) if len(O) == len(A) else None
+        return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
+    if part.task in {"pbh", "detectability", "stabilizability"}:
+        dual = part.task == "stabilizability" or part.fields.get("of") == "controllability"
+        fixed = hidden_at(transposed(A), transposed(B), s) if dual else hidden_at(A, C, s)
+        return {"polynomial": characteristic_at(A, s), "fixed_polynomial": fixed}
+    if part.task in {"dual", "decomposition", "canonical_form"}:
+        return {"polynomial": characteristic_at(A, s)} if "polynomial" in part.fields else {}
+    if part.task == "characteristic_polynomial":
+        return {"roots": characteristic_at(A, s)}
+    if part.task == "transfer_function":
+        return {}
+    if part.task == "observer":
+        expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(A, C, s)}
+        if "L" not in answer:
+            return expected | {"A": None, "B_u": None, "B_y": None}
+        L = answer["L"]
+        driven = subtract(B, multiply(L, D)) if m.has_input else None
+        return expected | {"A": subtract(A, multiply(L, C)), "B_u": driven, "B_y": L}
+    if part.task == "state_feedback":
+        closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
+        fixed = hidden_at(transposed(A), transposed(B), s)
+        return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": fixed}
+    if part.task == "time_varying_observability":
+        return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
+    if part.task == "reduced_order_observer":
+        if "F" not in answer:
+            return {}
+        known, L = len(C), answer["L"]
+        moved = [row[known:] for row in multiply(multiply(answer["T"], A), inverse(answer["T"]))]
+        F = subtract(moved[known:], multiply(L, moved[:known]))
+        assert answer["F"] == F
+        fixed = hidden_at(moved[known:], moved[:known], s)
+        return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": fixed}
+    if part.task in {"feedforward", "tracking"}:
+        return errors_of(part, point, A, B, C, s)
+    if part.task == "stability_region":
+        region_holds(part, point)  # type: ignore[arg-type]
+        return {}
+    if part.task == "pole_advice":
+        advice_holds(part, Setting.of(part.plant, {}, point))
+        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)}
+    assert part.task == "compensator"
+    if "F" not in answer:
+        return {}
+    if part.method == "minimal_order":
+        return minimal_order(part, point, answer, (A, B, C, D), s)
+    K, L = answer["K"], answer["L"]
+    BK, LC, zero = multiply(B, K), multiply(L, C), [[Fraction(0)] * len(A) for _ in A]
+    own = subtract(subtract(A, BK), subtract(LC, multiply(L, multiply(D, K))))
+    loop = blocks((subtract(A, BK), BK), (zero, subtract(A, LC)))
+    return {
+        "compensator_matrix": own,
+        "closed_loop_matrix": loop,
+        "closed_loop_matrix_estimate": blocks((A, subtract(zero, BK)), (LC, subtract(subtract(A, BK), LC))),
+        "closed_loop_polynomial": characteristic_at(loop, s),
+        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
+    }
+
+
+def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -> dict[str, Any]:
+    """Return the loop in state and estimation error (of full order), or tracking and estimation error (of minimal order)."""
+    K, L = (at(part.loop.answer[name], point) for name in "KL")
+    closed = subtract(A, multiply(B, K))
+    if part.task == "feedforward":
+        whole = blocks((closed, multiply(B, K)), ([[Fraction(0)] * len(A) for _ in A], subtract(A, multiply(L, C))))
+        return {"closed_loop_matrix": whole, "polynomial": characteristic_at(whole, s), "K": K, "L": L}
+    T, known = at(part.loop.estimator.answer["T"], point), len(C)
+    moved = [row[known:] for row in multiply(multiply(T, A), inverse(T))]
+    through = times(Fraction(-1), multiply(B, [row[known:] for row in multiply(K, inverse(T))]))
+    own = subtract(moved[known:], multiply(L, moved[:known]))
+    errors = blocks((closed, through), ([[Fraction(0)] * len(A) for _ in own], own))
+    return {"error_matrix": errors, "polynomial": characteristic_at(errors, s), "K": K, "L": L}
+
+
+def minimal_order(
+    part: Any, point: Point, answer: dict[str, Any], plant: tuple[Rows, Rows, Rows, Rows], s: Fraction
+) -> dict[str, Any]:
+    """Return the derived fields of a compensator with an observer of minimal order: the loop in (x, z) from u = −K x̂."""
+    A, B, C, D = plant
+    K, L = answer["K"], answer["L"]
+    T = at(part.estimator.answer["T"], point)
+    known = {name: at(part.estimator.answer[name], point) for name in "FGH"}
+    moved = multiply(K, inverse(T))
+    rest = [row[len(C) :] for row in moved]
+    direct = plus([row[: len(C)] for row in moved], multiply(rest, L))
+    W = inverse(subtract(identity(len(K)), multiply(direct, D)))
+    driven = plus(known["G"], multiply(known["H"], D))
+    zero = [[Fraction(0)] * len(A) for _ in L]
+    loop = blocks((subtract(A, multiply(B, K)), multiply(B, rest)), (zero, known["F"]))
+    in_z = blocks(
+        (subtract(A, multiply(B, multiply(direct, C))), times(Fraction(-1), multiply(B, rest))),
+        (multiply(subtract(known["H"], multiply(driven, direct)), C), subtract(known["F"], multiply(driven, rest))),
+    )
+    return {
+        "compensator_matrix": subtract(known["F"], multiply(known["G"], multiply(W, rest))),
+        "direct_term": multiply(W, direct),
+        "closed_loop_matrix": loop,
+        "closed_loop_matrix_estimate": in_z,
+        "closed_loop_polynomial": characteristic_at(loop, s),
+        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
+    }
+
+
+def loop_at(plant: tuple[Rows, Rows, Rows, Rows], F: Any, s: Fraction) -> Any:
+    """Return (I + PF)⁻¹ P, of one input and one output a number."""
+    A, B, C, D = plant
+    P = plus(multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B)), D)
+    F = [[F]] if isinstance(F, Fraction) else F
+    found = multiply(inverse(plus(identity(len(P)), multiply(P, F))), P)
+    return found[0][0] if len(B[0]) == len(C) == 1 else found
+
+
+@pytest.mark.parametrize("part", parts())
+def test_derived_fields_are_what_plain_fractions_give(part: Result) -> None:
+    met = 0
+    for point in points(part, FEW):
+        try:
+            expected = computed(part, point)
+        except ZeroDivisionError:  # s meets a pole
+            continue
+        met += 1
+        for name, value in expected.items():
+            assert at(part.fields[name], point) == value, name
+    assert met >= 2
+
+
+@pytest.mark.parametrize("part", parts("transfer_function"))
+def test_a_transfer_function_is_made_of_its_poles_and_zeros(part: Result) -> None:
+    P = part.answer["transfer_function"]
+    ratios = {
+        value_at(P, point) * at(part.fields["poles"], point) / at(part.fields["zeros"], point)
+        for point in points(part, FEW)
+    }
+    assert len(ratios) == 1
+    assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
+
+
+@pytest.mark.parametrize("part", parts("characteristic_polynomial"))
+def test_factors_multiply_to_the_polynomial(part: Result) -> None:
+    for point in points(part, FEW):
+        product = prod(value_at(factor, point) ** power for factor, power in part.fields["factors"])
+        assert product == value_at(part.fields["polynomial"], point)
+
+
+# -- functions of time -------------------------------------------------------------------------------------------------
+
+
+def points_in_time(part: Result) -> Iterator[Point]:
+    """Yield small values of the parameters, the times and horizons, where the conditions hold and roots are real."""
+    values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
+    names = {"t", "T", *part.plant.field.names}.union(*map(symbols_in, values)) - {"s"}
+    signs = {**part.plant.symbols.signs, "T": "positive"}
+    for seed in range(40 * FEW):
+        draw = seeded((seed, part.task))
+        point = {name: random_fraction(draw, signs.get(name, "real")) / 16 for name in sorted(names)}
+        taken = (
+            (value_at(delta, point) > 0) == (sign == "positive") for delta, sign in part.answer.get("taken", {}).items()
+        )
+        if all(taken) and conditions_hold(part.holds_where, point):
+            yield point
+
+
+@pytest.mark.parametrize("part", MOVING)
+def test_fields_in_time_are_what_numbers_of_many_digits_give(part: Result) -> None:
+    found = list(islice(points_in_time(part), FEW))
+    assert len(found) == FEW
+    for point in found:
+        FUNCTIONS_OF_TIME[part.task](part, Setting.of(part.plant, {}, point))
+
+
+@pytest.mark.parametrize("part", [p for p in MOVING if "covariance" in str(p.id)])
+def test_a_variance_is_least_at_its_best_horizon(part: Any) -> None:
+    """T**4 == 140*r/q: the derivative by T vanishes there, and is negative before and positive behind."""
+    covariance, point = part.fields["covariance"], next(points_in_time(part))
+    for index, text in enumerate(part.fields["best_horizon"]):
+        if text is None:
+            continue
+        power, right = re.fullmatch(r"T\*\*(\d+) == (.*)", text).groups()  # type: ignore[union-attr]
+        best = CONTEXT.root(digits(value_at(parse_scalar(right), point)), int(power))
+
+        def slope(end: Any, index: int = index) -> Any:
+            world = World(0, "s", {}, meanings={**point, "T": Series.make([end])})
+            return world.derivative(Literal(covariance[index, index]), "T")
+
+        assert slope(best) == 0
+        assert slope(best * 9 / 10).parts[0] < 0 < slope(best * 10 / 9).parts[0]
+
+
+def test_a_best_horizon_is_among_the_examples() -> None:
+    assert any(text for p in MOVING for text in p.values[0].fields.get("best_horizon", ()))  # type: ignore[union-attr]
+
+
+# -- stability ---------------------------------------------------------------------------------------------------------
+
+
+def said_stable(part: Result) -> list[tuple[Scalar, str, list[str] | None]]:
+    """Return the polynomials that a result calls stable or not, with verdict and region."""
+    found: list[tuple[Scalar, str, list[str] | None]] = []
+    if "stable" in part.fields:
+        found.append((part.answer["polynomial"], part.fields["stable"], part.fields["stable_if"]))
+    if part.fields.get("F_stable") is not None:
+        F = part.answer["F"]
+        entries = F.entries if isinstance(F, Matrix) else [F]
+        found.append(
+            (prod((entry.denominator for entry in entries), start=Scalar.of(1)), part.fields["F_stable"], None)
+        )
+    return found
+
+
+def holds(text: str, point: Point) -> bool:
+    if text == "False":
+        return False
+    match = re.fullmatch(r"(.*) ([<>]) (.*)", text)
+    assert match is not None
+    left, operator, right = match.groups()
+    difference = value_at(parse_scalar(left), point) - value_at(parse_scalar(right), point)
+    return difference > 0 if operator == ">" else difference < 0
+
+
+@pytest.mark.parametrize("part", parts())
+def test_what_is_called_stable_has_all_its_roots_there(part: Result) -> None:
+    variable = part.plant.variable
+    for polynomial, verdict, region in said_stable(part):
+        seen = set()
+        for point in points(part, MANY if polynomial.names - {variable} else 1):
+            coefficients: Polynomial = [value_at(c, point) for c in polynomial.coefficients(variable)]
+            stable = is_schur(coefficients) if part.plant.is_discrete else is_hurwitz(coefficients)
+            seen.add(stable)
+            if region is not None:
+                assert stable == all(holds(text, point) for text in region)
+        if verdict != "undecided":
+            assert seen == {"yes": {True}, "no": {False}, "conditional": {True, False}}[verdict]

@@ -1,0 +1,113 @@
+"""What the campaign of random problems found wrong, each with its cause."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from symobs.problem import read
+from symobs.render.formats.json import result_object
+
+
+def solved(text: str) -> Any:
+    (result,) = read(text).solve()
+    return result
+
+
+def answered(text: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(json.dumps(result_object(solved(text))))
+    return found
+
+
+def test_a_case_says_what_it_does_not_have() -> None:
+    # A case is read over the fields around it: an error matrix that exists in general was taken to exist there too.
+    found = answered("""
+        task = "tracking"
+        [symbols]
+        a = "nonzero"
+        b = "nonnegative"
+        [plant]
+        A = "[1 a 0; -2 0 0; -3 0 -1]"
+        B = "[0; 2; -3]"
+        C = "[3 a*b 2]"
+        [specification]
+        control_poles = "-3, -2, -4"
+        observer_poles = "-2, -5"
+        reference_matrix = "[-1 -3 0; -2 -2 0; 2 2 -1]"
+    """)
+    (case,) = [case for case in found["cases"] if case["when"] == ["2*a + 1 == 0"]]
+    assert found["error_matrix"] is not None
+    assert case["error_matrix"] is None
+    assert case["polynomial"] is None
+
+
+def test_a_conditional_case_says_under_which_conditions() -> None:
+    # The hidden mode −4/b of the stratum lies in the unit disc for some b only, and the case did not say for which.
+    found = answered("""
+        task = "stabilizability"
+        [symbols]
+        a = "positive"
+        b = "nonnegative"
+        [plant]
+        A = "[0 -1; -2 -a]"
+        B = "[-2; b]"
+        dt = true
+    """)
+    (case,) = found["cases"]
+    assert case["verdict"] == "conditional"
+    assert case["conditions"]
+    assert len(case["conditions"]) == len(case["condition_kinds"])
+
+
+def test_equations_that_are_too_long_leave_a_stratum_undecided() -> None:
+    # An internal limit came out as an exception.
+    found = answered("""
+        task = "detectability"
+        [symbols]
+        a = "negative"
+        b = "real"
+        c = "nonnegative"
+        [plant]
+        A = "[-2 -2 2; 2 a/c 0; 3/2 2 -3]"
+        C = "[1-a -3 a*b]"
+    """)
+    assert found["verdict"] == "undecided"
+
+
+@pytest.mark.parametrize(
+    "polynomial",
+    ["z - 1", "(z - 1) (z - 1) (z - 1) (z + h)", "z^4 + (1 - h) z^3 + (h - 3) z^2 + (1 - h) z + h"],
+)
+def test_a_root_at_1_for_all_parameters_leaves_no_region(polynomial: str) -> None:
+    # The map from the disc to the half-plane carries 1 to infinity: the table began with a zero, which raised.
+    result = solved(f"""
+        task = "stability_region"
+        [symbols]
+        h = "real"
+        [plant]
+        dt = true
+        [specification]
+        polynomial = "{polynomial}"
+    """)
+    assert result.verdict == "no"
+    assert [str(bound) for bound in result.stable_if] == ["False"]
+    assert "Whatever the values, not all roots lie in the open unit disc" in result.to("text")
+
+
+def test_a_constant_compensator_is_stable() -> None:
+    # Parity of poles beyond a zero was asked of a plant that passes its input on, where it proves nothing.
+    found = answered("""
+        task = "compensator"
+        [plant]
+        A = "[0 1; 1 3]"
+        B = "[2; -1]"
+        C = "[1 3]"
+        D = "[-1]"
+        [specification]
+        control_polynomial = "s^2 + 5 s + 7"
+        observer_poles = "-3"
+        observer = "minimal"
+    """)
+    assert (found["F"], found["F_stable"]) == ("8/7", "yes")

@@ -1,0 +1,167 @@
+"""Strata are right at every point: what an answer with parameters says there is the answer of the plant there."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+import symobs
+from symobs.exact import Ideal, Scalar
+from tests.programs.strata_oracle.__main__ import Found, drawn, examine
+from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
+from tests.programs.strata_oracle.points import points_on
+
+a, b = Scalar.symbol("a"), Scalar.symbol("b")
+
+
+def told(result: Any) -> dict[str, Any]:
+    """Return the JSON object of a result."""
+    found: dict[str, Any] = json.loads(result.to_json())["results"][0]
+    return found
+
+
+def verdicts(result: Any, **point: int) -> set[str]:
+    """Return what the branches say that cover a point."""
+    covering = branches(told(result), {name: Fraction(value) for name, value in point.items()})
+    return {branch.verdict for branch in covering or ()}
+
+
+# -- points that were contradicted ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("A", ["[0 b; a+b 0]", "[a b; a+b a]"])
+def test_where_all_is_at_rest_the_gramian_is_the_first_term_of_its_sum(A: str) -> None:
+    # At a = b = 0 A is 0, and W = Σ Aᵏ B Bᵀ (Aᵀ)ᵏ is B Bᵀ = [1; 0][1 0]; the curve of the case passes there.
+    plant = symobs.StateSpace(A, "[b+1; a]", dt=True)
+    found = told(symobs.gramian(plant, horizon="inf", of="controllability"))
+    covering = branches(found, {"a": Fraction(0), "b": Fraction(0)})
+    assert covering is not None
+    assert [branch.verdict for branch in covering] == ["yes"]
+    assert covering[0].fields["matrix"] == [["1", "0"], ["0", "0"]]
+
+
+def test_cases_are_polynomials_and_points_are_points() -> None:
+    found = symobs.reduced_order_observer(
+        symobs.StateSpace(
+            "[0 a^2+b^2 a^2+b^2; a^2+b^2 a*b 0; b^2-a 0 a]",
+            "[-a; 0; 0]",
+            "[a-b b 1; 0 b a^2]",
+            "[1; 0]",
+            dt=True,
+            symbols={"a": "real", "b": "positive"},
+        ),
+        poles=[-1],
+    )
+    assert not [text for text in relations(told(found)) if "/" in text]
+    # b² − a = 0 and A₂₂ = −1 at (−1, 1): in the row space of C the inner pair has the fixed mode −1 there
+    assert ["a + 1 == 0", "b - 1 == 0"] in [case["when"] for case in told(found)["cases"]]
+    for case in told(found)["cases"]:
+        equations = [text for text in case["when"] if "==" in text]
+        assert len(equations) < 6 or case["verdict"] == "undecided"
+
+
+def test_an_unstable_compensator_may_lose_its_pole() -> None:
+    # F = (b + 1)/(z + 2): K = 1 and L = b + 1 place b − 1 and −1.  At b = −1 there is no F, and no pole.
+    found = symobs.compensator(
+        symobs.StateSpace("[b]", "[1]", "[1]", dt=True), control_poles="b - 1", observer_poles="-1"
+    )
+    assert found.fields["F_stable"] == "no"
+    (case,) = found.case_tree
+    assert [str(condition) for condition in case.when] == ["b + 1 == 0"]
+    assert case.result is not None
+    assert case.result.fields["F_stable"] == "yes"
+
+
+def test_zeros_that_a_whole_stratum_has_are_left_undecided() -> None:
+    # P = [s − a², s − b³]/s² has the zero a² = b³ wherever these are the same, and no zero elsewhere.
+    found = symobs.transfer_function(symobs.StateSpace("[0 1; 0 0]", "[1 1; -a^2 -b^3]", "[1 0]"))
+    assert found.fields["zeros"] == ()
+    assert verdicts(found, a=8, b=4) == {"undecided"}
+    assert verdicts(found, a=8, b=5) == {"yes"}
+
+
+def test_no_case_of_the_advice_is_where_a_positive_radius_would_be_0() -> None:
+    # The integrator is not moved, and no pole at distance r > 0 is at 0.
+    plant = symobs.StateSpace("[0 1 0; b 0 0; 0 0 0]", "[0; 1; 0]", "[1 0 0]", symbols={"r": "positive", "b": "real"})
+    found = symobs.pole_advice(plant, radius="r")
+    assert not [case for case in found.case_tree if any("r" in c.expression.names for c in case.when)]
+
+
+def test_a_given_gain_is_told_where_modes_are_fixed() -> None:
+    # At a = 0 the input moves nothing, and s² + 2 s + 3 stays what it is.
+    found = symobs.state_feedback(symobs.StateSpace("[-1 a^2-1; 2 -1]", "[a; 0]"), K="[-2 -1]")
+    (case,) = found.case_tree
+    assert [str(condition) for condition in case.when] == ["a == 0"]
+    assert case.result is not None
+    assert [str(mode) for mode in case.result.fields["fixed_modes"]] == ["-1 + sqrt(2)*I", "-1 - sqrt(2)*I"]
+
+
+# -- finitely many points ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("equations", "dimension", "of_a", "of_b"),
+    [
+        ((a**2 - 2, b - a), 2, a**2 - 2, b**2 - 2),
+        (((a - 1) * (a - 2), (b - a) * (b - 3)), 4, a**2 - 3 * a + 2, b**3 - 6 * b**2 + 11 * b - 6),
+        (((a - 1) ** 2, b * (a - 1), b**3), 4, a**2 - 2 * a + 1, b**3),
+        ((a * b - 1, a + b - 2), 2, a**2 - 2 * a + 1, b**2 - 2 * b + 1),
+    ],
+)
+def test_coordinates_of_finitely_many_points(
+    equations: tuple[Scalar, ...], dimension: int, of_a: Scalar, of_b: Scalar
+) -> None:
+    ideal = Ideal.of(equations)
+    assert (ideal.is_finite, ideal.dimension) == (True, dimension)
+    assert (ideal.minimal_polynomial("a"), ideal.minimal_polynomial("b")) == (of_a, of_b)
+
+
+def test_infinitely_many_points_are_not_counted() -> None:
+    ideal = Ideal.of((a * b,))
+    assert (ideal.is_finite, ideal.dimension, ideal.triangular) == (False, None, None)
+
+
+# -- the oracle itself ---------------------------------------------------------------------------------------------------
+
+
+def test_points_lie_on_the_curves_and_on_their_singular_points() -> None:
+    real = {"a": "real", "b": "real"}
+    cusp = [(point["a"], point["b"]) for point in points_on(["a**2 - b**3", "a - b"], real, 8)]
+    assert (Fraction(0), Fraction(0)) in cusp  # the cusp lies on both
+    assert (Fraction(1), Fraction(1)) in cusp  # they cross there
+    positive = points_on(["a**2 - b**3"], {"a": "negative", "b": "real"}, 8)
+    assert all(point["a"] < 0 for point in positive)
+
+
+def test_a_wrong_verdict_and_a_wrong_field_are_seen() -> None:
+    problem = {"task": "observability", "plant": {"A": "[0 1; 0 0]", "C": "[1 0]"}, "specification": {}}
+    there = told(symobs.observability(symobs.StateSpace("[0 1; 0 0]", None, "[1 0]")))
+    hold(problem, {}, Branch(there, "yes", ()), there)
+    with pytest.raises(Contradiction, match="the verdict is yes, not no"):
+        hold(problem, {}, Branch(there, "no", ()), there)
+    with pytest.raises(Contradiction, match="rank is 2, not 1"):
+        hold(problem, {}, Branch(there | {"rank": 1}, "yes", ()), there)
+
+
+def test_a_point_that_no_branch_covers_is_seen() -> None:
+    answer = {"verdict": "conditional", "conditions": ["a != 0"], "condition_kinds": ["existence"], "cases": []}
+    assert branches(answer, {"a": Fraction(0)}) == []
+    assert [branch.verdict for branch in branches(answer, {"a": Fraction(1)}) or ()] == ["yes"]
+    with pytest.raises(Contradiction, match="a fraction without a value"):
+        branches(answer | {"conditions": ["1/a != 0"]}, {"a": Fraction(0)})
+
+
+#: Plants of order two whose answers come at once.
+SAMPLE = [0, 1, 2, 3, 4, 6, 8, 11, 16]
+
+
+def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
+    found = Found()
+    for seed in SAMPLE:
+        examine(seed, found, seconds=600, most=5)
+    assert not found.wrong, found.table()
+    assert sum(found.counted[task, "points"] for task, _ in [*found.counted]) > 0
+    assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "observability", "controllability", "pbh"}

@@ -1,0 +1,46 @@
+"""A section all of whose lines stand on the page already is not begun again."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import symobs
+from symobs.errors import InputError
+from symobs.problem import read
+from symobs.result.registry import render
+
+TWO = """
+    tasks = ["state_feedback", "tracking"]
+    [plant]
+    A = "[-1 0; 1 -2]"
+    B = "[1 0; 0 1]"
+    C = "[0 1]"
+    [specification]
+    control_poles = "-2, -3"
+    observer_poles = "-5"
+    reference_matrix = "[0 1; -1 0]"
+"""
+
+
+def test_state_feedback_is_told_once() -> None:
+    problem = read(TWO)
+    text = str(render(problem.document(problem.solve()), "text"))
+    headings = re.findall(r"^(\d)\. (.*)$", text, re.MULTILINE)
+    assert [int(number) for number, _ in headings] == list(range(1, len(headings) + 1))
+    assert [title for _, title in headings].count("State feedback") == 1
+    assert headings[-1][1] == "Tracking"
+
+
+@pytest.mark.parametrize(
+    ("observer", "poles", "other"), [("full", [-5], "minimal"), ("minimal", [-5, -6], "full"), ("full", [-5] * 3, "")]
+)
+def test_the_other_order_of_an_observer_is_named_where_its_poles_came(
+    observer: str, poles: list[int], other: str
+) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError) as caught:
+        symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
+    assert caught.value.where == "specification.observer_poles"
+    assert (f'or write observer = "{other}"' in caught.value.repair) == bool(other)

@@ -1,0 +1,335 @@
+"""The worked examples: each file is a test of itself, and a value spoiled in it is noticed."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+from click.testing import CliRunner
+
+from symobs import problem
+from symobs.cli import cli
+from symobs.exact import Matrix
+from symobs.expect import mismatches
+from symobs.expression import parse_matrix, parse_scalar
+from symobs.formula import Literal
+from symobs.result import formats, render
+from tests.support.independent_algebra.second_reader import sympy_scalar
+from tests.support.paths import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
+
+    from symobs.problem import Problem
+    from symobs.result import Result
+    from symobs.result.in_convention import Viewed
+
+FILES = sorted((ROOT / "worked_examples").glob("*.toml"))
+#: The rows of the catalogue of sources; a line may name two that share a heading.
+ROWS = [
+    row.split(" / ")
+    for row in (ROOT / "tests/support/problems/catalogue_ids.txt").read_text(encoding="utf-8").splitlines()
+    if not row.startswith("#")
+]
+#: No example stands for more rows than this.
+MOST_ROWS = 6
+every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+
+
+@cache
+def solved(path: Path) -> tuple[Problem, tuple[Result, ...]]:
+    found = problem.read(path.read_text(encoding="utf-8"), path.name)
+    return found, found.solve()
+
+
+def test_all_rows_are_covered() -> None:
+    covered = {row for path in FILES for row in solved(path)[0].ids}
+    named = {row for line in ROWS for row in line}
+    assert len(ROWS) == 53
+    assert named - covered == set()
+    assert covered - named == set(), "an example names a row that the catalogue does not have"
+
+
+@every_file
+def test_stands_for_few_rows(path: Path) -> None:
+    ids = solved(path)[0].ids
+    assert len(ids) == len(set(ids)) <= MOST_ROWS
+
+
+@every_file
+def test_says_what_it_is(path: Path) -> None:
+    found, _ = solved(path)
+    assert found.title
+    assert found.source
+    assert found.expect
+    assert all(re.fullmatch(r"S[0-4]-[A-Z][\w.-]+", row) for row in found.ids)
+    assert bool(found.ids) == bool(re.match(r"S[0-4]\b", found.source))
+
+
+@every_file
+def test_meets_its_expectations(path: Path) -> None:
+    found, results = solved(path)
+    assert [result.task for result in results] == [task.name for task in found.tasks]
+    assert mismatches(found.viewed(results), found.expect) == []
+
+
+@every_file
+def test_the_command_line_exits_with_success(path: Path, tmp_path: Path) -> None:
+    ran = CliRunner().invoke(cli, ["solve", str(path), "--format", "json", "-o", str(tmp_path / "answers.json")])
+    assert ran.exit_code == 0, ran.output
+    assert ran.output == ""
+    answers = json.loads((tmp_path / "answers.json").read_text(encoding="utf-8"))
+    assert [answer["task"] for answer in answers["results"]] == [task.name for task in solved(path)[0].tasks]
+
+
+def test_the_command_itself() -> None:
+    path = next(path for path in FILES if path.stem == "output_feedback_servo")
+    ran = subprocess.run([sys.executable, "-m", "symobs", "solve", str(path)], capture_output=True, check=True)
+    assert ran.stdout.decode().startswith(r"\documentclass")
+    assert ran.stderr == b""
+
+
+@every_file
+@pytest.mark.parametrize("name", ["latex", "fragment", "text", "json"])
+def test_renders(path: Path, name: str) -> None:
+    found, results = solved(path)
+    page = render(found.document(results), name)
+    assert isinstance(page, str)
+    if name == "json":
+        whole = json.loads(page)
+        assert (whole["schema"], whole["title"]) == ("symobs/1", found.title)
+        return
+    assert name == "fragment" or found.title.split()[0] in page
+    braces = r"|[{}]" if name == "text" and "{" not in found.convention.brackets else ""
+    assert not re.search(r"\bNone\b|Scalar\(|Matrix\(|<symobs" + braces, page)
+    assert "│ =" not in page, "a left side is not an answer"
+    for result in results:
+        assert result.derivation.check() is not None
+    assert page == render(found.document(found.solve()), name) or path.stem == "cart_pole"
+
+
+def test_boxes_of_a_drawing_hold_fractions() -> None:
+    """The widths of the boxes are those of fractions, so written as quotients in a line they would overlap."""
+    found, results = solved(next(path for path in FILES if path.stem == "output_feedback_servo"))
+    page = str(render(found.document(results), "fragment"))
+    assert r"{$\displaystyle \frac{1}{s(s+1)}$}" in page
+    assert r"{$\displaystyle \frac{319s+400}{s^2+23s+161}$}" in page
+
+
+# -- a spoiled expectation is noticed ----------------------------------------------------------------------------------
+
+
+def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
+    """Yield a value of `[expect]` with each of its entries changed in turn."""
+    if isinstance(value, bool):
+        yield not value
+    elif isinstance(value, int):
+        yield value + 1
+    elif isinstance(value, dict):
+        for name, entry in value.items():
+            for change in spoiled(entry, name, names):
+                yield value | {name: change}
+    elif key in {"intervals", "intervals_decimal"}:
+        yield from spoiled_intervals(value)
+    elif isinstance(value, list) and (not value or not isinstance(value[0], list)):
+        yield from spoiled_list(value, key, names)
+    elif value in ("yes", "no", "conditional"):
+        yield from (other for other in ("yes", "no", "conditional") if other != value)
+    elif isinstance(value, list) or value.startswith("["):
+        others = {name: sign for name, sign in names.items() if name != "t"} | {"s": "real"}
+        read = parse_matrix(value, others, variable="t", functions=True)
+        rows = [[str(entry) for entry in row] for row in read.rows]
+        for i, row in enumerate(rows):
+            for j, entry in enumerate(row):
+                if key == "kernel" and entry != "0":
+                    continue  # it may remain a multiple of the vector
+                yield [*rows[:i], [*row[:j], f"{entry} + 1", *row[j + 1 :]], *rows[i + 1 :]]
+    else:
+        yield f"{value} + 1"
+
+
+def spoiled_intervals(value: list[list[str]]) -> Iterator[list[list[str]]]:
+    """Yield a list of pairs with one end moved or at infinity, and with a pair left out or added."""
+    for i, pair in enumerate(value):
+        for j, end in enumerate(pair):
+            moved = "1234" if end in {"oo", "-oo"} else f"{end} + 1"
+            for other in {moved, "oo" if j else "-oo"} - {end}:
+                yield [*value[:i], [*pair[:j], other, *pair[j + 1 :]], *value[i + 1 :]]
+        yield [*value[:i], *value[i + 1 :]]
+    yield [*value, ["1234", "1235"]]
+
+
+def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:
+    """Yield a list of roots, relations or vectors with one entry changed, left out or added."""
+    other = {"!=": "==", ">": "<", "<": ">", "==": "!="}
+    relations = key in {"conditions", "stable_if", "best_horizon"}
+    if not relations:
+        yield [*value, [1, 0, 0] if key == "kernel" else -1234]
+    elif names:
+        yield [*value, f"{next(iter(names))} != 1234"]
+    for i, entry in enumerate(value):
+        changes: list[Any] = [-1234]
+        if isinstance(entry, dict):
+            changes += spoiled(entry, key, names)
+        if entry == "False":
+            changes = [f"{next(iter(names), 1)} > 0"]
+        elif relations:
+            left, operator, right = re.split(r"\s(!=|<|>|==)\s", entry)
+            changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]
+        for change in changes:
+            yield [*value[:i], change, *value[i + 1 :]]
+        yield [*value[:i], *value[i + 1 :]]
+
+
+def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the file's expectations, each with one change, and the place of the change."""
+    assert found.plant is not None
+    names, whole = found.plant.symbols.signs, dict(found.expect)
+    names = {**names, "t": "real", "t0": "real"} if found.plant.is_time_varying else names
+    tasks = {task.name for task in found.tasks}
+    for key, entry in whole.items():
+        table = entry if key in tasks else {key: entry}
+        for name, value in table.items():
+            for change in spoiled(value, name, names):
+                changed = {**table, name: change}
+                yield (f"{key}.{name}", whole | {key: changed}) if key in tasks else (name, whole | changed)
+
+
+@every_file
+def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[str, object], None]) -> None:
+    found, solutions = solved(path)
+    results = found.viewed(solutions)
+    count = 0
+    for place, expect in every_spoiled(found):
+        lines = mismatches(results, expect)
+        if is_member(results[-1], place, expect):  # as good an answer; at most what follows from it differs
+            assert not any(f"expect.{place}:" in line for line in lines)
+            continue
+        others = [line for line in lines if f"expect.{place}:" not in line]
+        assert len(lines) - len(others) == 1, (place, expect)
+        assert not others or is_of_family(results[-1], place), others  # they followed from the gain expected
+        count += 1
+    record_property("spoiled values", count)
+    print(f"{path.stem}: {count} spoiled values, all noticed")  # noqa: T201 - shown by pytest -s
+    assert count > len(found.expect) / 2
+
+
+def is_of_family(viewed: Viewed, place: str) -> bool:
+    """Tell whether an expected answer is a gain that is not unique."""
+    letter, _ = viewed.standard(place.rpartition(".")[2])
+    return letter in {"K", "L"} and viewed.result.fields.get("family") is not None
+
+
+def is_member(viewed: Viewed, place: str, expect: Mapping[str, Any]) -> bool:
+    """Tell whether a spoiled gain meets the claim all the same, there being many: by SymPy's own determinant."""
+    if not is_of_family(viewed, place):
+        return False
+    result, own = viewed.result, place.rpartition(".")[2]
+    letter, sign = viewed.standard(own)
+    entry = expect.get(result.task, expect)[own]
+    gain = sign * rows(*[[sympy_scalar(parse_scalar(x), {}) for x in row] for row in entry])
+    part, variable = part_with(result, letter), sympy.Symbol(result.plant.variable)
+    A, moved = part.plant.A, gain * part.plant.C if letter == "L" else part.plant.B * gain
+    if part.task == "reduced_order_observer":
+        known = part.plant.C.rows
+        whole = part.T * A * part.T.inv()
+        A, moved = whole[known:, known:], gain * whole[:known, known:]
+    found = (variable * sympy.eye(A.rows) - A + moved).det(method="berkowitz")
+    return bool(sympy.expand(found - part.polynomial) == 0)
+
+
+def part_with(result: Any, letter: str) -> Any:
+    """Return the design that a gain belongs to."""
+    if result.task != "compensator":
+        return result
+    return result.feedback if letter == "K" else result.estimator
+
+
+def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:
+    path = next(path for path in FILES if path.stem == "servo_observer")
+    text = path.read_text(encoding="utf-8")
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(text.replace('L = "[19; 81]"', 'L = "[19; 82]"'), encoding="utf-8")
+    ran = CliRunner().invoke(cli, ["solve", str(wrong), "--format", "text"])
+    assert ran.exit_code == 4
+    assert "expect.L: expected [19; 82], found [19; 81]" in ran.stderr
+
+
+def test_each_format_is_rendered_here() -> None:
+    assert set(formats()) >= {"latex", "fragment", "text", "json"}
+
+
+# -- the pages of the source's examples --------------------------------------------------------------------------------
+
+s = sympy.Symbol("s")
+
+
+def values_in_order(item: object) -> Iterator[Any]:
+    """Yield every value written out in a derivation, in reading order, as SymPy objects."""
+    if isinstance(item, Literal):
+        value = item.value
+        if isinstance(value, Matrix):
+            yield sympy.ImmutableMatrix(*value.shape, [sympy_scalar(entry, {}) for entry in value.entries])
+        else:
+            yield sympy.together(sympy_scalar(value, {}))
+    elif isinstance(item, (tuple, list)):
+        for part in item:
+            yield from values_in_order(part)
+    elif hasattr(item, "__dataclass_fields__"):
+        # A sentence stands before the display it belongs to.
+        for name in sorted(item.__dataclass_fields__, key=lambda name: name not in {"sentence", "title"}):
+            yield from values_in_order(getattr(item, name))
+
+
+def rows(*entries: list[Any]) -> Any:
+    return sympy.ImmutableMatrix(list(entries))
+
+
+EXAMPLE_4_1 = [
+    rows([1, 0], [0, 1]),  # 𝒞 of (Aᵀ, Cᵀ)
+    s**2 + 20 * s + 100,
+    s**2 + s,
+    rows([1, 1], [1, 0]),
+    rows([0, 1], [1, -1]),
+    rows([100, 19]),
+    rows([19, 81]),
+    rows([19], [81]),
+    rows([-19, 1], [-81, -1]),
+    rows([0], [1]),
+    rows([19], [81]),
+]
+EXAMPLE_4_2 = [
+    s**2 + 4 * s + 4,
+    rows([4, 3]),
+    rows([19], [81]),
+    rows([-19, 1], [-85, -4]),
+    rows([s + 19, -1], [85, s + 4]),
+    s**2 + 23 * s + 161,
+    rows([s + 4, 1], [-85, s + 19]),
+    rows([19 * s + 157], [81 * s - 76]),
+    (319 * s + 400) / (s**2 + 23 * s + 161),
+    rows([0, 1, 0, 0], [-4, -4, 4, 3], [0, 0, -19, 1], [0, 0, -81, -1]),
+    rows([0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]),
+    s**2 + 23 * s + 161,
+    s**4 + 24 * s**3 + 184 * s**2 + 480 * s + 400,
+]
+
+
+@pytest.mark.parametrize(("stem", "wanted"), [("servo_observer", EXAMPLE_4_1), ("output_feedback_servo", EXAMPLE_4_2)])
+def test_values_stand_on_the_page_in_the_order_of_the_source(stem: str, wanted: list[Any]) -> None:
+    path = next(path for path in FILES if path.stem == stem)
+    (result,) = solved(path)[1]
+    shown = values_in_order(result.derivation.steps)
+    for value in wanted:
+        assert any(other == value or sympy.expand(other - value) == 0 for other in shown if alike(other, value)), value
+
+
+def alike(left: Any, right: Any) -> bool:
+    return getattr(left, "shape", None) == getattr(right, "shape", None)

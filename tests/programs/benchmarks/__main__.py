@@ -1,0 +1,61 @@
+"""How fast symobs is beside giac, Maxima, PARI, SymPy, QEPCAD and FLINT itself: `python -m tests.programs.benchmarks` prints a table.
+
+Run it in the top folder of the checkout, on a quiet machine, with giac (Debian package `xcas`), `maxima`, gp (`pari-gp`)
+and `qepcad` installed; what is missing is left out.  `--only cart-pole` runs one group, `--repetitions 15` repeats more
+often, `--markdown` prints the table as Markdown.  Each file in `groups/` is a group.
+
+Every figure is a median over repetitions in which all subjects take turns, so a ratio compares runs under one load.
+symobs is timed in process from the text of the plant to the checked result, with symbol names no earlier repetition
+used.  A system in a process of its own is charged its processor time (its wall time where that is less) minus that of
+the same system doing nothing.  The best formulation for giac and Maxima is searched among the files in `giac/` and
+`maxima/`; each is first held to the answer of symobs: equal K, L and F, and F reduced as far.  Only start-up is a matter of
+wall time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import pkgutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tests.programs.benchmarks.measuring import Settings, markdown, table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def groups() -> dict[str, Any]:
+    """Return the modules of the groups by their names, in the order of the table."""
+    folder = Path(__file__).parent / "groups"
+    found = [
+        importlib.import_module(f"tests.programs.benchmarks.groups.{m.name}")
+        for m in pkgutil.iter_modules([str(folder)])
+    ]
+    found.sort(key=lambda module: module.PLACE)
+    return {module.__name__.rpartition(".")[2].replace("_", "-"): module for module in found}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the groups asked for and print the table."""
+    known = groups()
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.programs.benchmarks", description="Print one table of ratios."
+    )
+    parser.add_argument("--only", choices=known, action="append", help="run this group; may be repeated")
+    parser.add_argument("--repetitions", type=int, default=7, help="how often each subject runs (7)")
+    parser.add_argument("--limit", type=float, default=60, help="seconds another system may take (60)")
+    parser.add_argument("--markdown", action="store_true", help="print the table as Markdown")
+    given = parser.parse_args(arguments)
+    settings = Settings(given.repetitions, given.limit)
+    rows = []
+    for name in given.only or known:
+        print(f"{name} …", file=sys.stderr)
+        rows += list(known[name].rows(settings))
+    print((markdown if given.markdown else table)(rows))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,144 @@
+"""The stub of the package, from the registry and from what the worked examples answer: `python -m tests.programs.typed_face`.
+
+Type checkers read `symobs/__init__.pyi`; at run time tasks are discovered, so that a new one is files in one place.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from typing import Any
+
+from symobs import errors
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.problem import read
+from symobs.result import Result, Task, tasks
+from tests.support.paths import ROOT
+
+STUB = ROOT / "symobs" / "__init__.pyi"
+#: What a keyword of each kind takes.
+KINDS = {
+    "Poles": "str | Sequence[_Number]",
+    "PolynomialText": "str | Expr",
+    "GainText": "_Matrix",
+    "MatrixText": "_Matrix",
+    "IntervalText": "str | Sequence[_Number]",
+    "SignalText": "_Number | _Matrix",
+    "TimeFunctions": "_Number | _Matrix",
+    "Name": "str",
+    "Horizon": "_Number",
+    "Intensity": "_Number | _Matrix",
+    "Sign": "int",
+    "Entries": "str | Sequence[object]",
+    "Quantity": "_Number",
+    "Names": "str | Sequence[str]",
+}
+HEAD = '''"""What type checkers and editors know of `symobs`; written by `python -m tests.programs.typed_face`, held to it by a test."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from sympy import Expr, ImmutableMatrix
+from sympy.matrices import MatrixBase
+
+'''
+NAMES = """
+_Number: TypeAlias = str | int | Fraction | Expr
+_Matrix: TypeAlias = str | Sequence[object] | MatrixBase
+
+TASK_PACKAGES: tuple[str, ...]
+FORMAT_PACKAGE: str
+__version__: str
+"""
+
+
+def answered() -> dict[str, list[Result]]:
+    """The results of the worked examples, by task."""
+    found: dict[str, list[Result]] = {name: [] for name in sorted(tasks())}
+    for path in sorted((ROOT / "worked_examples").glob("*.toml")):
+        for result in read(path.read_text(encoding="utf-8"), path.name, path.parent).solve():
+            found[result.task].append(result)
+    return found
+
+
+def type_of(value: Any) -> str:
+    """What a type checker is told of a field, from one of its values; nothing of None, which stands for none."""
+    if value is None:
+        return ""
+    for kind, text in _TYPES.items():
+        if isinstance(value, kind):
+            return text
+    if isinstance(value, (list, tuple)):
+        rows = [row for row in value if isinstance(row, tuple) and row and isinstance(row[0], Factored)]
+        return "ImmutableMatrix" if rows and len(rows) == len(value) else "tuple[Any, ...]"
+    return "Any"
+
+
+_TYPES: dict[Any, str] = {
+    Matrix: "ImmutableMatrix",
+    (Scalar, Complex, Factored, Root, Shifted): "Expr",
+    bool: "bool",
+    int: "int",
+    str: "str",
+    Mapping: "Mapping[str, Any]",
+}
+
+
+def shared_class(results: list[Result]) -> type[Result]:
+    """The nearest class that all results of a task belong to."""
+    first, *others = dict.fromkeys(type(result) for result in results)
+    return next(kind for kind in first.__mro__ if all(issubclass(other, kind) for other in others))
+
+
+def own_class(task: Task) -> str:
+    """What type checkers call the result of a task."""
+    return "_" + "".join(word.title() for word in task.name.split("_")) + "Result"
+
+
+def result_class(task: Task, results: list[Result]) -> tuple[str, str]:
+    """The import of a task's result class, and the class with its answers as properties."""
+    kind = shared_class(results)
+    own = own_class(task)
+    types: dict[str, set[str]] = {}
+    for result in results:
+        for name, value in result.fields.items():
+            if not hasattr(kind, name):
+                types.setdefault(name, set()).add(type_of(value))
+    lines = [f"class {own}(_{kind.__name__}):", f'    """What `{task.name}` returns."""', ""]
+    for name, found in types.items():
+        told = " | ".join(sorted(found - {""})) or "Any"
+        lines += ["    @property", f"    def {name}(self) -> {told}: ..."]
+    return f"from {kind.__module__} import {kind.__name__} as _{kind.__name__}", "\n".join(lines)
+
+
+def signature(task: Task) -> str:
+    """A task as a function of the package."""
+    parameters = inspect.signature(task.function).parameters
+    by_place = [str(p) for p in parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
+    plant = ", ".join(text.replace("'", "") for text in by_place)
+    keywords = []
+    for name, kind in task.keywords.items():
+        default = parameters[name].default
+        optional = " | None" if default is None else ""
+        keywords.append(f"    {name}: {KINDS[kind]}{optional} = {default!r},".replace("'", '"'))
+    own = own_class(task)
+    told = f'    """{task.summary}"""'
+    star = "    *,\n" if keywords else ""
+    return f"def {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}:\n{told}"
+
+
+def stub() -> str:
+    """The whole stub."""
+    found = answered()
+    classes = {name: result_class(tasks()[name], results) for name, results in found.items()}
+    raised = sorted(name for name in vars(errors) if isinstance(getattr(errors, name), type) and name[0].isupper())
+    raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
+    imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
+    imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
+    bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
+    return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
+
+
+if __name__ == "__main__":
+    STUB.write_text(stub(), encoding="utf-8")

@@ -1,0 +1,53 @@
+"""How the contract tests ask each task: what it takes besides poles, and which plants it is for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.result import tasks
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.system import StateSpace
+
+#: Tasks and methods some of whose polynomials have one root less than the plant has states; which.
+FEWER = {
+    "reduced_order_observer": ("",),
+    "compensator/minimal_order": ("observer_",),
+    "tracking": ("observer_",),
+}
+#: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
+OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
+#: Methods that answer another question than the other methods of their task.
+OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
+#: Which of a task's keywords for quantities are asked for, and with what: not all of them go together.
+QUANTITIES = {"pole_advice/dominant_pair": {"settling_time": "2", "overshoot": "1/20"}}
+QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}
+
+
+def fewer(asked: str, keyword: str) -> int:
+    """Return by how many roots the polynomial of a keyword is shorter than the order, for `task` or `task/method`."""
+    prefix = keyword.removesuffix("poles").removesuffix("polynomial")
+    return int(any(prefix in FEWER.get(name, ()) for name in (asked, asked.partition("/")[0])))
+
+
+def specification(asked: str, poles: Any) -> dict[str, Any]:
+    """Return a specification: every keyword that takes poles gets as many as it needs; others something plain."""
+    values = {"Poles": poles, "TimeFunctions": "0", "Intensity": "1"}
+    kinds = tasks()[asked.partition("/")[0]].keywords.items()
+    given = {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
+    asked_for = {name: factors(asked, name, v) if v is poles and poles else v for name, v in given.items()}
+    return asked_for | QUANTITIES.get(asked, {})
+
+
+def factors(asked: str, keyword: str, listed: Sequence[Any]) -> Sequence[Any]:
+    """Return as many poles, or factors of a desired polynomial, as a keyword needs."""
+    return listed[: len(listed) - fewer(asked, keyword)]
+
+
+def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
+    """Whether a task can be asked about a plant at all: there is something left to estimate, and pairs stay whole."""
+    if not {asked, asked.partition("/")[0]} & FEWER.keys():
+        return True
+    return plant.order > 1 and not plant.matrices.C.is_zero and "i" not in poles[-1]

@@ -1,0 +1,319 @@
+"""The worked examples in functions of time written out a second time, with what their letters and answers must be worth.
+
+Nothing in this file asks symobs for anything.  Integrals are left to quadrature.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import sympy
+from sympy import Matrix, Rational, cos, exp, sin, sqrt, symbols
+
+from tests.support.problems.problems_by_hand import (
+    b,
+    characteristic,
+    fixed,
+    observability_matrix,
+    omega,
+    response,
+    s,
+    servo,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+t, t0, T, sigma, x10, x20, q, r, a = symbols("t t0 T sigma x10 x20 q r a")
+
+
+def exponential(A: Any, time: Any) -> Any:
+    """Return e^{A t}: for two states by their mean rate and half the distance of their rates, else by Jordan's form."""
+    if A.rows == 1:
+        return Matrix([[exp(A[0, 0] * time)]])
+    if A.rows == 2:
+        mean = A.trace() / 2
+        square, shifted = sympy.expand(A.det() - mean**2), A - mean * sympy.eye(2)
+        if square == 0:
+            return exp(mean * time) * (sympy.eye(2) + shifted * time)
+        turn = sqrt(square)
+        return exp(mean * time) * (sympy.eye(2) * cos(turn * time) + shifted * (sin(turn * time) / turn))
+    return sympy.Matrix(A * time).exp()
+
+
+def integral(value: Any, name: Any, lower: Any, upper: Any) -> Any:
+    return value.applyfunc(lambda entry: sympy.Integral(entry, (name, lower, upper)))
+
+
+def generic(value: Any) -> Any:
+    """Return what an integral is where no rate vanishes, which SymPy gives first."""
+    return value.args[0].expr if isinstance(value, sympy.Piecewise) else value
+
+
+@dataclass(frozen=True)
+class InTime:
+    """A worked example by hand: the plant, and what is asked about it."""
+
+    A: Any
+    C: Any
+    B: Any = None
+    signs: Mapping[str, str] = field(default_factory=dict)
+    horizon: Any = T
+    output: Any = None
+    input: Any = None
+    x0: Any = None
+    Q: Any = None
+    R: Any = None
+
+    def at(self, values: Mapping[str, Any]) -> InTime:
+        """Return the problem with parameters replaced."""
+        replaced = {sympy.Symbol(name): value for name, value in values.items()}
+        return replace(self, A=self.A.subs(replaced), C=self.C.subs(replaced))
+
+    # -- answers -------------------------------------------------------------------------------------------------------
+
+    @property
+    def gramian(self) -> Any:
+        """Return W, over all time by Lyapunov's equation."""
+        seen = self.C * exponential(self.A, t)
+        if self.horizon != sympy.oo:
+            return integral(seen.T * seen, t, 0, self.horizon)
+        unknown = Matrix(self.A.rows, self.A.rows, symbols(f"p:{self.A.rows**2}"))
+        solved = sympy.solve(list(self.A.T * unknown + unknown * self.A + self.C.T * self.C), list(unknown))
+        return unknown.subs(solved)
+
+    @property
+    def forced(self) -> Any:
+        """Return the motion from rest."""
+        if self.input is None:
+            return sympy.zeros(self.A.rows, 1)
+        return integral(exponential(self.A, t - sigma) * self.B * self.input, sigma, 0, t)
+
+    @property
+    def moment(self) -> Any:
+        return integral((self.C * exponential(self.A, t)).T * self.free, t, 0, self.horizon)
+
+    @property
+    def free(self) -> Any:
+        """Return the output of the initial state alone: C e^{At} x₀."""
+        return self.C * exponential(self.A, t) * self.x0
+
+    @property
+    def finite_sum(self) -> Any:
+        O = observability_matrix(self.A, self.C)
+        return O.T * O
+
+    @property
+    def spread(self) -> Any:
+        """Return V = e^{Aᵀt} W(T − t) B."""
+        rest = replace(self, horizon=self.horizon - t).gramian_by(sigma)
+        return exponential(self.A, t).T * rest * self.B
+
+    def gramian_by(self, name: Any) -> Any:
+        seen = self.C * exponential(self.A, name)
+        return (seen.T * seen).applyfunc(
+            lambda entry: generic(sympy.integrate(sympy.expand(entry), (name, 0, self.horizon)))
+        )
+
+    @property
+    def parts(self) -> dict[str, Any]:
+        """Return the integrals of the covariance and its parts."""
+        W = self.gramian_by(t)
+        S_R = W * self.R
+        S_Q = integral(self.spread * self.Q * self.spread.T, t, 0, self.horizon)
+        return {"W": W, "S_R": S_R, "S_Q": S_Q, "Cov_R": W.inv() * S_R * W.inv(), "Cov_Q": W.inv() * S_Q * W.inv()}
+
+    def letters(self) -> dict[str, Any]:
+        """Return what the letters of a page must be worth."""
+        known: dict[str, Any] = {"A": self.A, "C": self.C, "chi": characteristic(self.A, s), "x'": {"x": self.A}}
+        known |= {"exp_At": exponential(self.A, t), "M": self.finite_sum, "O": observability_matrix(self.A, self.C)}
+        known |= {"y": {"x": self.C}}
+        if self.B is not None:
+            known |= {"B": self.B, "x'": {"x": self.A, "u": self.B}, "P": response(self.A, self.B, self.C, s)}
+        if self.R is not None:
+            parts = self.parts
+            known |= parts | {"Q": self.Q, "R": self.R, "V_t": self.spread, "Cov": parts["Cov_R"] + parts["Cov_Q"]}
+            known |= {"Phi_m": exponential(self.A, -t), "W_t": replace(self, horizon=t).gramian_by(sigma)}
+            known |= {f"var_{k + 1}": known["Cov"][k, k] for k in range(self.A.rows)}
+            return known
+        known |= {"W": self.gramian}
+        if self.horizon != sympy.oo:
+            known |= {"Phi_T": exponential(self.A, self.horizon)}
+        if self.output is not None:
+            known |= {"y_t": self.output, "x_0": self.x0, "y_0": self.free, "r_0": self.moment}
+            known |= {"u_t": self.input, "x_f": self.forced}
+            known |= {"W_t": replace(self, horizon=t).gramian_by(sigma)}
+            known |= {"det_W": known["W_t"].det()}
+        return known
+
+    def answers(self, task: str) -> dict[str, Any]:
+        """Return every field of a task's answer by the textbook's formula."""
+        O = observability_matrix(self.A, self.C)
+        match task:
+            case "matrix_exponential":
+                return {"matrix": exponential(self.A, t)}
+            case "gramian":
+                W = self.gramian
+                rank = {"rank": O.rank(), "kernel": tuple(tuple(v) for v in O.nullspace())}
+                return {"matrix": W, "determinant": W.det(), "finite_sum": self.finite_sum, **rank}
+            case "initial_state":
+                return {"x0": self.x0, "kernel": tuple(tuple(v) for v in O.nullspace())}
+            case "initial_state_covariance":
+                parts = self.parts
+                whole = parts["Cov_R"] + parts["Cov_Q"]
+                return {"covariance": whole, "input_part": parts["Cov_Q"], "output_part": parts["Cov_R"]}
+            case "characteristic_polynomial":
+                chi = characteristic(self.A, s)
+                return {"polynomial": chi, "factors": chi, "roots": chi}
+            case "transfer_function":
+                P = response(self.A, self.B, self.C, s)
+                return {"transfer_function": P, "poles": P.as_numer_denom()[1], "zeros": P.as_numer_denom()[0]}
+        assert task == "observability"
+        hidden = sympy.roots(fixed(self.A, self.C, s), s, multiple=True)
+        found = {
+            "matrix": O,
+            "rank": O.rank(),
+            "kernel": (),
+            "unobservable_modes": tuple(hidden),
+            "determinant": O.det(),
+        }
+        return found | {"missing_measurements": ()}
+
+    def points(self, name: str, count: int) -> Iterator[dict[Any, Any]]:
+        """Yield small points that the declared signs allow, the same in every run."""
+        chance = random.Random(name)  # noqa: S311 - points that repeat
+        for _ in range(count):
+            point = {sympy.Symbol(parameter): Rational(chance.randint(1, 40), 16) for parameter in self.signs}
+            yield {k: -v if self.signs[str(k)] == "real" and chance.random() < 0.5 else v for k, v in point.items()}
+
+
+tank = {"A": Matrix([[Rational(-1, 25), Rational(1, 100)], [Rational(1, 25), Rational(-1, 25)]])}
+tank |= {"B": Matrix([1, 0]), "C": Matrix([[0, 1]])}
+plain = {"T": "positive"}
+states = plain | {"x10": "real", "x20": "real"}
+
+PROBLEMS_IN_TIME = {
+    "servo_gramian": InTime(servo["A"], servo["C"], signs=plain),
+    "third_order_gramian": InTime(Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), signs=plain),
+    "third_order_gramian_period": InTime(
+        Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
+    ),
+    "double_integrator_error": InTime(Matrix([[-3, 1], [-2, 0]]), Matrix([[1, 0]])),
+    "third_order_plant_gramian": InTime(
+        Matrix([[-7, 1, 15], [-2, 0, 5], [-2, 0, 4]]), Matrix([[1, 0, -2]]), horizon=sympy.oo
+    ),
+    "dual_gramian": InTime(Matrix([[0, 1], [0, 0]]), Matrix([[1, 0]]), signs=plain),
+    "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
+    "pendulum_gramian": InTime(
+        Matrix([[0, 1], [-(omega**2), -b]]),
+        Matrix([[0, 1]]),
+        signs={"omega": "positive", "b": "nonnegative", "T": "positive"},
+    ),
+    "pendulum_overdamped_gramian": InTime(Matrix([[0, 1], [-2, -3]]), Matrix([[0, 1]]), signs=plain),
+    "tanks": InTime(**tank, horizon=sympy.oo),
+    "tanks_initial_state": InTime(
+        **tank,
+        signs=states,
+        input=Matrix([Rational(3, 10)]),
+        output=Matrix([10 + (x10 + x20 / 2 - 15) * exp(-t / 50) + (-x10 + x20 / 2 + 5) * exp(-3 * t / 50)]),
+        x0=Matrix([x10, x20]),
+    ),
+    "servo_initial_state": InTime(
+        **servo,
+        signs=states,
+        input=Matrix([1]),
+        output=Matrix([x10 + x20 * (1 - exp(-t)) + t - 1 + exp(-t)]),
+        x0=Matrix([x10, x20]),
+    ),
+    "double_integrator_noise": InTime(
+        Matrix([[0, 1], [0, 0]]),
+        Matrix([[1, 0]]),
+        Matrix([0, 1]),
+        signs={"q": "positive", "r": "positive", "T": "positive"},
+        Q=q,
+        R=r,
+    ),
+    "lag_noise": InTime(
+        Matrix([[-a]]),
+        Matrix([[1]]),
+        Matrix([[1]]),
+        signs={"a": "positive", "q": "positive", "r": "positive", "T": "positive"},
+        Q=q,
+        R=r,
+    ),
+}
+
+
+# -- plants in which the time stands -----------------------------------------------------------------------------------
+
+DECAYED, TURNED = exp(-t) * Matrix([[1, t + t**2 / 2]]), (t**2 - t0**2) / 2
+#: What the letters of pages about time-varying plants must be worth.
+VARYING: dict[str, dict[str, Any]] = {
+    "time_varying_integrator": {
+        "A": Matrix([[0, t], [0, 0]]),
+        "B": Matrix([0, 1]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[0, t], [0, 0]]), "u": Matrix([0, 1])},
+        "y": {"x": Matrix([[1, 0]])},
+        "M": Matrix([[0, (t**2 - t0**2) / 2], [0, 0]]),
+        "Phi": Matrix([[1, (t**2 - t0**2) / 2], [0, 1]]),
+        "W": Matrix([[T, T**3 / 6], [T**3 / 6, T**5 / 20]]),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[0, t]]),
+        "O": sympy.diag(1, t),
+        "t_start": sympy.Integer(0),
+        "t_end": T,
+        "y_t": a + b * t**2 / 2 + t**3 / 3,
+        "u_t": sympy.Integer(1),
+        "x_u": Matrix([t**3 / 3, t]),
+        "xi": a + b * t**2 / 2,
+        "x_0": Matrix([a, b]),
+        "x_t": Matrix([a + b * t**2 / 2 + t**3 / 3, b + t]),
+    },
+    "frozen_time_misleads": {
+        "A": Matrix([[0, 1], [0, 0]]),
+        "C": Matrix([[1, -t]]),
+        "x'": {"x": Matrix([[0, 1], [0, 0]])},
+        "y": {"x": Matrix([[1, -t]])},
+        "M": Matrix([[0, t - t0], [0, 0]]),
+        "Phi": Matrix([[1, t - t0], [0, 1]]),
+        "W": Matrix([[T, -T], [-T, T]]),
+        "N_0": Matrix([[1, -t]]),
+        "N_1": Matrix([[0, 0]]),
+        "O": Matrix([[1, -t], [0, 0]]),
+        "V": Matrix([t, 1]),
+        "X": Matrix([0]),
+        "v": Matrix([1, 1]),
+        "t_start": sympy.Integer(1),
+        "t_end": 1 + T,
+    },
+    "time_varying_decay": {
+        "A": Matrix([[-1, 1 + t], [0, -1]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[-1, 1 + t], [0, -1]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": exp(t0 - t) * Matrix([[1, t - t0 + (t**2 - t0**2) / 2], [0, 1]]),
+        "W": integral(DECAYED.T * DECAYED, t, 0, T).doit(),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[-1, 1 + t]]),
+        "O": Matrix([[1, 0], [-1, 1 + t]]),
+        "t_start": sympy.Integer(0),
+        "t_end": T,
+        "y_t": exp(-t) * (a + b * t + b * t**2 / 2),
+        "xi": exp(-t) * (a + b * t + b * t**2 / 2),
+        "x_0": Matrix([a, b]),
+        "x_t": exp(-t) * Matrix([a + b * (t + t**2 / 2), b]),
+    },
+    "time_varying_rotation": {
+        "A": Matrix([[0, t], [-t, 0]]),
+        "C": Matrix([[1, 0]]),
+        "x'": {"x": Matrix([[0, t], [-t, 0]])},
+        "y": {"x": Matrix([[1, 0]])},
+        "Phi": Matrix([[cos(TURNED), sin(TURNED)], [-sin(TURNED), cos(TURNED)]]),
+        "N_0": Matrix([[1, 0]]),
+        "N_1": Matrix([[0, t]]),
+        "O": sympy.diag(1, t),
+    },
+}

@@ -1,0 +1,49 @@
+"""Transfer functions with parameters: where a pole meets a zero, or a zero goes to infinity, it is said."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+import sympy
+
+import symobs
+from symobs import StateSpace
+from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
+
+c = sympy.Symbol("c")
+
+#: Found by the campaign of random designs, with Octave's and python-control's minimal realisations as judges.
+CANCELLING = StateSpace("[0 0; -c 1]", "[-1; 1]", "[-c^2 -2]", dt=True)
+
+
+def test_a_cancellation_is_a_case() -> None:
+    found = symobs.transfer_function(CANCELLING)
+    assert found.verdict == "conditional"
+    assert {sympy.factor(condition.lhs) for condition in found.conditions} == {c, c + 1, c + 2, c**2 - 2}
+    cases = {case.when[0].lhs: case.result for case in found.cases}
+    assert {(where, cases[where].poles) for where in (c, c + 1, c + 2)} == {(c, (1,)), (c + 1, (0,)), (c + 2, (1,))}
+    there = cases[c**2 - 2]  # over a field with a root of 2: the zero has gone to infinity
+    assert (set(there.poles), there.zeros) == ({0, 1}, ())
+    assert "poles and zeros provided that" in " ".join(found.to("text").split())
+
+
+@pytest.mark.parametrize("value", [Fraction(p, q) for p in range(-4, 5) for q in (1, 2)], ids=str)
+def test_there_are_as_many_poles_as_states_that_are_reached_and_seen(value: Fraction) -> None:
+    """The rank of 𝒪𝒞 at a point, in plain fractions, against what the case that holds there says."""
+    found = symobs.transfer_function(CANCELLING)
+    point = {c: sympy.Rational(value.numerator, value.denominator)}
+    for case in found.cases:
+        if all(bool(relation.subs(point)) for relation in case.when):
+            found = case.result
+    zero, one = Fraction(0), Fraction(1)
+    A, B, C = [[zero, zero], [-value, one]], [[-one], [one]], [[-(value**2), -2 * one]]
+    reached = transposed(observability_rows(transposed(A), transposed(B)))
+    hankel = multiply(observability_rows(A, C), reached)
+    assert len(found.poles) == rank_of(hankel)
+
+
+def test_signs_that_exclude_a_cancellation_leave_no_condition() -> None:
+    servo = StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", symbols={"b": "positive"})
+    found = symobs.transfer_function(servo)
+    assert (found.verdict, found.conditions, found.cases) == ("yes", (), ())

@@ -1,0 +1,437 @@
+"""The command line: its commands, what they write where, and the exit codes other programs rely on."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+from symobs import cli
+from symobs.errors import CertificateRejected
+from symobs.result import formats, methods, tasks
+from tests.support.tools.command_line import EXAMPLES, ROOT, SAFETY, SERVO, environment, fresh, inside
+
+PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+OBSERVER = f'task = "observer"\n{PLANT}[specification]\npoles = [-10, -10]\n'
+NOT_OBSERVABLE = OBSERVER.replace("[1 0]", "[0 1]")
+
+
+def results(text: str) -> list[dict[str, Any]]:
+    found: dict[str, Any] = json.loads(text)
+    assert found["schema"] == "symobs/1"
+    listed: list[dict[str, Any]] = found["results"]
+    return listed
+
+
+# -- solve ----------------------------------------------------------------------------------------------------------
+
+
+def test_solve_prints_latex(tmp_path: Path) -> None:
+    run = inside("solve", str(SERVO))
+    assert run.code == 0
+    assert run.out == inside("solve", str(SERVO), "--format", "latex").out
+    assert run.out.startswith("\\documentclass")
+    assert run.out.endswith("\\end{document}\n")
+    assert not any(tmp_path.iterdir())
+
+
+def test_standard_input_is_toml_or_json() -> None:
+    from_toml = inside("solve", "-", "--format", "json", stdin=OBSERVER.encode())
+    from_json = inside("solve", "-", "--format", "json", stdin=json.dumps(tomllib.loads(OBSERVER)).encode())
+    marked = inside("solve", "-", "--format", "json", stdin=OBSERVER.encode("utf-8-sig"))
+    assert from_toml.code == 0
+    assert from_toml == from_json == marked
+    assert results(from_toml.out)[0]["L"] == [["19"], ["81"]]
+
+
+def test_one_task_of_a_file_can_be_run() -> None:
+    run = inside("solve", str(SERVO), "--task", "controllability", "--format", "json")
+    assert [result["task"] for result in results(run.out)] == ["controllability"]
+    assert run.code == 0
+    two = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"\n'
+    two += "[expect]\nrank = 2\nL = [[9], [9]]"
+    assert inside("solve", "-", stdin=two.encode()).code == 4
+    assert inside("solve", "-", "--task", "observability", stdin=two.encode()).code == 0
+    unknown = inside("solve", "-", "--task", "observe", stdin=two.encode())
+    assert unknown.code == 2
+    assert '"observe" is not a task; known tasks are' in unknown.err
+
+
+# -- exit codes -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (OBSERVER, 0, ""),
+        (NOT_OBSERVABLE, 4, "observer: no\n"),
+        (f'{OBSERVER}[expect]\nL = "[19; 81]"', 0, ""),
+        (f'{OBSERVER}[expect]\nL = "[19; 80]"', 4, "expect.L: expected [19; 80], found [19; 81]\n"),
+        (f'{NOT_OBSERVABLE}[expect]\nverdict = "no"', 0, ""),
+        (f'{NOT_OBSERVABLE}[expect]\nverdict = "yes"', 4, "expect.verdict: expected yes, found no\n"),
+        (f"{NOT_OBSERVABLE}[expect]\nfixed_modes = [0]", 0, ""),
+        (f'{NOT_OBSERVABLE}[expect]\nL = "[1; 2]"', 4, "expect.L: expected [1; 2], found none\n"),
+        ('task = "observability"\n[symbols]\nc = "real"\n[plant]\nA = "[0 1; -2 -3]"\nC = "[1 c]"', 0, ""),
+    ],
+)
+def test_verdict_or_expectation_decides(text: str, code: int, said: str) -> None:
+    run = inside("solve", "-", "--format", "json", stdin=text.encode())
+    assert (run.code, run.err) == (code, said)
+    assert len(results(run.out)) == 1
+
+
+def test_undecided_is_5_unless_something_is_denied(monkeypatch: pytest.MonkeyPatch) -> None:
+    from symobs.analysis.rank.observability import Observability  # noqa: PLC0415 - the class this test changes
+
+    monkeypatch.setattr(Observability, "verdict", "undecided")
+    text = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"'
+    undecided = inside("solve", "-", stdin=text.encode())
+    assert (undecided.code, undecided.err) == (5, "observability: undecided\n")
+    assert undecided.out
+    denied = inside("solve", "-", stdin=text.replace("[1 0]", "[0 1]").replace('"-1, -2"', "[-2, -2]").encode())
+    assert (denied.code, denied.err) == (4, "observability: undecided\nobserver: no\n")
+
+
+def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stumble(*_: object, **__: object) -> None:
+        raise KeyError("x")
+
+    monkeypatch.setattr(cli, "_run", stumble)
+    run = inside("solve", str(SERVO))
+    assert (run.code, run.out) == (1, "")
+    assert run.err == "internal error: KeyError: 'x'; please report this\n"
+
+    def lie(*_: object, **__: object) -> None:
+        raise CertificateRejected("does not hold", where="det(sI - A + LC) = phi")
+
+    monkeypatch.setattr(cli, "_run", lie)
+    assert inside("solve", str(SERVO)).code == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["solve"],
+        ["hug"],
+        ["solve", str(SERVO), "--hug", "x"],
+        ["solve", str(SERVO), "more"],
+        ["solve", str(SERVO), "--format"],
+        ["solve", str(SERVO), "--format", "hug"],
+        ["solve", str(SERVO), "--task", "hug"],
+        ["solve", str(SERVO), "-o", "page.docx"],
+        ["observer", "--A"],
+        ["observer", "--Q", "1"],
+        ["templates", "hug"],
+        ["templates", "copy"],
+        ["methods", "observer"],
+    ],
+)
+def test_wrong_usage_is_2(arguments: list[str], tmp_path: Path) -> None:
+    run = inside(*arguments, folder=tmp_path)
+    assert (run.code, run.out) == (2, "")
+    assert run.err
+    assert "Traceback" not in run.err
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["problem.toml"], "there is no command 'problem.toml'; write symobs solve problem.toml"),
+        (["solve", "a.toml", "b.toml"], "For several files there is `symobs sheet FILE...`."),
+        (["observer", "-A", "[0]"], "No such option '-A'.\nWrite --A."),
+        (["observer", "--a", "[0]"], "Write --A."),
+        (["observer", "--A", "0", "1"], 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]"'),
+        (["observer", "--A", "[0]", "--poles", "-10,", "-10"], "A value with spaces stands in quotes"),
+        (["observer", "--transfer_functio", "1"], "--transfer_function"),
+        (["stability_region", "--polynomial", "s+k", "--Format", "text"], "Write --format."),
+    ],
+)
+def test_what_may_have_been_meant_is_said(arguments: list[str], said: str, tmp_path: Path) -> None:
+    run = inside(*arguments, folder=tmp_path)
+    assert (run.code, run.out) == (2, "")
+    assert said in run.err
+
+
+# -- files that cannot be read --------------------------------------------------------------------------------------
+
+
+def test_files_that_cannot_be_read_are_3(tmp_path: Path) -> None:
+    binary, wide, empty = tmp_path / "binary", tmp_path / "wide.toml", tmp_path / "empty.toml"
+    binary.write_bytes(bytes(range(256)))
+    wide.write_text(OBSERVER, encoding="utf-16")
+    empty.touch()
+    for name, words in {
+        ".": ".: Is a directory",
+        "missing.toml": "missing.toml: No such file or directory; give the path",
+        "a\0b": "null",
+        "binary": "binary: byte 128 is not UTF-8; save the file as UTF-8 text",
+        "wide.toml": "wide.toml: byte 0 is not UTF-8",
+        "empty.toml": "no task is named",
+    }.items():
+        run = inside("solve", name, folder=tmp_path)
+        assert (run.code, run.out) == (3, ""), name
+        assert words in run.err
+    assert inside("solve", "-").code == 3
+
+
+def test_the_name_of_a_file_cannot_write_on_the_terminal(tmp_path: Path) -> None:
+    assert "\x1b" not in inside("solve", "\x1b[2Jfile", folder=tmp_path).err
+
+
+# -- where the result goes ------------------------------------------------------------------------------------------
+
+
+def test_the_suffix_names_the_format(tmp_path: Path) -> None:
+    for suffix, beginning in {
+        ".json": '{\n  "schema"',
+        ".tex": "\\documentclass",
+        ".txt": "Output",
+        "": "\\documentclass",
+    }.items():
+        target = tmp_path / f"page{suffix}"
+        run = inside("solve", str(SERVO), "-o", str(target))
+        assert run == (0, "", "")
+        assert target.read_text(encoding="utf-8").startswith(beginning)
+    given = tmp_path / "given.tex"
+    assert inside("solve", str(SERVO), "--format", "json", "-o", str(given)).code == 0
+    assert results(given.read_text(encoding="utf-8"))
+    assert inside("solve", str(SERVO), "--format", "json", "-o", "-").out == given.read_text(encoding="utf-8")
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "page.tex"
+    target.write_text("before", encoding="utf-8")
+    target.chmod(0o600)
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", fail)
+        run = inside("solve", str(SERVO), "-o", str(target))
+    assert (run.code, run.out) == (3, "")
+    assert "No space left on device; make room there, or name a file elsewhere with -o" in run.err
+    assert [path.name for path in tmp_path.iterdir()] == ["page.tex"]
+    assert target.read_text(encoding="utf-8") == "before"
+
+    for text in (NOT_OBSERVABLE.replace("-10]", "x]"), "", "a: b"):
+        assert inside("solve", "-", "-o", str(target), stdin=text.encode()).code == 3
+    assert target.read_text(encoding="utf-8") == "before"
+
+    assert inside("solve", "-", "-o", str(target), stdin=NOT_OBSERVABLE.encode()).code == 4
+    assert target.read_text(encoding="utf-8").startswith("\\documentclass")
+    assert target.stat().st_mode & 0o777 == 0o600
+
+
+def test_links_and_devices_stay_what_they_are(tmp_path: Path) -> None:
+    target, link = tmp_path / "page.tex", tmp_path / "link.tex"
+    target.touch()
+    link.symlink_to(target)
+    assert inside("solve", str(SERVO), "-o", str(link)).code == 0
+    assert link.is_symlink()
+    assert target.stat().st_size > 0
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        assert inside("solve", "-", "--format", "json", "-o", str(pipe), stdin=OBSERVER.encode()).code == 0
+        assert results(os.read(reading, 65536).decode())
+    finally:
+        os.close(reading)
+    assert pipe.is_fifo()
+
+
+@pytest.mark.parametrize("target", ["missing/page.tex", "."])
+def test_what_cannot_be_written_is_said(target: str, tmp_path: Path) -> None:
+    run = inside("solve", str(SERVO), "--format", "latex", "-o", target, folder=tmp_path)
+    assert (run.code, run.out) == (3, "")
+    assert run.err.startswith(f"{target}: ")
+    assert "name a file in a folder that can be written" in run.err
+    assert not any(tmp_path.iterdir())
+
+
+def writing_to(stdout: int, *arguments: str) -> tuple[int, str]:
+    """Exit code and messages of a run whose standard output is this file descriptor."""
+    command = [sys.executable, "-m", "symobs", *arguments]
+    run = subprocess.run(
+        command, env=environment(), stdout=stdout, stderr=subprocess.PIPE, text=True, timeout=SAFETY, check=False
+    )
+    return run.returncode, run.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_disk_is_said() -> None:
+    with Path("/dev/full").open("wb") as full:
+        code, said = writing_to(full.fileno(), "solve", str(SERVO))
+    assert code == 3
+    assert said.startswith("standard output: No space left on device; ")
+
+
+# -- ends that come early -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("arguments", [["solve", str(SERVO)], ["schema"], ["methods"]])
+def test_a_reader_may_stop_reading(arguments: list[str]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        assert writing_to(writing, *arguments) == (0, "")
+    finally:
+        os.close(writing)
+
+
+INTERRUPTIBLE = """
+import runpy, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs begin with it ignored
+sys.argv[0] = "symobs"
+runpy.run_module("symobs", run_name="__main__", alter_sys=True)
+"""
+
+
+def test_ctrl_c_is_130() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTIBLE, "solve", "-"],
+        env=environment(),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as process:
+        assert process.stdin is not None
+        process.stdin.write(b"#" * 200_000)  # more than a pipe holds: returns once the file is being read
+        process.stdin.flush()
+        process.send_signal(signal.SIGINT)
+        try:
+            out, err = process.communicate(timeout=SAFETY)  # the end of the file wakes a reader that missed the signal
+        finally:
+            process.kill()
+    assert (process.returncode, out, err) == (130, b"", b"interrupted\n")
+
+
+# -- one command a task ---------------------------------------------------------------------------------------------
+
+
+def test_every_task_has_a_command() -> None:
+    told = inside("--help")
+    assert told.code == 0
+    for name, task in tasks().items():
+        assert f"  {name} " in told.out
+        run = inside(name.replace("_", "-"), "--help")
+        assert run.code == 0
+        for option in ("A", "B", "C", "D", "dt", "transfer-function", "symbol", "format", *task.keywords):
+            assert f"--{option}" in run.out
+
+
+def test_a_task_without_a_file() -> None:
+    run = inside("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles", "-10, -10", "--format", "json")
+    assert (run.code, run.err) == (0, "")
+    assert results(run.out)[0]["L"] == [["19"], ["81"]]
+    free = inside(
+        "state_feedback", "--A", "[0 1; 0 -b]", "--B", "[0; 1]", "--polynomial", "s^2 + p s + q", "--format", "json"
+    )
+    assert results(free.out)[0]["K"] == [["q", "-b + p"]] or results(free.out)[0]["K"] == [["q", "p - b"]]
+    closed = inside("observability", "--A", "[0 1; 0 -b]", "--C", "[1 0]", "--symbol", "c=positive")
+    assert closed.code == 3
+    assert closed.err.startswith('--A: the name "b" is not declared')
+    discrete = inside("characteristic-polynomial", "--A", "[1 1; 0 1]", "--dt", "true", "--format", "json")
+    assert results(discrete.out)[0]["polynomial"] == "z**2 - 2*z + 1"
+    function = inside("transfer_function", "--transfer-function", "1/(s (s + 1))", "--format", "json")
+    assert results(function.out)[0]["poles"] == ["0", "-1"] or results(function.out)[0]["poles"] == ["-1", "0"]
+
+
+def test_a_task_and_its_file_give_the_same_page() -> None:
+    options = ["--A", "[0 1; 0 -1]", "--B", "[0; 1]", "--C", "[1 0]", "--poles", "-10, -10"]
+    for form in ("latex", "text", "json"):
+        assert inside("observer", *options, "--format", form) == inside(
+            "solve", "-", "--format", form, stdin=OBSERVER.encode()
+        )
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--A", "[0 1", "--C", "[1 0]"], '--A: this "[" is never closed'),
+        (["--C", "[1 0]"], "--A: the state matrix is missing"),
+        (["--A", "[0]", "--C", "[1]", "--poles", "1, 2"], "--poles: 2 poles given, 1 needed"),
+        (["--A", "[0]", "--C", "[1]", "--poles", "x,"], "--poles: "),
+        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--dt", "h"], "--dt: h is not a sampling period"),
+        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--method", "magic"], "--method: 'magic' is not a method"),
+        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--symbol", "b=plus"], "--symbol b: 'plus' is not a sign"),
+        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--symbol", "b[]"], '--symbol b[]: "b[]" is not a name'),
+    ],
+)
+def test_wrong_values_are_3_and_name_the_option(options: list[str], said: str) -> None:
+    run = inside("observer", *options)
+    assert (run.code, run.out) == (3, "")
+    assert run.err.startswith(said)
+
+
+# -- lists ----------------------------------------------------------------------------------------------------------
+
+
+def test_methods_lists_every_method_with_its_source() -> None:
+    run = inside("methods")
+    assert run.code == 0
+    for found in methods().values():
+        assert f"    {found.name}: {found.summary}\n        {found.source}\n" in run.out
+    assert [line.split(":")[0] for line in run.out.splitlines() if not line.startswith(" ")] == sorted(tasks())
+
+
+def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
+    run = inside("schema")
+    assert run.code == 0
+    schema = json.loads(run.out)
+    Draft202012Validator.check_schema(schema)
+    validator = Draft202012Validator(schema)
+    for path in EXAMPLES:
+        assert list(validator.iter_errors(tomllib.loads(path.read_text(encoding="utf-8")))) == []
+    tables = tomllib.loads(OBSERVER)
+    changes: tuple[dict[str, Any], ...] = (
+        {"titel": "x"},
+        {"task": "observe"},
+        {"tasks": ["observer"]},
+        {"plant": {"C": "[1]"}},
+        {"plant": {"A": 5}},
+        {"plant": {"A": [1, 2]}},
+        {"plant": {"A": "[1]", "Q": 1}},
+        {"specification": {"pole": [-1]}},
+        {"specification": {"poles": True}},
+        {"symbols": {"b": "plus"}},
+        {"symbols": {"b": {"sgn": "real"}}},
+        {"convention": "../S9"},
+        {"expect": []},
+    )
+    for change in changes:
+        assert list(validator.iter_errors({**tables, **change})), change
+    assert set(tasks()["compensator"].keywords) <= set(schema["properties"]["specification"]["properties"])
+
+
+def test_templates_are_listed_and_copied_once(tmp_path: Path) -> None:
+    names = sorted(path.name for path in (ROOT / "latex_templates").iterdir())
+    assert inside("templates") == (0, "".join(f"{name}\n" for name in names), "")
+    mine = tmp_path / "a" / "mine"
+    assert inside("templates", "copy", str(mine)) == (0, "", "")
+    for name in names:
+        assert (mine / name).read_bytes() == (ROOT / "latex_templates" / name).read_bytes()
+    (mine / "article.tex").write_text("my own", encoding="utf-8")
+    again = inside("templates", "copy", str(mine))
+    assert again.code == 3
+    assert "article.tex is already there" in again.err
+    assert (mine / "article.tex").read_text(encoding="utf-8") == "my own"
+    assert inside("templates", "copy", str(mine / "article.tex")).code == 3
+
+
+def test_version_and_conventions(tmp_path: Path) -> None:
+    run = fresh("--version", folder=tmp_path)
+    assert (run.code, run.err) == (0, "")
+    assert run.out.startswith("symobs ")
+    assert "\nstandard " in inside("conventions").out
+    assert "pdf" in formats()

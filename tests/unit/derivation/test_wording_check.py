@@ -1,0 +1,175 @@
+"""What the relation in a sentence must say so that the sentence speaks of it, and the facts that a verdict rests on."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from symobs.certificate.pointwise import Pointwise
+from symobs.derivation.wording_check import _one_higher, fits, rests
+from symobs.exact import Matrix, Scalar
+from symobs.exact.kernel.generators import PI, function
+from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
+from symobs.phrases import PHRASES
+from tests.support.problems.steps import said
+
+#: Two rows of rank 1, and three rows of rank 2.
+LOW, HIGH = Literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), Literal(Matrix.of([[1, 0], [0, 1], [1, 1]]))
+HERE = Environment()
+
+
+def rank(of: Literal, *more: Any) -> Relation:
+    return said(Apply("rank", of), *more)
+
+
+FULL = rank(HIGH, 2)
+LOWER = (rank(LOW, "<", 2), rank(LOW, 1), rank(LOW, 1, 2, "=", "<"))
+#: True, but of no rank, of another number, or with more behind it.
+BESIDE = (
+    said(1, 1),
+    said(1, "<", 2),
+    said(Apply("det", Literal(Matrix.of([[1]]))), 1),
+    said(Apply("det", Literal(Matrix.of([[0]]))), "<", 1),
+    rank(HIGH, "<", 3),
+    rank(LOW, "<", 3),
+    rank(HIGH, 2, 2),
+    rank(HIGH, 2, 3, "=", "<"),
+    rank(LOW, 1, 1),
+    rank(LOW, 1, 3, "=", "<"),
+    rank(LOW, ">", 0),
+    rank(LOW, "!=", 2),
+    rank(LOW, 1, 2, 3, "=", "<", "<"),
+)
+
+SAID_OF_FULL = [
+    "full_rank_observability",
+    "full_rank_controllability",
+    "generic_rank_observability",
+    "generic_rank_controllability",
+    "stack_yes",
+    "case_stack_yes",
+]
+SAID_OF_LOWER = ["no_observability", "no_controllability", "stack_no", "case_stack"]
+
+
+@pytest.mark.parametrize("key", SAID_OF_FULL)
+def test_a_full_rank_is_said_to_be_full(key: str) -> None:
+    assert fits(key, FULL, HERE) is True
+    assert fits(key, rank(HIGH, Matrix.of([[2]])), HERE) is True
+    for other in (*LOWER, *BESIDE):
+        assert fits(key, other, HERE) is False
+
+
+@pytest.mark.parametrize("key", SAID_OF_LOWER)
+def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
+    for lower in LOWER:
+        assert fits(key, lower, HERE) is True
+    for other in (FULL, *BESIDE):
+        assert fits(key, other, HERE) is False
+
+
+@pytest.mark.parametrize("key", ["no_observability", "no_controllability"])
+def test_a_rank_that_is_told_for_all_parameters_drops_nowhere(key: str) -> None:
+    h = Scalar.symbol("h")
+    everywhere, drops = Literal(Matrix.of([[1, h], [2, 2 * h]])), Literal(Matrix.of([[h, 1], [h * h, h]]))
+    falls = Literal(Matrix.of([[h, 0], [0, 0]]))
+    assert fits(key, rank(LOW, "<", 2), HERE) is True
+    assert fits(key, rank(everywhere, "<", 2), HERE) is True
+    assert fits(key, rank(drops, "<", 2), HERE) is True
+    assert fits(key, rank(falls, "<", 2), HERE) is False
+    assert fits(f"generic_low_{key[3:]}", rank(falls, "<", 2), HERE) is True
+    assert fits(f"generic_low_{key[3:]}", FULL, HERE) is False
+
+
+def test_other_sentences_may_speak_of_any_relation() -> None:
+    assert fits("routh_epsilon", said(1, 1), HERE) is True
+    assert PHRASES.keys() >= {*SAID_OF_FULL, *SAID_OF_LOWER}
+
+
+# -- exponentials ---------------------------------------------------------------------------------------------------------
+
+POLES = Environment(values={"sigma_d": Scalar.of(2), "omega_d": Scalar.of(3), "T_s": Scalar.of(5)})
+EXPONENTS = {
+    "decayed": Scalar.of(-10),
+    "overshoot_held": Scalar.symbol(PI) * Fraction(-2, 3),
+    "overshoot_close": -Scalar.symbol(PI) / Fraction(151, 100),  # of 3/2, its third digit one higher
+}
+
+
+@pytest.mark.parametrize("key", EXPONENTS)
+def test_an_exponential_is_that_of_the_letters(key: str) -> None:
+    assert fits(key, said(function("exp", EXPONENTS[key]), "<", 1), POLES) is True
+    for other in (*{*EXPONENTS.values()} - {EXPONENTS[key]}, -EXPONENTS[key], Scalar.of(-1)):
+        assert fits(key, said(function("exp", other), "<", 1), POLES) is False
+    assert fits(key, said(0, "<", 1), POLES) is False
+
+
+def test_the_third_digit_is_one_higher() -> None:
+    for value, higher in (
+        ("1.5", "1.51"),
+        ("1", "1.01"),
+        ("9.99", "10"),
+        ("10", "10.1"),
+        ("99.9", "100"),
+        ("100", "101"),
+        ("999", "1000"),
+        ("1000", "1010"),
+        ("123456", "124456"),
+        ("0.5", "0.501"),
+        ("0.1", "0.101"),
+        ("0.01", "0.0101"),
+    ):
+        assert _one_higher(Fraction(value)) == Fraction(higher)
+    for value in ("0", "-1"):
+        with pytest.raises(ValueError, match=value):
+            _one_higher(Fraction(value))
+
+
+@pytest.mark.parametrize("key", [*SAID_OF_FULL, *SAID_OF_LOWER, *EXPONENTS])
+def test_a_relation_is_said_and_no_letter(key: str) -> None:
+    for other in (Letter("omega_d"), "words", Literal(Scalar.of(2))):
+        assert fits(key, other, POLES) is False
+
+
+# -- facts ------------------------------------------------------------------------------------------------------------------
+
+
+def property_of(name: str) -> Predicate:
+    return Predicate(name, Letter("chi"))
+
+
+STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal", "unstable"))
+NOTHING = (property_of("never_zero"), said(1, 1))
+KINDS, VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
+RESTS: dict[str, tuple[Any, ...]] = {
+    **{f"{key}_{kind}": (FULL,) for key in ("pbh_yes", "no_fixed_modes") for kind in KINDS},
+    **{f"pbh_no_{kind}": LOWER for kind in KINDS},
+    **{f"yes_{verdict}": (FULL, STABLE, MARGINAL) for verdict in VERDICTS},
+    **{f"no_{verdict}": (UNSTABLE,) for verdict in VERDICTS},
+}
+
+
+@pytest.mark.parametrize(("key", "grounds"), RESTS.items(), ids=RESTS)
+def test_a_verdict_rests_on_a_fact_of_its_step(key: str, grounds: tuple[Any, ...]) -> None:
+    assert key in PHRASES
+    assert rests(key, (), HERE) is False
+    assert rests(key, NOTHING, HERE) is False
+    for fact in (FULL, *LOWER, STABLE, MARGINAL, UNSTABLE):
+        for facts in ((fact,), (*NOTHING, fact), (fact, *NOTHING)):
+            assert rests(key, facts, HERE) is (fact in grounds)
+
+
+def test_other_sentences_rest_on_anything() -> None:
+    for facts in ((), NOTHING, (UNSTABLE,)):
+        assert rests("routh_epsilon", facts, HERE) is True
+
+
+def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(*_: Any) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(Pointwise, "apply", too_large)
+    h = Scalar.symbol("h")
+    assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False

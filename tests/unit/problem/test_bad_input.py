@@ -1,0 +1,384 @@
+"""Bad input: an exit code, a message with place and repair for every error, and nothing else happens."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+from symobs.errors import InexactInput, InputError, ShapeMismatch
+from tests.support.tools.command_line import Run, fresh, inside
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+SERVO = {"A": '"[0 1; 0 -1]"', "B": '"[0; 1]"', "C": '"[1 0]"'}
+POLES = "poles = [-10, -10]"
+CODE = "__import__('pathlib').Path('canary').touch()"
+
+
+def problem(specification: str = POLES, top: str = 'task = "observer"', symbols: str = "", **plant: str | None) -> str:
+    """A problem file: the observer of the servo with both poles at -10, as far as nothing else is said."""
+    entries = "".join(f"{name} = {value}\n" for name, value in (SERVO | plant).items() if value is not None)
+    return f"{top}\n[symbols]\n{symbols}\n[plant]\n{entries}[specification]\n{specification}\n"
+
+
+def as_json(**changes: Any) -> str:
+    plant = {"A": "[0 1; 0 -1]", "C": "[1 0]"}
+    return json.dumps({"task": "observer", "plant": plant, "specification": {"poles": "-1, -2"}} | changes)
+
+
+def solved(folder: Path, text: str, run: Callable[..., Run] = inside) -> Run:
+    file = folder / "problem.toml"
+    file.write_text(text, encoding="utf-8")
+    found = run("solve", file.name, "--format", "json", folder=folder)
+    assert [path.name for path in folder.iterdir()] == [file.name], "something was executed"
+    return found
+
+
+def assert_refused(run: Run, *expected: tuple[str, str]) -> None:
+    """Every line names its place and a repair; the lines say, in order, the places and the words expected."""
+    assert (run.code, run.out) == (3, ""), run.err
+    assert "Traceback" not in run.err
+    for line in run.lines:
+        assert re.fullmatch(r"\S[^;]*?: .+; .+", line), line
+    assert len(run.lines) == len(expected), run.err
+    for line, (place, words) in zip(run.lines, expected, strict=True):
+        assert line.startswith(f"{place}: "), line
+        for word in words.split(" … "):
+            assert word in line, line
+
+
+# -- one mistake ----------------------------------------------------------------------------------------------------
+
+WRONG = {
+    # shapes
+    "A not square": (problem(A='"[0 1 2; 0 -1 3]"'), "plant.A", "2×3 … expected a square matrix"),
+    "B with a row too many": (problem(B='"[0; 1; 2]"'), "plant.B", "3×1 … 2 rows"),
+    "C with a column too many": (problem(C='"[1 0 0]"'), "plant.C", "1×3 … 2 columns"),
+    "D against outputs and inputs": (problem(D='"[1 2]"'), "plant.D", "1×2 … 1×1"),
+    "ragged text": (problem(A='"[0 1; 0]"'), "plant.A", "row 2 has 1 entry, but row 1 has 2"),
+    "ragged lists": (problem(A="[[0, 1], [0]]"), "plant.A", "row 2 has 1 entry, but row 1 has 2"),
+    "flat list": (problem(A="[0, 1]"), "plant.A", "row 1 is not a list of entries … [[1, 2]]"),
+    "empty text": (problem(A='""'), "plant.A", "the text is empty"),
+    "empty brackets": (problem(A='"[]"'), "plant.A", "expected"),
+    "no entries": (problem(A="[[]]"), "plant.A", "no entry"),
+    "no A": (problem(A=None), "plant.A", 'missing … A = "[0 1; 0 -1]"'),
+    "no C": (problem(C=None), "plant.C", "observer needs C"),
+    "given gain of wrong shape": (problem('L = "[1 2]"'), "specification.L", "1×2, expected 2×1"),
+    # names
+    "misspelt name": (
+        problem(symbols='omega = "positive"', A='"[0 1; -omga^2 -1]"'),
+        "plant.A",
+        'the name "omga" is not declared … column 8 … did you mean "omega"?',
+    ),
+    "misspelt name in a list": (
+        problem(symbols='omega = "positive"', A='[[0, 1], ["-omga^2", -1]]'),
+        "plant.A[1][0]",
+        '"omga" … did you mean "omega"?',
+    ),
+    "undeclared name": (problem(A='"[0 1; 0 -b]"'), "plant.A", '"b" is not declared'),
+    "name of a transfer function": (
+        problem(A=None, B=None, C=None, transfer_function='"b/(s + 1)"'),
+        "plant.transfer_function",
+        '"b" is not declared',
+    ),
+    "Python's word": (problem(symbols='lambda = "real"'), "symbols.lambda", '"lambda" is a word of Python … "lam"'),
+    "the variable": (problem(symbols='s = "real"'), "plant", "s is the variable"),
+    "no sign": (problem(symbols='omega = "plus"'), "symbols.omega", "'plus' is not a sign … positive"),
+    "no key of a symbol": (problem(symbols='b = { sgn = "real" }'), "symbols.b", "'sgn' … sign and latex"),
+    "hostile letter": (problem(symbols='b = { latex = "\\\\input{x}" }'), "symbols.b.latex", "not a printed form"),
+    **{
+        f"letter {form}": (problem(symbols=f"b = {{ latex = '''{form}''' }}"), "symbols.b.latex", "not a printed form")
+        for form in (
+            r"^^5cinput{x}",
+            "b^^41",
+            "a^1^2",
+            "a_1_2",
+            "a^2'x'_1",
+            r"\bar",
+            r"x_\bar a",
+            "}{",
+            "b_",
+            "1",
+            ", ",
+            "a ",
+        )
+    },
+    # keys and their values
+    "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
+    "key of the plant": (problem(E="1"), "plant.E", "unknown key … known keys are A, B, C, D"),
+    "key of the file in a table": (
+        problem(convention='"S1"'),
+        "plant.convention",
+        "unknown key … above the first table",
+    ),
+    "key at the wrong place": (problem(top='task = "observer"\nA = "[1]"'), "A", "unknown key … belongs to [plant]"),
+    "key of another task": (
+        problem(f"{POLES}\ncontrol_polynomial = 's'"),
+        "specification.control_polynomial",
+        "unknown key … belongs to the task compensator",
+    ),
+    "task": (
+        problem(top='task = "observe"'),
+        "task",
+        '"observe" is not a task; did you mean observer? known tasks are … observability',
+    ),
+    "one of the tasks": (problem(top='tasks = ["observer", "hug"]'), "tasks[1]", '"hug" is not a task'),
+    "the same task twice": (problem(top='tasks = ["observer", "observer"]'), "tasks[1]", "twice"),
+    "a number for a task": (problem(top="task = 5"), "task", "a number came"),
+    "no task": (problem(top=""), "task", 'no task is named … task = "observer"'),
+    "no tasks": (problem(top="tasks = []"), "tasks", "no task is named"),
+    "task and tasks": (problem(top='task = "observer"\ntasks = ["observer"]'), "tasks", "both"),
+    "method": (problem(f'{POLES}\nmethod = "magic"'), "specification.method", "'magic' … ackermann"),
+    "a number for a method": (problem(f"{POLES}\nmethod = 5"), "specification.method", "a number came"),
+    "convention": (problem(top='task = "observer"\nconvention = "S9"'), "convention", '"S9" … use one of standard'),
+    "title": (problem(top='task = "observer"\ntitle = 5'), "title", "a text is expected, but a number came"),
+    "title without a glyph": (problem(top='task = "observer"\ntitle = "\\u0007"'), "title", "U+0007"),
+    "id": (problem(top='task = "observer"\nid = ["a", 5]'), "id[1]", "a text is expected, but a number came"),
+    "plant and transfer function": (problem(transfer_function='"1/s"'), "plant", "both transfer_function and A"),
+    "improper": (problem(A=None, B=None, C=None, transfer_function='"s"'), "plant.transfer_function", "proper"),
+    "period": (problem(dt="-1"), "plant.dt", "-1 is not a sampling period … positive number"),
+    "table": (problem(top='task = "observer"\nexpect = "x"'), "expect", "a table is expected, but a text came"),
+    # poles
+    "too few poles": (problem("poles = [-10]"), "specification.poles", "1 pole given, 2 needed"),
+    "no poles": (problem(""), "specification.poles", 'poles are missing … poles = "-1, -2"'),
+    "poles without their conjugates": (
+        problem('poles = "-20+20i, -20+20i"'),
+        "specification.poles",
+        "not closed under conjugation: -20 - 20*I is missing",
+    ),
+    "poles and a polynomial": (problem(f'{POLES}\npolynomial = "s^2"'), "specification.poles", "both"),
+    "gain and poles": (problem(f'{POLES}\nL = "[1; 2]"'), "specification.L", "both"),
+    "degree": (problem('polynomial = "s^3"'), "specification.polynomial", "degree 3 given, degree 2 needed"),
+    "not monic": (problem('polynomial = "2 s^2 + 1"'), "specification.polynomial", "leading coefficient is 2"),
+    "no polynomial": (problem('polynomial = "1/s"'), "specification.polynomial", "a polynomial in s is expected"),
+    "no list of poles": (problem("poles = true"), "specification.poles[0]", "not an exact number"),
+    # values of the file format that are no entries of a matrix
+    "date": (problem(A="[[1979-05-27, 1], [0, -1]]"), "plant.A[0][0]", "date is not an exact number"),
+    "infinity": (problem(A="[[inf, 1], [0, -1]]"), "plant.A[0][0]", "not a finite number"),
+    "not a number": (problem(A="[[0, 1], [0, nan]]"), "plant.A[1][1]", "not a finite number"),
+    "truth": (problem(A="[[true, 1], [0, -1]]"), "plant.A[0][0]", "bool"),
+    "nothing": (as_json(plant={"A": [[0, 1], [0, None]], "C": "[1 0]"}), "plant.A[1][1]", "not an exact number"),
+    "table for an entry": (problem(A="[[{ a = 1 }, 1], [0, -1]]"), "plant.A[0][0]", "a table"),
+    "number for a matrix": (problem(A="5"), "plant.A", "a matrix is expected, but a number came"),
+    "division by zero": (problem(A='"[0 1; 0 1/0]"'), "plant.A", "division by zero"),
+    "complex entry": (problem(A='"[0 1; 0 2i]"'), "plant.A[1][1]", "a real value is expected, but 2*I came"),
+    "irrational entry": (problem(A='"[0 1; 0 sqrt(2)]"'), "plant.A", "sqrt(2) is not rational … declare a symbol"),
+    # expected answers
+    "expected text unreadable": (problem(f'{POLES}\n[expect]\nL = "[19; 81"'), "expect.L", '"[" is never closed'),
+    "expected field unknown": (problem(f'{POLES}\n[expect]\nK = "[1 2]"'), "expect.K", "no task here … L"),
+    "expected of another task": (problem(f"{POLES}\n[expect.pbh]\nL = 1"), "expect.pbh", "no task here"),
+    "expected field not of the task": (
+        problem(f"{POLES}\n[expect.observer]\nK = 1"),
+        "expect.observer.K",
+        "observer has no such field … L",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_one_mistake_is_one_line(tmp_path: Path, case: str) -> None:
+    text, place, words = WRONG[case]
+    assert_refused(solved(tmp_path, text), (place, words))
+
+
+# -- many mistakes --------------------------------------------------------------------------------------------------
+
+
+def test_all_mistakes_of_a_file_come_together(tmp_path: Path) -> None:
+    text = """
+        tasks = ["observer", "hug"]
+        titel = "x"
+        source = 5
+        convention = "S9"
+        [symbols]
+        omega = "plus"
+        lambda = "real"
+        b = { sgn = "real" }
+        [plant]
+        A = [["x", 1], ["y", 1979-05-27]]
+        B = "[0; 1"
+        E = 3
+        dt = -1
+        [specification]
+        poles = ["-1", "omga", true]
+        polynomial = "1/s"
+        pole = 3
+        method = 5
+        [expect]
+        L = "[19; 81"
+    """
+    assert_refused(
+        solved(tmp_path, text),
+        ("titel", "unknown key"),
+        ("source", "a text is expected"),
+        ("convention", "S9"),
+        ("tasks[1]", "hug"),
+        ("symbols.omega", "plus"),
+        ("symbols.lambda", "lam"),
+        ("symbols.b", "sgn"),
+        ("plant.dt", "-1"),
+        ("plant.E", "unknown key"),
+        ("plant.A[0][0]", '"x" is not declared'),
+        ("plant.B", "never closed"),
+        ("plant.A[1][0]", '"y" is not declared'),
+        ("plant.A[1][1]", "date"),
+        ("specification.pole", "did you mean poles?"),
+        ("specification.method", "a number came"),
+        ("specification.poles[1]", 'did you mean "omega"?'),
+        ("specification.poles[2]", "not an exact number"),
+        ("specification.polynomial", "denominator"),
+        ("expect.L", "never closed"),
+    )
+
+
+def test_mistakes_of_several_tasks_come_together(tmp_path: Path) -> None:
+    text = problem('poles = [-10]\nmethod = "magic"', 'tasks = ["observer", "observability", "state_feedback"]', B=None)
+    run = solved(tmp_path, text)
+    assert_refused(
+        run,
+        ("specification.poles", "1 pole given"),
+        ("specification.method", "observability"),
+        ("plant.B", "state_feedback needs B"),
+    )
+
+
+def test_both_loops_of_a_compensator_are_checked(tmp_path: Path) -> None:
+    poles = 'control_poles = [-1]\nobserver_polynomial = "s^3"\nobserver = "full"\nmethod = "magic"'
+    assert_refused(
+        solved(tmp_path, problem(poles, 'task = "compensator"')),
+        ("specification.method", "'magic'"),
+        ("specification.control_poles", "1 pole given"),
+        ("specification.observer_polynomial", "degree 3 given"),
+    )
+
+
+def test_poles_of_an_unknown_kind_of_observer_are_not_counted(tmp_path: Path) -> None:
+    poles = 'control_poles = [-1, -2]\nobserver_polynomial = "s^3"\nobserver = "none"'
+    assert_refused(solved(tmp_path, problem(poles, 'task = "compensator"')), ("specification.observer", "'none'"))
+
+
+def test_shapes_are_checked_beside_a_matrix_that_cannot_be_read(tmp_path: Path) -> None:
+    run = solved(tmp_path, problem(B='"[0; 1; 2]"', C='"[1 x]"'))
+    assert_refused(run, ("plant.C", '"x" is not declared'), ("plant.B", "3×1"))
+
+
+def test_thousands_of_mistakes_are_cut_short(tmp_path: Path) -> None:
+    unknown = solved(tmp_path, problem(top="\n".join(f"k{i} = 1" for i in range(20_000))))
+    assert len(unknown.lines) < 30
+    assert "more unknown keys" in unknown.err
+    names = ", ".join(["1"] * 10_000)
+    assert solved(tmp_path, problem(top=f"tasks = [{names}]")).lines[-1] == "… and 9900 more"
+
+
+# -- hostile files; the costliest in a process of its own, with bounded memory -----------------------------------------
+
+HOSTILE = {
+    "tower": (problem(A='"[0 1; 0 9^9^9^9]"'), "plant.A", "exponent is beyond 1000"),
+    "power": (problem(A='"[0 1; 0 ((10^64)^64)^64]"'), "plant.A", "more than 10000 bits"),
+    "brackets in a text": (problem(A=f'"{"(" * 20_000}1{")" * 20_000}"'), "plant.A", "more than 10000"),
+    "brackets of lists": (problem(A="[" * 20_000 + "]" * 20_000), "problem.toml, line 5", "nested more than 100"),
+    "brackets of JSON": ('{"plant":' + "[" * 100_000, "problem.toml, line 1", "nested more than 100"),
+    "tables of JSON": ('{"a":' * 20_000 + "1" + "}" * 20_000, "problem.toml, line 1", "nested more than 100"),
+    "digits": (problem(A=f"[[0, 1], [0, {'9' * 100_000}]]"), "problem.toml, line 5", "more than 1000"),
+    "digits of JSON": (f'{{"a": {"9" * 100_000}}}', "problem.toml, line 1", "more than 1000"),
+    "digits in a text": (problem(A=f'"[0 1; 0 {"9" * 5_000}]"'), "plant.A", "more than 1000 digits"),
+    "digits in base 16": (problem(dt=f"0x{'f' * 100_000}"), "problem.toml, line 8", "more than 1000"),
+    "dotted key": ("a." * 20_000 + "a = 1", "problem.toml, line 1", "dotted key"),
+    "dotted header": (f"[{'a.' * 20_000}a]", "problem.toml, line 1", "dotted key"),
+    "dotted key in a table": (f"x = {{{'a.' * 20_000}a = 1}}", "problem.toml, line 1", "dotted key"),
+    "dotted key behind quotes": (f'x = [""" """", {{{"a." * 20_000}a = 1}}]', "problem.toml, line 1", "dotted key"),
+    "dotted key of texts": ('"a" . ' * 9_000 + "a = 1", "problem.toml, line 1", "dotted key"),
+    "headers": ("\n".join(f"[a.b{i}.c.d.e.f]" for i in range(10_000)), "problem.toml", "more than 1000 tables"),
+    "size": ("#" * 300_000, "problem.toml", "larger than 256 kB"),
+    "quotes": ('"""\n' + '\\"""\n' * 50_000, "problem.toml, line 1, column 3", "not TOML"),
+    "semicolons": ("a = [" + ";" * 250_000, "problem.toml, line 1, column 6", "not TOML"),
+    "empty lines": ("\n" * 250_000 + "#\n]", "problem.toml, line 250002, column 1", "not TOML"),
+    "code for an entry": (problem(A=f'[["{CODE}", 1], [0, -1]]'), "plant.A[0][0]", '"_" belongs to no expression'),
+    "code for poles": (problem(f'poles = "{CODE}"'), "specification.poles", '"_" belongs to no expression'),
+    "code for a name": (problem(symbols=f'"{CODE}" = "real"'), f"symbols.{CODE[:39]}…", "is not a name"),
+    "code for a call": (problem(A='"[0 1; 0 exec(1)]"'), "plant.A", '"exec" is not declared'),
+    "code for what is expected": (problem(f'{POLES}\n[expect]\nL = "{CODE}"'), "expect.L", "belongs to no expression"),
+    "code for an attribute": (problem(A='"[0 1; 0 ().__class__]"'), "plant.A", '"." belongs to no expression'),
+}
+
+
+@pytest.mark.parametrize("case", HOSTILE)
+def test_hostile_files_are_refused(tmp_path: Path, case: str) -> None:
+    text, place, words = HOSTILE[case]
+    costly = {"power", "brackets of lists", "digits", "headers", "quotes", "code for an entry", "code for a name"}
+    run = fresh if case in costly or case.startswith("dotted") else inside
+    assert_refused(solved(tmp_path, text, run), (place, words))
+
+
+# -- a mathematical no is no error ----------------------------------------------------------------------------------
+
+
+def test_an_unobservable_plant_is_a_result(tmp_path: Path) -> None:
+    run = solved(tmp_path, problem(C='"[0 1]"'))
+    assert (run.code, run.err) == (4, "observer: no\n")
+    (result,) = json.loads(run.out)["results"]
+    assert result["verdict"] == "no"
+    assert result["fixed_modes"] == ["0"]
+    assert result["L"] is None
+
+
+# -- the same from Python -------------------------------------------------------------------------------------------
+
+
+def servo() -> symobs.StateSpace:
+    return symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+
+
+FLOATS: dict[str, tuple[Callable[[], object], str, str]] = {
+    "list": (lambda: symobs.StateSpace([[0.5]]), "plant.A[0][0]", "1/2"),
+    "array": (lambda: symobs.StateSpace(np.array([[0.5]])), "plant.A", "1/10"),
+    "array of integers as floats": (lambda: symobs.StateSpace(np.eye(2)), "plant.A", "1/10"),
+    "SymPy": (lambda: symobs.StateSpace(sympy.Matrix([[0.5]])), "plant.A[0][0]", "Rational"),
+    "poles": (lambda: symobs.observer(servo(), poles=[-1, -0.1]), "specification.poles[1]", "-1/10"),
+    "array of poles": (
+        lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])),  # type: ignore[arg-type]
+        "specification.poles[0]",
+        "-1/2",
+    ),
+    "complex poles": (lambda: symobs.observer(servo(), poles=[-1 + 2j, -1 - 2j]), "specification.poles[0]", "-1+2j"),
+    "gain": (lambda: symobs.observer(servo(), L=[[0.25], [1]]), "specification.L[0][0]", "1/4"),
+}
+
+
+@pytest.mark.parametrize("case", FLOATS)
+def test_floats_are_refused_with_what_to_write(case: str) -> None:
+    call, place, repair = FLOATS[case]
+    with pytest.raises(InexactInput) as refused:
+        call()
+    assert refused.value.where == place
+    assert repair in refused.value.repair
+
+
+def test_the_variable_is_no_parameter() -> None:
+    calls: tuple[Callable[[], object], ...] = (
+        lambda: symobs.StateSpace("[0 1; s -1]"),
+        lambda: symobs.StateSpace([[sympy.Symbol("s")]]),
+        lambda: symobs.StateSpace("[0 1; z -1]", dt=True),
+        lambda: symobs.StateSpace("[1]", symbols={"s": "real"}),
+    )
+    for call in calls:
+        with pytest.raises(InputError, match="is the variable of the polynomials"):
+            call()
+    assert str(symobs.characteristic_polynomial(symobs.StateSpace("[s]", dt=True)).polynomial) == "-s + z"
+
+
+def test_shapes_are_refused_as_such() -> None:
+    with pytest.raises(ShapeMismatch, match="2×3"):
+        symobs.StateSpace("[1 2 3; 4 5 6]")
+    with pytest.raises(ShapeMismatch, match="row 2"):
+        symobs.StateSpace([[1, 2], [3]])
+    with pytest.raises(ShapeMismatch, match="1×2, expected 2×1"):
+        symobs.observer(servo(), L="[1 2]")

@@ -1,0 +1,399 @@
+"""Problem files: what their text means, and what results are held against."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expect import mismatches
+from symobs.problem import parse, read, validate
+from tests.support.tools.command_line import EXAMPLES, SERVO
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+OBSERVER = f'task = "observer"\n{PLANT}[specification]\npoles = [-10, -10]\n'
+
+
+def unmet(text: str) -> list[str]:
+    """The expected answers of a problem that are not met."""
+    found = read(text)
+    return mismatches(found.solve(), found.expect)
+
+
+def complaint(text: str) -> str:
+    """What a file that cannot be parsed is told, one line."""
+    with pytest.raises(ProblemErrors) as refused:
+        parse(text, "file")
+    assert len(refused.value.errors) == 1
+    assert refused.value.errors[0].repair
+    return str(refused.value)
+
+
+def errors_of(action: Callable[[], object]) -> tuple[SymobsError, ...]:
+    """The errors of a file; anything else that is raised is a bug."""
+    try:
+        action()
+    except ProblemErrors as refused:
+        return refused.errors
+    return ()
+
+
+# -- the text of a file ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_json_with_the_same_keys_is_the_same_problem(path: Any) -> None:
+    tables = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    from_toml, from_json = read(path.read_text(encoding="utf-8")), read("\n " + json.dumps(tables))
+    assert from_json.title == from_toml.title
+    assert [task.name for task in from_json.tasks] == [task.name for task in from_toml.tasks]
+    for name in "ABCD":
+        assert getattr(from_json.plant.matrices, name) == getattr(from_toml.plant.matrices, name)
+    assert from_json.plant.symbols == from_toml.plant.symbols
+    assert from_json.specification == from_toml.specification
+    assert from_json.expect == from_toml.expect
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("10.78", Fraction(539, 50)),
+        ("1e-3", Fraction(1, 1000)),
+        ("-0.1", Fraction(-1, 10)),
+        ("3", Fraction(3)),
+        ('"1/3"', Fraction(1, 3)),
+        ("0.1000000000000000055511151231257827", Fraction("0.1000000000000000055511151231257827")),
+    ],
+)
+def test_numbers_are_exact(text: str, value: Fraction) -> None:
+    for file in (
+        f'task = "observability"\n[plant]\nA = [[{text}]]',
+        f'{{"task": "observability", "plant": {{"A": [[{text}]]}}}}',
+    ):
+        assert read(file).plant.matrices.A[0, 0].fraction() == value
+
+
+def test_a_byte_order_mark_is_no_part_of_the_text() -> None:
+    assert read("\ufeff" + OBSERVER).plant.order == 2
+    assert parse('\ufeff{"a": 1}') == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[plant\nA = 1", "file, line 1, column 7: this is not TOML"),
+        ("[plant]\nA = [0 1; 0 -1]", 'file, line 2, column 8: this is not TOML: … the matrix in quotes: "[0 1; 0 -1]"'),
+        ("poles = [-1+i, -2]", 'file, line 1, column 12: this is not TOML: … in quotes: [-2, "-1+i", "-omega"]'),
+        ("task = observer", "file, line 1, column 8: this is not TOML: … texts in quotes"),
+        ('task = "a"\ntask = "b"', "this is not TOML: … overwrite … keep one of them"),
+        ("[plant]\n[plant]", "line 2, … twice … keep one of them"),
+        ("task: observer\nplant:\n  A: 1", "file, line 1, … YAML is not read"),
+        ("---\ntask: observer", "file, line 1, … YAML is not read"),
+        ("# a list\n- observer", "file, line 2, … YAML is not read"),
+        ('[{"task": "observer"}]', "a problem in JSON begins with {"),
+        ("[1, 2]", "a problem in JSON begins with {"),
+        ("\0\1", "file, line 1, column 1: this is not TOML"),
+        ("a = 1979-02-31", "this is not TOML"),
+        ('{"task": "observer",}', "file, line 1, column 2 … this is not JSON"),
+        ('{"task": "observer"', "this is not JSON"),
+        ('{"a": 1} 2', "this is not JSON: Extra data"),
+        ('{"a": 1, "a": 2}', 'the key "a" stands twice'),
+        ('{"a": {"b": 1, "b": 1}}', 'the key "b" stands twice'),
+        ('{"a": NaN}', "NaN is not a number"),
+        ('{"a": -Infinity}', "-Infinity is not a number"),
+    ],
+)
+def test_what_is_neither_toml_nor_json_is_refused_at_its_place(text: str, words: str) -> None:
+    said = complaint(text)
+    for word in words.split(" … "):
+        assert word in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = " + "[" * 99 + "]" * 99,
+        "a.b.c.d.e.f.g.h.i.j = 1",
+        f"x = {'9' * 1000}",
+        f'x = "{"a." * 500}"',
+        f"x = '''{'[' * 500}'''",
+        f'x = """{"[" * 500} "" \\""" """  # {"a." * 500}',
+        f'"{"a." * 500}" = 1',
+        "x = 0.1\ny = 1.2.3.4"[:7],
+    ],
+)
+def test_what_only_looks_costly_is_read(text: str) -> None:
+    assert parse(text) == tomllib.loads(text, parse_float=str)
+
+
+@given(st.text(alphabet="[]{}\".=#\n\\'ab1_ ", max_size=40))
+def test_any_text_is_parsed_or_refused(text: str) -> None:
+    assert all(error.where and error.repair for error in errors_of(lambda: parse(text)))
+
+
+@given(st.data())
+def test_any_damage_to_a_file_is_found_out(data: st.DataObject) -> None:
+    text = SERVO.read_text(encoding="utf-8")
+    start = data.draw(st.integers(0, len(text)))
+    end = data.draw(st.integers(start, min(len(text), start + 12)))
+    put = data.draw(st.text(alphabet="[](){};,.=\"'+-*/^01 sxi\n", max_size=3))
+    for error in errors_of(lambda: unmet(text[:start] + put + text[end:])):
+        assert isinstance(error, InputError)
+        assert error.where
+        assert error.repair
+
+
+# -- its tables -----------------------------------------------------------------------------------------------------
+
+
+def test_a_problem_of_one_task_and_of_several() -> None:
+    one, several = read(OBSERVER), read(OBSERVER.replace('task = "observer"', 'tasks = ["observability", "observer"]'))
+    assert [result.task for result in one.solve()] == ["observer"]
+    begun: list[str] = []
+    assert [result.task for result in several.solve(begun.append)] == begun == ["observability", "observer"]
+    assert one.solve()[0].answer == several.solve()[1].answer
+
+
+def test_title_source_and_ids_are_kept() -> None:
+    found = read('title = "Sérvo\\n≥ 1"\nsource = "S0"\nid = "S0-Ex4.1"\n' + OBSERVER)
+    assert (found.title, found.source, found.ids) == ("Sérvo\n≥ 1", "S0", ("S0-Ex4.1",))
+    assert read('id = ["a", "b"]\n' + OBSERVER).ids == ("a", "b")
+    assert (read(OBSERVER).title, read(OBSERVER).source, read(OBSERVER).ids) == ("", "", ())
+
+
+def test_another_task_can_be_run_on_the_same_file() -> None:
+    tables = parse(SERVO.read_text(encoding="utf-8"))
+    found = validate(tables, "observability")
+    assert [result.task for result in found.solve()] == ["observability"]
+    assert [task.name for task in validate({"plant": tables["plant"]}, "observability").tasks] == ["observability"]
+    with pytest.raises(ProblemErrors, match="poles are missing"):
+        validate({"plant": tables["plant"]}, "observer").solve()
+
+
+def test_symbols_are_declared_with_sign_and_letter() -> None:
+    found = read(
+        'task = "characteristic_polynomial"\n[symbols]\nomega = "positive"\n'
+        'b = { sign = "nonzero", latex = "b_0" }\nc = {}\n[plant]\nA = "[0 1; -omega^2 -b*c]"'
+    )
+    symbols = found.plant.symbols
+    assert symbols.signs == {"omega": "positive", "b": "nonzero", "c": "real"}
+    assert symbols.latex == {"b": "b_0"}
+    assert symbols.closed
+
+
+@pytest.mark.parametrize(
+    ("dt", "variable", "period"),
+    [
+        ("0", "s", 0),
+        ("true", "z", True),
+        ("0.1", "z", Fraction(1, 10)),
+        ("false", "s", 0),
+        ('"1/4"', "z", Fraction(1, 4)),
+    ],
+)
+def test_time_is_continuous_or_discrete(dt: str, variable: str, period: object) -> None:
+    plant = read(f"{OBSERVER.replace(PLANT, f'{PLANT}dt = {dt}{chr(10)}')}").plant
+    assert (plant.variable, plant.dt) == (variable, period)
+
+
+# -- expected answers -----------------------------------------------------------------------------------------------
+
+
+def expecting(lines: str, text: str = OBSERVER) -> list[str]:
+    return unmet(f"{text}\n[expect]\n{lines}")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'L = "[19; 81]"',
+        "L = [[19], [81]]",
+        'L = [["38/2"], ["9^2"]]',
+        "L = [[19.0], [8.1e1]]",
+        'polynomial = "s^2 + 20 s + 100"',
+        'polynomial = "(s + 10)^2"',
+        'poles = "-10, -10"',
+        'poles = [-10, "-10"]',
+        'verdict = "yes"',
+        'stable = "yes"',
+        "conditions = []",
+        "fixed_modes = []",
+        "observer.L = [[19], [81]]",
+    ],
+)
+def test_expected_answers_are_compared_as_mathematics(line: str) -> None:
+    assert expecting(line) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('L = "[19; 82]"', "expect.L: expected [19; 82], found [19; 81]"),
+        ("L = [[19, 81]]", "expect.L: expected [[19, 81]], found [19; 81]"),
+        ('polynomial = "s^2 + 20 s + 101"', "expect.polynomial: expected s^2 + 20 s + 101, found s**2 + 20*s + 100"),
+        ("poles = [-10]", "expect.poles: expected [-10], found [-10, -10]"),
+        ("poles = []", "expect.poles: expected [], found [-10, -10]"),
+        ('verdict = "no"', "expect.verdict: expected no, found yes"),
+        ('conditions = ["2 != 0"]', "expect.conditions: expected [2 != 0], found []"),
+        ('observer.verdict = "no"', "expect.observer.verdict: expected no, found yes"),
+        ("verdict = 1", "expect.verdict: expected 1, found yes"),
+    ],
+)
+def test_an_answer_that_is_not_met_is_said_with_what_was_found(line: str, said: str) -> None:
+    assert expecting(line) == [said]
+
+
+def test_an_expected_answer_belongs_to_every_task_that_has_it() -> None:
+    text = OBSERVER.replace('task = "observer"', 'tasks = ["observability", "observer", "state_feedback"]')
+    assert expecting('L = "[19; 81]"\nK = "[100 19]"\nrank = 2\n[expect.state_feedback]\nverdict = "yes"', text) == []
+    said = expecting('poles = "-1, -1"\nobservability.rank = "1"', text)
+    assert [line.split(":")[0] for line in said] == ["expect.observability.rank", "expect.poles", "expect.poles"]
+
+
+PARAMETRIC = """
+tasks = ["observer", "characteristic_polynomial"]
+[symbols]
+omega = "positive"
+b = "real"
+[plant]
+A = "[0 1; -omega^2 -b]"
+C = "[0 1]"
+[specification]
+L = "[0; 1]"
+"""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'observer.polynomial = "s^2 + (b + 1) s + omega^2"',
+        'observer.stable_if = ["b + 1 > 0"]',
+        'observer.stable_if = "0 > -2 b - 2"',
+        'observer.stable_if = ["-1/2 < b/2"]',
+        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 - omega^2)", "-b/2 - sqrt(b^2/4 - omega^2)"]',
+        'characteristic_polynomial.roots = "-b/2 - sqrt(b^2 - 4 omega^2)/2, (sqrt(b^2 - 4 omega^2) - b)/2"',
+    ],
+)
+def test_relations_and_roots_are_compared_as_mathematics(line: str) -> None:
+    assert expecting(line, PARAMETRIC) == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'observer.stable_if = ["b + 1 >= 0"]',
+        'observer.stable_if = ["b - 1 > 0"]',
+        'observer.stable_if = ["b + 1 < 0"]',
+        'observer.stable_if = ["False"]',
+        "observer.stable_if = []",
+        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 - omega^2)", "-b/2 + sqrt(b^2/4 - omega^2)"]',
+        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 + omega^2)", "-b/2 - sqrt(b^2/4 + omega^2)"]',
+    ],
+)
+def test_another_relation_or_root_is_not_met(line: str) -> None:
+    assert len(expecting(line, PARAMETRIC)) == 1
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "roots"),
+    [
+        ("s^2 - 2", ["sqrt(2)", "-sqrt(2)"]),
+        ("s^2 + 2 s + 19", ["-1 + 3*sqrt(2)*I", "-1 - 3 sqrt(2) i"]),
+        ("s^2 + 2 s + 19", ["-1 + sqrt(-18)", "-1 - sqrt(-18)"]),
+        ("s^2 - 4/9*s - 1/81", ["2/9 + sqrt(5)/9", "2/9 - sqrt(5)/9"]),
+        ("(s^2 + 1) (s - 3)", [3, "i", "-i"]),
+        ("s^3 - 2", ["CRootOf(s^3 - 2, 2)", "CRootOf(s**3 - 2, 1)", "CRootOf(s**3 - 2, 0)"]),
+        ("s^2 - 4", ["sqrt(4)", "-sqrt(4)"]),
+    ],
+)
+def test_irrational_roots_can_be_expected(polynomial: str, roots: list[Any]) -> None:
+    text = f'task = "transfer_function"\n[plant]\ntransfer_function = "1/({polynomial})"\n'
+    assert expecting(f"poles = {json.dumps(roots)}", text) == []
+    assert len(expecting(f"poles = {json.dumps(roots[:-1] + roots[:1])}", text)) == 1
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ('stable_if = ["b + 1"]', "is not a relation"),
+        ('roots = ["sqrt(2) + sqrt(3)"]', "sqrt(3) is not rational"),
+        ('roots = ["1/(1 + sqrt(2))"]', "is not of the form a + b sqrt(c)"),
+        ('roots = ["sqrt(2"]', "never closed"),
+        ('roots = ["omga"]', "did you mean"),
+        ("polynomial = [1]", "not an exact number"),
+        ("polynomial = 1979-05-27", "not an exact number"),
+    ],
+)
+def test_unreadable_expectations_are_refused(line: str, said: str) -> None:
+    with pytest.raises(ProblemErrors, match=r"^expect") as refused:
+        expecting(line, PARAMETRIC)
+    assert said in str(refused.value)
+
+
+# Not observable, but the fixed mode -1 is among the poles: det(sI - A + LC) = (s + 1)(s + 2 + a + b) for L = [a; b].
+NOT_UNIQUE = """
+task = "observer"
+[plant]
+A = "[0 1; -2 -3]"
+C = "[1 1]"
+[specification]
+poles = [-1, -5]
+"""
+
+
+def test_any_member_of_the_family_meets_what_is_expected() -> None:
+    (ours,) = read(NOT_UNIQUE).solve()
+    members = {f"[{a}; {3 - a}]" for a in (0, 1, -7)}
+    assert len(members - {str(ours.answer["L"])}) >= 2
+    for member in members:
+        assert expecting(f'L = "{member}"', NOT_UNIQUE) == []
+    said = expecting('L = "[1; 1]"', NOT_UNIQUE)
+    assert len(said) == 1
+    assert said[0].startswith("expect.L: expected [1; 1], found ")
+
+
+def test_other_fields_are_held_against_the_member_expected() -> None:
+    right = 'L = "[1; 2]"\nA = "[-1 0; -4 -5]"\nB_y = "[1; 2]"\nverdict = "yes"\nfixed_modes = "-1"'
+    assert expecting(right, NOT_UNIQUE) == []
+    assert [line[:9] for line in expecting(right.replace("-4 -5", "-4 -6"), NOT_UNIQUE)] == ["expect.A:"]
+
+
+def test_a_compensator_follows_the_members_expected() -> None:
+    # A - BK = [0 1; -4 -4]; F = K (sI - A + BK + LC)^-1 L for L = [1; 2]; ours is for another L.
+    text = NOT_UNIQUE.replace('task = "observer"', 'task = "compensator"').replace("poles = [-1, -5]", "")
+    text = text.replace("C =", 'B = "[0; 1]"\nC =') + "control_poles = [-2, -2]\nobserver_poles = [-1, -5]\n"
+    right = 'K = "[2 1]"\nL = "[1; 2]"\ncompensator_matrix = "[-1 0; -6 -6]"\nF = "4 (s + 2)/((s + 1) (s + 6))"'
+    assert expecting(right, text) == []
+    wrong = [right.replace("(s + 2)", "(s + 3)"), right.replace("-6 -6", "-6 -5"), right.replace("[1; 2]", "[1; 1]")]
+    places = [expecting(lines, text)[0].split(":")[0] for lines in wrong]
+    assert places == ["expect.F", "expect.compensator_matrix", "expect.L"]
+
+
+def test_a_word_that_two_tasks_read_differently_is_read_as_the_task_asked_for_does() -> None:
+    """`output` holds functions of t for initial_state, rational ones for time-varying plants; and [expect] is read too."""
+    text = """
+        titel = "x"
+        task = "initial_state"
+        [symbols]
+        T = "positive"
+        [plant]
+        A = "[0 1; 0 {entry}]"
+        C = "[1 0]"
+        [specification]
+        horizon = "T"
+        output = "1 - exp(-t)"
+        [expect]
+        x0 = "[1; 2"
+    """
+    for entry, places in (("-1", ["titel", "expect.x0"]), ("-q", ["titel", "plant.A", "expect.x0"])):
+        with pytest.raises(ProblemErrors) as caught:
+            read(text.replace("{entry}", entry), "problem.toml")
+        assert [error.where for error in caught.value.errors] == places

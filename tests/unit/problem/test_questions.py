@@ -1,0 +1,129 @@
+"""Questions: what is asked, said of every task and of everything its specification may contain."""
+
+from __future__ import annotations
+
+import string
+
+import pytest
+
+from symobs.errors import InputError
+from symobs.phrases.english.page.questions import PHRASES, UNSAID
+from symobs.problem import read
+from symobs.problem.question import question_of, sentences_for
+from symobs.result import Task, methods, render, tasks
+from tests.support.tools.command_line import EXAMPLES
+
+#: The words that a keyword of this name may be.
+WORDS = {
+    "kind": ("controllable", "observable", "modal"),
+    "of": ("observability", "controllability"),
+    "meaning": ("asymptotic", "lyapunov"),
+    "member": ("simple", "decoupled"),
+    "observer": ("full", "minimal"),
+    "sign": ("1", "-1"),
+}
+#: Words that a question need not repeat: they are what is done without them.
+DEFAULTS = {("tracking", "observer=minimal")}
+TASKS = list(tasks().values())
+
+
+def tokens(task: Task, keyword: str) -> list[str]:
+    if keyword == "method":
+        return [f"method={found.name}" for found in methods(task.name).values() if found.name not in UNSAID]
+    if task.keywords[keyword] in {"Name", "Sign"}:
+        return [f"{keyword}={word}" for word in WORDS[keyword]]
+    return [keyword, f"{keyword}=1"] if task.keywords[keyword] == "Poles" else [keyword]
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
+def test_every_task_has_a_question(task: Task) -> None:
+    key, *_ = sentences_for(task, frozenset())
+    assert key == f"ask {task.name}"
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
+def test_a_question_says_all_that_is_specified(task: Task) -> None:
+    for keyword in task.keywords:
+        for token in tokens(task, keyword):
+            said = sentences_for(task, frozenset({token} | ({keyword} if token.endswith("=1") else set())))
+            words = {word for key in said for word in key.split()} | {"horizon"}
+            assert {token, keyword} & words or (task.name, token) in DEFAULTS, f"{task.name} is silent about {token}"
+
+
+@pytest.mark.parametrize("key", PHRASES)
+def test_a_sentence_names_what_exists_and_speaks_english(key: str) -> None:
+    kind, *words = key.split()
+    if kind not in {"ask", "also"}:
+        return
+    named = [words.pop(0)] if words[0] in tasks() else []
+    keywords = {name for task in tasks().values() for name in task.keywords if named in ([], [task.name])}
+    assert {word.partition("=")[0] for word in words} <= keywords
+    slots = {name for _, name, _, _ in string.Formatter().parse(PHRASES[key]) if name}
+    assert slots <= {*(word.partition("=")[0] for word in words), "horizon", "start", "end"}
+    assert PHRASES[key][0].isupper()
+    assert PHRASES[key][-1] in ".?" or PHRASES[key].endswith("}.")
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_every_worked_example_asks(path) -> None:  # type: ignore[no-untyped-def]  # noqa: ANN001
+    question = question_of(read(path.read_text(encoding="utf-8"), path.name))
+    text = str(render(question, "text"))
+    assert "Given\n-----\n" in text
+    assert "\nTask" in text
+    assert text == str(render(question, "text"))
+
+
+def asked(
+    specification: str, task: str = "observer", plant: str = 'A = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"'
+) -> str:
+    problem = read(f'task = "{task}"\n[symbols]\np = "positive"\n[plant]\n{plant}\n[specification]\n{specification}\n')
+    return " ".join(str(render(question_of(problem), "text")).split("----")[-1].split())
+
+
+@pytest.mark.parametrize(
+    ("task", "specification", "said"),
+    [
+        ("observer", "poles = [-10, -10]", "Design an observer with the poles -10, -10."),
+        (
+            "observer",
+            'polynomial = "(s + 1)(s + p)"',
+            "Design an observer with the characteristic polynomial (s + 1)(s + p).",
+        ),
+        ("observer", 'poles = [-1, -1]\nmethod = "ackermann"', "poles -1, -1. Use Ackermann's formula."),
+        ("reduced_order_observer", 'poles = "-p"', "Design an observer of minimal order with the pole -p."),
+        (
+            "compensator",
+            'control_poles = [-2, -2]\nobserver_polynomial = "s + 10"\nobserver = "minimal"',
+            "and close the loop with it. The control poles are to be -2, -2. The observer polynomial is to be s + 10.",
+        ),
+        ("gramian", 'horizon = "inf"', "the observability Gramian over all time"),
+        ("gramian", "horizon = 2", "the observability Gramian over the horizon 2,"),
+        ("gramian", "", "the observability Gramian over the horizon T,"),
+        ("detectability", 'meaning = "lyapunov"', "stable in the sense of Lyapunov?"),
+        ("state_feedback", 'K = "[4 3]"', "Find the characteristic polynomial of the loop with the feedback gain K."),
+        ("initial_state", 'output = "1 + p*t"\ninput = "0"', "the output was measured as p t + 1 under the input 0."),
+    ],
+)
+def test_the_question_states_what_was_asked(task: str, specification: str, said: str) -> None:
+    assert said in asked(specification, task)
+
+
+def test_the_region_names_its_parameters_and_its_margin() -> None:
+    text = 'task = "stability_region"\n[symbols]\nh1 = "real"\nh2 = "real"\n[specification]\n'
+    text += 'polynomial = "s^2 + h1 s + h2"\nmargin = 1\n'
+    said = " ".join(str(render(question_of(read(text)), "text")).split())
+    assert "For which h₁ and h₂ is the polynomial χ(s) stable? Every root is to lie to the left" in said
+    assert "by more than 1." in said
+
+
+def test_several_tasks_have_letters_and_given_gains_stand_among_the_data() -> None:
+    text = 'tasks = ["observability", "observer"]\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\nL = "[19; 81]"\n'
+    said = " ".join(str(render(question_of(read(text)), "latex")).split())
+    assert r"L=\begin{bmatrix}19\\81\end{bmatrix}" in said.partition("Tasks.")[0]
+    assert r"\textbf{Tasks.} (a) Is the pair ($C$, $A$) observable?" in said
+    assert "(b) Find the characteristic polynomial of the observer with the gain $L$" in said
+
+
+def test_a_specification_that_cannot_be_read_is_an_error() -> None:
+    with pytest.raises(InputError, match="closed under conjugation"):
+        asked('poles = ["-1 + i", "-2"]')

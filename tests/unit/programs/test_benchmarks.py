@@ -1,0 +1,179 @@
+"""The benchmarks on small sizes: that they run, and that what they time is the same work.  No time is tested."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+import symobs
+from tests.programs.benchmarks import __main__ as benchmarks
+from tests.programs.benchmarks import designs, measuring, models, other_systems, raw_flint, raw_numeric
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+needs_giac = pytest.mark.skipif(not other_systems.available("giac"), reason="giac is not installed")
+needs_maxima = pytest.mark.skipif(not other_systems.available("maxima"), reason="maxima is not installed")
+needs_gp = pytest.mark.skipif(not other_systems.available("gp"), reason="gp is not installed")
+
+
+def test_every_model_has_names_that_no_earlier_one_had() -> None:
+    first, second = models.generic(2), models.generic(2)
+    assert set(first.plain).isdisjoint(second.plain)
+    assert list(first.plain.values()) == list(second.plain.values())
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_flint_alone_finds_the_gain_of_symobs(order: int) -> None:
+    model = models.generic(order)
+    _, entries = raw_flint.seconds(model, order)
+    found = [(str(above), str(below)) for above, below in entries]
+    wanted = [(str(e.numerator_part), str(e.denominator_part)) for e in designs.solve(model).answer["L"].entries]
+    opposite = [(str(-above), str(-below)) for above, below in entries]
+    assert all(entry in pair for entry, pair in zip(wanted, zip(found, opposite, strict=True), strict=True))
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_subjects_take_turns_and_one_that_gives_up_is_left_out(order: int) -> None:
+    calls: list[str] = []
+
+    def subject(name: str, seconds: float | None) -> Callable[[], float | None]:
+        def run() -> float | None:
+            calls.append(name)
+            return seconds
+
+        return run
+
+    found = measuring.medians(order, {"a": subject("a", 1.0), "b": subject("b", None), "c": subject("c", 2.0)})
+    assert found == {"a": 1.0, "c": 2.0}
+    assert calls == ["a", "b", "c", *["a", "c"] * (order - 1)]
+
+
+def test_the_table_has_a_ratio_in_every_compared_row() -> None:
+    rows = [
+        measuring.Row("work", 0.002, "other", 0.1, ">= 40"),
+        measuring.Row("work", 0.002, "base", 0.001, "<= 4", inverted=True),
+        measuring.Row("alone", 1.5),
+        measuring.Row("beyond", 0.01, "slow", 60, beyond=True),
+        measuring.Row("sheets", 9.25, unit="problems/s"),
+    ]
+    lines = [re.split(r" {2,}", line) for line in measuring.table(rows).splitlines()]
+    assert lines[1:] == [
+        ["work", "2 ms", "other", "100 ms", "50", ">= 40"],
+        ["work", "2 ms", "base", "1 ms", "2", "<= 4"],
+        ["alone", "1.5 s"],
+        ["beyond", "10 ms", "slow", "> 60 s", "> 6000"],
+        ["sheets", "9.25 problems/s"],
+    ]
+    marked = measuring.markdown(rows).splitlines()
+    assert marked[1] == "| --- | ---: | --- | ---: | ---: | ---: |"
+    assert marked[2] == "| work | 2 ms | other | 100 ms | 50 | >= 40 |"
+    assert len(marked) == len(rows) + 2
+
+
+def test_exponents_are_those_of_powers_and_of_nothing_else() -> None:
+    sizes = [2, 3, 5, 8]
+    assert measuring.exponent(sizes, [7 * n**2.5 for n in sizes]) == pytest.approx(2.5)
+    assert measuring.exponent(sizes, [3.0, 3.0, 3.0, 3.0]) == pytest.approx(0)
+
+
+def test_every_file_of_a_group_is_a_group() -> None:
+    known = benchmarks.groups()
+    files = [path.stem for path in (other_systems.HERE / "groups").glob("*.py")]
+    assert sorted(known) == sorted(stem.replace("_", "-") for stem in files)
+    assert {"cart-pole", "two-masses", "generic-3", "generic-4", "numeric", "regions", "sheets"} < known.keys()
+    assert {"start-up", "growth", "memory"} < known.keys()
+    assert len({module.PLACE for module in known.values()}) == len(known)
+
+
+def test_flint_alone_finds_the_gain_of_numbers() -> None:
+    A, C, poles = models.rational(5)
+    _, found = raw_numeric.seconds(A, C, poles)
+    design = symobs.observer(symobs.StateSpace(A, None, C), poles=poles)
+    assert [str(entry) for entry in found.entries()] == [str(entry) for entry in design.answer["L"].entries]
+
+
+def test_a_family_grows_in_every_size_asked_for() -> None:
+    growth = benchmarks.groups()["growth"]
+    assert growth.with_symbols(3) > 0
+    assert growth.chain(4) > 0
+    assert growth.region(2) > 0
+    assert growth.region(2, 1) > 0
+
+
+def test_a_sheet_is_timed_in_every_format() -> None:
+    sheets = benchmarks.groups()["sheets"]
+    spent = sheets.spent_on(other_systems.TOP / "worked_examples" / "servo_observer.toml")
+    assert set(spent) == {"html", "text", "json", "latex"}
+    assert all(seconds > 0 for seconds in spent.values())
+
+
+def test_random_compensators_repeat_and_come_to_a_page() -> None:
+    pages = benchmarks.groups()["pages"]
+    first = next(pages.compensators(1))
+    assert next(pages.compensators(4)) == first
+    assert len(set(pages.compensators(4))) == 4
+    assert "\\begin{document}" in pages.page(first)
+
+
+def test_memory_is_told_where_the_system_tells_it() -> None:
+    memory = benchmarks.groups()["memory"]
+    little, much = memory.peak("pass", 60), memory.peak("x = bytearray(10**8)", 60)
+    assert little is None or 90 < much - little < 110
+    assert memory.peak("raise SystemExit(3)", 60) is None
+
+
+def test_flint_alone_is_a_row_of_the_table() -> None:
+    rows = list(designs.beside_flint("generic 2x2", 2, 1, "<= 4", lambda: models.generic(2)))
+    assert [(row.work, row.asked, row.inverted) for row in rows] == [("generic 2x2", "<= 4", True)]
+    assert rows[0].theirs
+
+
+MODELS = {"generic_": lambda: models.generic(3), "cart_pole_": models.cart_pole, "two_masses_": models.two_masses}
+
+
+@needs_maxima
+@pytest.mark.parametrize(
+    ("stem", "formulation"),
+    [("generic_", "inverse"), ("cart_pole_", "bordered_minors"), ("two_masses_", "inverse")],
+)
+def test_maxima_agrees_and_a_difference_would_be_seen(stem: str, formulation: str, tmp_path: Path) -> None:
+    model = MODELS[stem]()
+    wanted = designs.differences_at_points(model, designs.solve(model))
+    path = other_systems.formulations("maxima", stem)[formulation]
+    assert other_systems.agrees(path, wanted, tmp_path)
+    assert not other_systems.agrees(path, [*wanted[:-1], wanted[-1] + "+s"], tmp_path)
+
+
+@needs_giac
+@pytest.mark.parametrize(
+    ("stem", "formulation"),
+    [
+        ("generic_", "cofactors"),
+        ("generic_", "inverse"),
+        ("cart_pole_", "bordered_minors"),
+        ("two_masses_", "bordered_minors"),
+    ],
+)
+def test_giac_agrees_and_a_difference_would_be_seen(stem: str, formulation: str, tmp_path: Path) -> None:
+    model = MODELS[stem]()
+    wanted = designs.differences(model, designs.solve(model))
+    path = other_systems.formulations("giac", stem)[formulation]
+    assert other_systems.agrees(path, wanted, tmp_path)
+    assert not other_systems.agrees(path, [*wanted[:-1], wanted[-1] + "+s"], tmp_path)
+
+
+@needs_gp
+@pytest.mark.parametrize("formulation", ["inverse_image", "integers", "rational"])
+def test_gp_finds_the_gain_of_symobs(formulation: str, tmp_path: Path) -> None:
+    path = other_systems.formulations("pari", "")[formulation]
+    program = tmp_path / path.name
+    program.write_text(path.read_text(encoding="utf-8") + "print(Vec(L[,1]));\n", encoding="utf-8")
+    A, C, poles = models.rational(4)
+    design = symobs.observer(symobs.StateSpace(A, None, C), poles=poles)
+    done = other_systems.gp(program, 4, 60)
+    assert done is not None
+    assert done.output.strip() == str([str(entry) for entry in design.answer["L"].entries]).replace("'", "")

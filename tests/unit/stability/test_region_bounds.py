@@ -1,0 +1,156 @@
+"""How the conditions of a region are written: solved for a parameter, as a box, in cases by signs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import pytest
+
+from symobs.exact import Scalar
+from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
+from symobs.stability.inequalities.sign_cases import sign_cases
+from symobs.stability.inequalities.solved_bounds import box, solved
+from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+s, x, y, z, a, b, c = (Scalar.symbol(name) for name in ("s", "x", "y", "z", "a", "b", "c"))
+h1, h2 = Scalar.symbol("h1"), Scalar.symbol("h2")
+one, zero = Scalar.of(1), Scalar.of(0)
+AB = {"a": "positive", "b": "positive"}
+
+
+def points(signs: Mapping[str, str], count: int = 200, names: str = "abcxyz") -> list[dict[str, Fraction]]:
+    generator = seeded((signs, names))
+    return [
+        {n: random_fraction(generator, signs.get(n, "real")) / 4 for n in [*names, "h1", "h2"]} for _ in range(count)
+    ]
+
+
+def positive_at(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
+    return all(value_at(value, point) > 0 for value in values)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "signs", "expected"),
+    [
+        ([1 - h1, b + h2], AB, ["h1 < 1", "h2 > -b"]),
+        ([h2, 3 * h1 * h2 - h2**2 - 9], {}, ["h2 > 0", "h1 > (h2**2 + 9)/(3*h2)"]),
+        ([h1 * h2 - 1], {}, ["h1*h2 - 1 > 0"]),
+        ([a * h1 - b], AB, ["h1 > b/a"]),
+        ([(h1 - h2) ** 2], {}, ["h1 != h2"]),
+        ([h1 - 3, 5 + h1 - h2, (h1 - 2) * h2 - 1], {}, ["h1 > 3", "h1 > h2 - 5", "h2 > 1/(h1 - 2)"]),
+    ],
+    ids=str,
+)
+def test_conditions_solved_for_a_parameter(
+    conditions: list[Scalar], signs: dict[str, str], expected: list[str]
+) -> None:
+    found = solved(conditions, signs, ["h1", "h2"])
+    assert [f"{left} {operator} {right}" for left, operator, right in found] == expected
+
+
+def test_two_conditions_do_not_vouch_for_each_other() -> None:
+    # each of a x > 1 and b x > 1 makes x positive, but a > 1/x and b > 1/x hold for x < 0 too
+    conditions = [a * x - 1, b * x - 1]
+    found = solved(conditions, AB, ["a", "b"])
+    assert [f"{left} {operator} {right}" for left, operator, right in found] == ["a > 1/x", "x > 1/b"]
+    for point in points(AB, 400):
+        if point["x"]:
+            assert all(value_at(l - r, point) > 0 for l, _, r in found) == positive_at(conditions, point)
+
+
+def test_a_box() -> None:
+    found = box([1 - h1, b + h2], ["h1", "h2"], AB)
+    assert found is not None
+    assert (found.lower, found.upper) == ({"h1": (), "h2": (-b,)}, {"h1": (one,), "h2": ()})
+    assert not found.bounded
+    assert found.needs == ()
+    closed = box([1 - h1, b + h1, a * h2 + 1, 1 - a * h2, c], ["h1", "h2"], AB)
+    assert closed is not None
+    assert closed.bounded
+    assert closed.needs == (c,)
+    assert closed.sample == {"h1": (1 - b) / 2, "h2": zero}
+    apart = box([c - h1, h1], ["h1"], {})
+    assert apart is not None
+    assert apart.needs == (c,)
+    assert apart.sample == {"h1": c / 2}
+    several = box([h1 - a, h1 - b], ["h1"], AB)
+    assert several is not None
+    assert several.lower == {"h1": (a, b)}
+    assert several.sample is None
+    for bound, expected in ((h1 - c, c + 1), (c - h1, c - 1)):
+        half = box([bound], ["h1"], {})
+        assert half is not None
+        assert half.sample == {"h1": expected}
+    left = box([1 + h1], ["h1"], {"h1": "negative"})
+    assert left is not None
+    assert left.sample == {"h1": Scalar.rational(-1, 2)}
+    assert box([h1 * h2**2 + h1 - 1], ["h1", "h2"], {}) is None
+    assert box([1 - h1 * h2], ["h1", "h2"], {}) is None
+    assert box([c * h1 - 1], ["h1"], {}) is None
+    assert box([1 - h1**2], ["h1"], {}) is None
+    inside = box([1 - h1], ["h1"], {"h1": "positive"})
+    assert inside is not None
+    assert inside.sample == {"h1": Scalar.rational(1, 2)}
+
+
+@pytest.mark.parametrize(
+    ("conditions", "signs", "count"),
+    [
+        ([c * h1 - 1, h2 + 1], {}, 3),
+        ([(c - b) * h1 - 1, h2 * c + 1], AB, 5),
+        ([(a - b) * h1 + h2, c * h2 + 1], AB, 9),
+        ([x * h1 - 1], {"x": "nonnegative"}, 2),
+        ([h1 - c, c * h1 + h2], {}, 3),
+        ([(a - b) * h1 - 1, (a - b + 1) * h2 - 1], AB, 5),
+        ([h1 - c], {}, 1),
+    ],
+    ids=str,
+)
+def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[Scalar], signs: dict[str, str], count: int) -> None:
+    cases = sign_cases(conditions, ["h1", "h2"], signs)
+    assert len(cases) == count
+    relations: dict[str, Callable[[Fraction], bool]] = {
+        ">": lambda v: v > 0,
+        "<": lambda v: v < 0,
+        "==": lambda v: v == 0,
+    }
+    for point in points(signs, 300):
+        less = {**point, "a": point["b"] - 1}
+        for here in (point, {**point, "c": point["b"]}, {**point, "a": point["b"]}, {**point, "x": Fraction(0)}, less):
+            if not all(has_sign(value, signs.get(name, "real")) for name, value in here.items()):
+                continue
+            met = [c for c in cases if all(relations[o](value_at(v, here)) for v, o in c.when)]
+            assert len(met) == 1
+            (case,) = met
+            assert positive_at(case.conditions.positive, here) == positive_at(conditions, here)
+            assert all(value_at(value, here) == here[name] for name, value in case.substitution.items())
+            for left, operator, right in solved(case.conditions.positive, case.signs, ["h1", "h2"], case.assumed):
+                difference = value_at(left - right, here)
+                told = difference > 0 if operator == ">" else difference < 0
+                assert told or not positive_at(conditions, here)
+
+
+def test_what_was_declared_of_a_symbol_is_kept_where_it_is_replaced() -> None:
+    above, below, equal = sign_cases([(a - b + 1) * h1 - h2], ["h1"], AB)
+    assert (above.assumed, below.assumed) == ((a - b + 1,), (b - a - 1,))
+    assert equal.substitution == {"a": b - 1}
+    assert equal.assumed == (b - 1,)
+
+
+def test_a_region_said_otherwise_is_proved_or_refused() -> None:
+    quartic = s**4 + 3 * s**3 + h1 * s**2 + h2 * s + 1
+    bound = h1 - (h2**2 + 9) / (3 * h2)
+    assert is_stable_where(quartic, "s", [h2, bound], {})
+    assert not is_stable_where(quartic, "s", [h1, bound], {})
+    assert not is_stable_where(quartic, "s", [h2], {})
+    assert not is_stable_where(quartic, "s", [h2, bound, h2 + 1], {})
+    found = stable_where(quartic, "s", {})
+    assert is_stable_where(quartic, "s", found.positive, {}, proof=found.equivalence)
+    assert not is_stable_where(quartic + s, "s", found.positive, {}, proof=found.equivalence)
+    assert not is_stable_where(quartic, "s", [h2], {}, proof=found.equivalence)
+    assert not is_stable_where(quartic, "s", found.positive, {}, proof=replace(found.equivalence, forward=()))

@@ -1,0 +1,278 @@
+"""Conditions of stability in many parameters: against roots, against answers from elsewhere, against other deciders.
+
+At rational points the lists are held against Routh's scheme and the recursion of Schur and Cohn, written without the
+kernel, and against isolated roots; whole regions against regions known from other programs, by z3 where it is there.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from flint import fmpz_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symobs.exact import Scalar, from_coefficients
+from symobs.expression import parse_scalar
+from symobs.stability.criteria.stability_conditions import condition_lists, stability_conditions, stable_where
+from tests.support.independent_algebra.plain import (
+    coefficients_at,
+    has_sign,
+    is_hurwitz,
+    is_schur,
+    random_fraction,
+    seeded,
+    value_at,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from symobs.stability.inequalities.simplify import Simplified
+
+s = Scalar.symbol("s")
+a, b, h1, h2, h3 = (Scalar.symbol(name) for name in ("a", "b", "h1", "h2", "h3"))
+NAMES = ["a", "b", "omega", "rho", "J", "L", "R", "K", "M", "m", "l", "g", "t1", "t2", "t3"]
+NAMES += [f"{letter}{k}" for letter in "hk" for k in range(1, 8)]
+ALL_POSITIVE = {name: "positive" for name in NAMES if name[0] not in "hk"}
+
+
+def read(text: str) -> Scalar:
+    return parse_scalar(text, dict.fromkeys(NAMES))
+
+
+def polynomial(text: str) -> Scalar:
+    return from_coefficients([read(part) for part in text.split(",")], "s")
+
+
+def points(names: Iterable[str], signs: Mapping[str, str], count: int, seed: object) -> list[dict[str, Fraction]]:
+    generator, names = seeded(seed), sorted(names)
+    return [{n: random_fraction(generator, signs.get(n, "real")) / 4 for n in names} for _ in range(count)]
+
+
+def all_positive(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
+    return all(value_at(value, point) > 0 for value in values)
+
+
+def shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
+    """The coefficients of p(s + by), by Horner's scheme."""
+    found = list(coefficients)
+    for end in range(len(found), 1, -1):
+        for k in range(1, end):
+            found[k] += by * found[k - 1]
+    return found
+
+
+# -- answers known from elsewhere --------------------------------------------------------------------------------------
+
+DOWN = {"b": "positive", "omega": "positive"}
+#: Coefficients, signs, and the conditions found by QEPCAD, z3 or by hand; each must be > 0.
+KNOWN: dict[str, tuple[str, Mapping[str, str], list[str]]] = {
+    "pendulum hanging": ("1, b + h2, omega^2*(1 - h1)", DOWN, ["1 - h1", "h2 + b"]),
+    "pendulum upright": ("1, b + h2, omega^2*(h1 - 1)", DOWN, ["h1 - 1", "h2 + b"]),
+    "hyperbola": ("1, h1, h2, 1", {}, ["h1", "h1*h2 - 1"]),
+    "bilinear": ("1, 1 + h1, 2 + h2, 1 + h1*h2", {}, ["2*h1 + h2 + 1", "h1*h2 + 1"]),
+    "quartic": ("1, 2, 3 + h1, 2 + h2, 1 + h1", {}, ["h1 + 1", "2*h1*h2 - h2^2 + 2*h2 + 4"]),
+    "branch": ("1, 3, h1, h2, 1", {}, ["h2", "3*h1*h2 - h2^2 - 9"]),
+    "two pieces": ("1, h1^2 - 1, 1 - h2^2", {}, ["h1^2 - 1", "1 - h2", "1 + h2"]),
+    "two masses": ("1, h2, 2 + h1, h2, h1", {}, ["h1", "h2"]),
+    "hole": ("1, 1, h1^2 + h2^2", {}, ["h1^2 + h2^2"]),
+    "annulus": ("1, 5 - h1^2 - h2^2, h1^2 + h2^2 - 1", {}, ["h1^2 + h2^2 - 1", "5 - h1^2 - h2^2"]),
+    "quintic": (
+        "1, 3, 5 + h1, 6 + h2, 4 + h1 - h2, 1 + h2",
+        {},
+        ["h2 + 1", "3*h1 - h2 + 9", "6*h1^2-3*h1*h2^2-2*h1*h2+36*h1+h2^3-18*h2^2+6*h2+50"],
+    ),
+    "disconnected": (
+        "1, 2 + h1, h1^2 + h2^2 - 4, h1*h2 + 1",
+        {},
+        ["h1*h2 + 1", "h1^3 + 2*h1^2 + h1*h2^2 - h1*h2 - 4*h1 + 2*h2^2 - 9"],
+    ),
+    "three lags": (
+        "t1*t2*t3, t1*t2 + t1*t3 + t2*t3, t1 + t2 + t3, 1 + k1",
+        ALL_POSITIVE,
+        ["1 + k1", "(t1 + t2 + t3)*(t1*t2 + t1*t3 + t2*t3) - t1*t2*t3*(1 + k1)"],
+    ),
+    "direct-current motor, PI": (
+        "J*L, J*R + b*L, b*R + K^2 + K*k1, K*k2",
+        ALL_POSITIVE,
+        ["k2", "(J*R + b*L)*(b*R + K^2 + K*k1) - J*L*K*k2"],
+    ),
+    "everywhere": ("1, a, a + b, b*a/2", ALL_POSITIVE, []),
+}
+IN_DISCRETE_TIME = {
+    "second order": ("1, h1, h2", ["1 + h1 + h2", "1 - h1 + h2", "1 - h2"]),
+    "third order": ("1, h1, h2, 1/4", ["4*h1 + 4*h2 + 5", "3 - 4*h1 + 4*h2", "4*h1 - 16*h2 + 15"]),
+    "fourth order": (
+        "1, h1, 0, h2, 1/8",
+        ["9 - 8*h1 - 8*h2", "9 + 8*h1 + 8*h2", "441 - 64*h1^2 + 576*h1*h2 - 512*h2^2"],
+    ),
+}
+
+
+def holds_the_same(found: Simplified, expected: Sequence[Scalar], signs: Mapping[str, str]) -> None:
+    """The same at rational points, and by z3, asked here in its own way, at all points."""
+    names = set().union(*(value.names for value in (*found.positive, *expected)))
+    for point in points(names, signs, 150, names):
+        assert all_positive(found.positive, point) == all_positive(expected, point), point
+    z3 = pytest.importorskip("z3")
+    solver, symbols = z3.Solver(), {name: z3.Real(name) for name in names}
+    solver.set("timeout", 20_000)
+    solver.add(*(symbols[name] > 0 for name in names if signs.get(name) == "positive"))
+    sides = []
+    for values in (found.positive, expected):
+        sums = [
+            z3.Sum([c * z3.Product([symbols[n] ** e for n, e in powers] or [z3.RealVal(1)]) for c, powers in v.terms()])
+            for v in values
+        ]
+        sides.append(z3.And([total > 0 for total in sums]))
+    solver.add(sides[0] != sides[1])
+    assert str(solver.check()) == "unsat"
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_regions(name: str) -> None:
+    text, signs, expected = KNOWN[name]
+    found = stable_where(polynomial(text), "s", signs)
+    assert found.equivalence.holds(signs)
+    assert found.verdict == ("conditional" if expected else "yes")
+    assert len(found.positive) <= len(expected)
+    assert found.irredundant
+    holds_the_same(found, [read(part) for part in expected], signs)
+    for value, point in found.witnesses:
+        assert all(has_sign(number, signs.get(n, "real")) for n, number in point.items())
+        assert not value_at(value, point) > 0
+        assert all_positive([other for other in found.positive if other != value], point)
+
+
+@pytest.mark.parametrize("name", IN_DISCRETE_TIME)
+def test_known_regions_in_discrete_time(name: str) -> None:
+    text, expected = IN_DISCRETE_TIME[name]
+    found = stable_where(polynomial(text), "s", {}, discrete=True)
+    assert found.equivalence.holds({})
+    holds_the_same(found, [read(part) for part in expected], {})
+
+
+@pytest.mark.parametrize("text", ["1, 0, 2, h2, h1", "1, h1, -1 - h1^2, 1 + h2^2", "1, h1, -h1, h2"])
+def test_empty_regions(text: str) -> None:
+    found = stable_where(polynomial(text), "s", {})
+    assert found.verdict == "no"
+    assert found.positive == (Scalar.of(0),)
+    assert found.equivalence.holds({})
+
+
+def test_a_margin_and_a_radius() -> None:
+    cubic = polynomial("1, h1, h2, 6")
+    found = stable_where(cubic, "s", {}, margin=Scalar.of(1))
+    expected = [h1 - 3, 5 + h1 - h2, (h1 - 2) * h2 - 2 * (h1**2 - 4 * h1 + 7), h1 - 2]
+    holds_the_same(found, expected, {})
+    for point in points(["h1", "h2"], {}, 100, "margin"):
+        moved = shifted(coefficients_at(cubic, "s", point), Fraction(-1))
+        assert is_hurwitz(moved) == all_positive(found.positive, point)
+    rho = Scalar.symbol("rho")
+    square = polynomial("1, h1, h2")
+    inside = stable_where(square, "s", {"rho": "positive"}, discrete=True, radius=rho)
+    for point in points(["h1", "h2", "rho"], {"rho": "positive"}, 200, "radius"):
+        scaled = [c * point["rho"] ** (2 - k) for k, c in enumerate(coefficients_at(square, "s", point))]
+        assert is_schur(scaled) == all_positive(inside.positive, point)
+    assert stable_where(s - a, "s", {}, discrete=True, radius=Scalar.of(-1)).verdict == "no"
+    assert rho in stability_conditions(s - a, "s", {}, discrete=True, radius=rho)
+
+
+def test_the_leading_coefficient_may_vanish() -> None:
+    assert set(stable_where(a * s + b, "s", {}).positive) == {a * b}
+    assert set(stable_where(a * b * s + b, "s", {}).positive) == {a, b**2}  # at b = 0 there is no polynomial
+    found = stable_where(a * s**2 + h1 * s + h2, "s", {})
+    for point in points(["a", "h1", "h2"], {}, 200, "lead"):
+        for value in (point["a"], Fraction(0)):
+            here = {**point, "a": value}
+            stable = value != 0 and is_hurwitz(coefficients_at(a * s**2 + h1 * s + h2, "s", here))
+            assert stable == all_positive(found.positive, here)
+    assert stable_where((s + h1) / (1 + a**2), "s", {}).positive == (h1,)
+    assert stable_where((a * s + h1) / a, "s", {"a": "negative"}).positive == (-h1,)
+
+
+# -- roots at random points --------------------------------------------------------------------------------------------
+
+
+def roots_are_inside(coefficients: list[Fraction], *, discrete: bool) -> bool | None:
+    """Whether all isolated roots lie inside; None where an enclosure touches the boundary."""
+    common = lcm(*(c.denominator for c in coefficients))
+    found: Any = fmpz_poly([int(c * common) for c in reversed(coefficients)]).complex_roots()
+    sizes = [(1 - abs(root)) if discrete else -root.real for root, _ in found]
+    if any(size.contains(0) for size in sizes):
+        return None
+    return all(size > 0 for size in sizes)
+
+
+atoms = st.sampled_from([h1, h2, h3, a, b, a * h1, h1 * h2, h1 + 1, h2 + b, a * (1 - h1), h1**2, h2 * h3])
+entries = st.builds(
+    lambda number, k, atom: number + k * atom, st.integers(-2, 6), st.sampled_from([1, 1, 2, -1]), atoms
+)
+declared = st.fixed_dictionaries({"a": st.sampled_from(["positive", "nonzero", "real", "nonnegative"])})
+
+
+@given(st.lists(entries, min_size=1, max_size=4), declared, st.booleans(), st.integers(0, 10**6))
+@settings(max_examples=60)
+def test_the_simplified_list_the_raw_lists_and_the_roots_agree(
+    tail: list[Scalar],
+    signs: dict[str, str],
+    discrete: bool,  # noqa: FBT001 - drawn
+    seed: int,
+) -> None:
+    about = from_coefficients([Scalar.of(1), *tail], "s")
+    signs = {**signs, "b": "positive"}
+    found = stable_where(about, "s", signs, discrete=discrete)
+    assert found.equivalence.holds(signs)
+    raws = condition_lists(about, "s", signs, discrete=discrete)
+    for point in points(["a", "b", "h1", "h2", "h3"], signs, 12, seed):
+        stable = roots_are_inside(coefficients_at(about, "s", point), discrete=discrete)
+        if stable is not None:
+            assert [all_positive(list_, point) for list_ in (found.positive, *raws)] == [stable] * 3, point
+    for value, point in found.witnesses:
+        assert all(has_sign(number, signs.get(name, "real")) for name, number in point.items())
+        assert all_positive([other for other in found.positive if other != value], point)
+        assert not all_positive([value], point)
+    if found.point is not None:
+        filled = {**dict.fromkeys(["a", "b", "h1", "h2", "h3"], Fraction(1)), **found.point}
+        assert roots_are_inside(coefficients_at(about, "s", filled), discrete=discrete) is not False
+
+
+free = [Scalar.symbol(f"h{k}") for k in range(1, 7)]
+BIG = {
+    "quartic": from_coefficients([Scalar.of(1), *free[:4]], "s"),
+    "quintic": from_coefficients([Scalar.of(1), *free[:5]], "s"),
+    "sextic": from_coefficients([Scalar.of(1), *free], "s"),
+    "cart and pendulum": polynomial(
+        "1, (k2*l - k4)/(M*l), (k1*l - k3 - g*(M + m))/(M*l), -g*k2/(M*l), -g*k1/(M*l)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BIG)
+def test_many_free_parameters(name: str) -> None:
+    about = BIG[name]
+    signs: dict[str, str] = {n: "positive" for n in ("M", "m", "l", "g") if n in about.names}
+    found = stable_where(about, "s", signs)
+    assert found.equivalence.holds(signs)
+    assert found.irredundant
+    assert len(found.positive) == about.degree("s")
+    generator, both = seeded(name), set()
+    for point in points(about.names - {"s"}, signs, 60, name):
+        stable = is_hurwitz(coefficients_at(about, "s", point))
+        both.add(stable)
+        assert stable == all_positive(found.positive, point)
+    for _ in range(40):  # stable ones, which random coefficients seldom are
+        if name == "cart and pendulum":
+            break
+        whole = [Fraction(1)]
+        while len(whole) <= about.degree("s"):
+            root = abs(random_fraction(generator)) - Fraction(1, 4)
+            whole = [p + root * q for p, q in zip([*whole, Fraction(0)], [Fraction(0), *whole], strict=True)]
+        point = {f"h{k}": c for k, c in enumerate(whole) if k}
+        both.add(is_hurwitz(whole))
+        assert is_hurwitz(whole) == all_positive(found.positive, point)
+    assert both == {True, False} or name == "cart and pendulum"

@@ -1,0 +1,178 @@
+"""What is read is what was written: nothing that two readers would read in two ways goes through."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+import sympy
+from sympy import Dummy, Symbol
+
+import symobs
+from symobs.errors import ExpressionError, InputError
+from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
+from symobs.expression import parse_matrix, parse_poles, parse_scalar
+from symobs.system import Symbols
+
+a, b, c, d, s = sympy.symbols("a b c d s")
+
+# -- a product without its sign after a division ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "from_the_left", "all_below"),
+    [
+        ("1/s(s+1)", "1/s*(s+1)", "1/(s*(s+1))"),
+        ("1/(s+1)(s+2)", "1/(s+1)*(s+2)", "1/((s+1)*(s+2))"),
+        ("a/b c", "a/b*c", "a/(b*c)"),
+        ("1/2(3)", "1/2*(3)", "1/(2*(3))"),
+        ("2 - 3 a/s^2 (s+1)^-2(s+3) + 4", "3 a/s^2*(s+1)^-2(s+3)", "3 a/(s^2*(s+1)^-2(s+3))"),
+        ("(1 + a/-b c)*s", "a/-b*c", "a/(-b*c)"),
+        ("[1 1/b(b+1) 3]", "1/b*(b+1)", "1/(b*(b+1))"),
+    ],
+)
+def test_a_product_without_its_sign_after_a_division_has_two_readings(
+    text: str, from_the_left: str, all_below: str
+) -> None:
+    told = re.escape(f"write {from_the_left} or {all_below}")
+    with pytest.raises(ExpressionError, match=rf"two ways, at .*{told}$"):
+        parse_matrix(text, {"a": "real", "b": "real", "c": "real"}, variable="s")
+    one, other = (parse_scalar(reading, variable="s") for reading in (from_the_left, all_below))
+    assert one != other
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2 s/3", 2 * s / 3),
+        ("(1/s)(s+1)", (s + 1) / s),
+        ("s (1/2) s", s**2 / 2),
+        ("a/b*c d", a * c * d / b),
+        ("a/(b c)", a / (b * c)),
+        ("s^(1/1) a", s * a),
+        ("1/2 + s(s+1)", sympy.Rational(1, 2) + s**2 + s),
+    ],
+)
+def test_other_products_need_no_sign(text: str, value: sympy.Expr) -> None:
+    names = dict.fromkeys("abcd", "real")
+    assert sympy.simplify(scalar_to_sympy(parse_scalar(text, names, variable="s")) - value) == 0
+
+
+def test_spaces_in_brackets_set_entries_apart_after_a_division_too() -> None:
+    assert parse_matrix("[1/b (b+1)]").shape == (1, 2)
+
+
+def test_a_fraction_before_the_imaginary_unit_is_its_factor() -> None:
+    (pole,) = parse_poles("-1 + 3/2 j")
+    assert (pole.real, pole.imaginary) == (parse_scalar("-1"), parse_scalar("3/2"))
+
+
+# -- SymPy symbols ----------------------------------------------------------------------------------------------------
+
+one, other = Dummy("a"), Dummy("a")
+k, positive_k = Symbol("k"), Symbol("k", positive=True)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda: symobs.StateSpace(sympy.Matrix([[0, one - other], [1, 0]]), C=sympy.Matrix([[1, 0]])),
+        lambda: symobs.StateSpace([[0, one], [1, 0]], C=[[1, other]]),
+        lambda: symobs.StateSpace([[0, k], [1, 0]], C=[[1, positive_k]]),
+        lambda: symobs.observer(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), poles=[-1, -positive_k]),
+        lambda: symobs.observer(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), L=[[positive_k], [1]]),
+        lambda: symobs.gramian(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), horizon=positive_k),
+        lambda: symobs.StateSpace.from_transfer_function(1 / (s * (Dummy("s") + 1))),
+        lambda: symobs.StateSpace("[0 k; 1 0]", symbols={k: "real", positive_k: "positive"}),
+        lambda: symobs.StateSpace("[0 k; 1 0]", symbols={k: "real", "k": "positive"}),
+    ],
+)
+def test_two_symbols_of_one_name_are_refused(ask: Any) -> None:
+    with pytest.raises(InputError, match=r"symbols\.\w: two different symbols are both called [aks]; give each"):
+        ask()
+
+
+def test_an_array_of_symbols_is_looked_into() -> None:
+    numpy = pytest.importorskip("numpy")
+    with pytest.raises(InputError, match="two different symbols are both called a"):
+        symobs.StateSpace(numpy.array([[0, one], [other, 0]]))
+    assert symobs.StateSpace(numpy.array([[0, positive_k], [1, 0]])).symbols.sign("k") == "positive"
+
+
+def test_a_dummy_is_called_by_its_name_and_comes_back_itself() -> None:
+    plant = symobs.StateSpace(sympy.Matrix([[0, one], [1, 0]]), C=[[1, 0]])
+    assert plant.A[0, 1] is one
+    found = symobs.observability(plant)
+    assert [condition.lhs for condition in found.conditions] == [one]
+    assert '"a != 0"' in found.to_json()
+
+
+@pytest.mark.parametrize(
+    ("symbol", "reason"),
+    [
+        (Symbol("k", imaginary=True), "k is not real by its assumptions"),
+        (Symbol("k", real=False), "k is not real by its assumptions"),
+        (Symbol("k", commutative=False), "k does not commute"),
+        (Symbol("lambda"), '"lambda" is a word of Python and names no symbol; write another name, such as "lam"'),
+        (Symbol("\N{GREEK SMALL LETTER OMEGA}"), "is not a name; begin with a letter"),
+        (Symbol("a b"), '"a b" is not a name'),
+    ],
+)
+def test_what_is_no_real_parameter_is_refused(symbol: Symbol, reason: str) -> None:
+    with pytest.raises(InputError, match=re.escape(reason)):
+        symobs.StateSpace([[0, symbol], [1, 0]])
+    with pytest.raises(InputError, match=re.escape(reason)):
+        symobs.observer(symobs.StateSpace("[0 1; 1 0]", C="[1 0]"), polynomial=s**2 + symbol * s + 1)
+
+
+SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
+ADMITTED = {
+    "positive": {1},
+    "negative": {-1},
+    "nonnegative": {0, 1},
+    "nonpositive": {-1, 0},
+    "nonzero": {-1, 1},
+    "real": {-1, 0, 1},
+}
+
+
+@pytest.mark.parametrize("declared", SIGNS)
+@pytest.mark.parametrize("assumed", SIGNS)
+def test_a_declared_sign_may_not_contradict_an_assumption(declared: str, assumed: str) -> None:
+    symbol = Symbol("k", **{assumed: True})
+    for ask in (
+        lambda: Symbols.of({symbol: declared}),
+        lambda: symobs.StateSpace([[0, symbol], [1, 0]], symbols={"k": declared}),
+    ):
+        if ADMITTED[declared] & ADMITTED[assumed]:
+            ask()
+            continue
+        with pytest.raises(InputError, match=f"k is declared {declared}, which the assumptions .* contradict"):
+            ask()
+
+
+def test_the_variable_of_the_polynomials_needs_no_assumption() -> None:
+    variable = Symbol("s", real=False)
+    assert sympy.Matrix([[-1]]) == symobs.StateSpace.from_transfer_function(1 / (variable + 1)).A
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        {"x1": "real", "x_1": "real"},
+        {"k": "real", "x": {"latex": "k"}},
+        {"omega": "real", "w": {"latex": r"\omega"}},
+        {"x1": {"latex": "x_{1}"}, "x_1": "real"},
+    ],
+)
+def test_two_names_that_print_alike_are_refused(declared: dict[str, Any]) -> None:
+    one_name, another = sorted(declared)
+    with pytest.raises(InputError, match=f"{one_name} and {another} are printed alike; give one of them another name"):
+        Symbols.of(declared)
+
+
+def test_undeclared_names_that_print_alike_are_refused() -> None:
+    with pytest.raises(InputError, match="x1 and x_1 are printed alike"):
+        symobs.StateSpace("[x1 1; 0 x_1]")
+    assert Symbols.of({"x1": "real", "x_1": {"latex": "y"}, "x2": "real"}).closed
