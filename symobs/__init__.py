@@ -10,7 +10,7 @@ from typing import Any
 
 #: Where tasks and methods are discovered, and where output formats are.
 TASK_PACKAGES = ("symobs.analysis", "symobs.design")
-FORMAT_PACKAGE = "symobs.render"
+FORMAT_PACKAGE = "symobs.render.formats"
 
 
 def __getattr__(name: str) -> Any:

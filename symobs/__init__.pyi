@@ -1,4 +1,4 @@
-"""What type checkers and editors know of `symobs`; written by `python -m tests.typed_face`, held to it by a test."""
+"""What type checkers and editors know of `symobs`; written by `python -m tests.programs.typed_face`, held to it by a test."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -7,29 +7,29 @@ from typing import Any, TypeAlias
 from sympy import Expr, ImmutableMatrix
 from sympy.matrices import MatrixBase
 
-from symobs.analysis.canonical_form import CanonicalForm as _CanonicalForm
-from symobs.analysis.characteristic_polynomial import CharacteristicPolynomial as _CharacteristicPolynomial
-from symobs.analysis.decomposition import Decomposition as _Decomposition
-from symobs.analysis.detectability import Detectability as _Detectability
-from symobs.analysis.detectability import Stabilizability as _Stabilizability
-from symobs.analysis.dual import Dual as _Dual
-from symobs.analysis.gramian import Gramian as _Gramian
-from symobs.analysis.initial_state import InitialState as _InitialState
-from symobs.analysis.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
-from symobs.analysis.matrix_exponential import MatrixExponential as _MatrixExponential
-from symobs.analysis.observability import Controllability as _Controllability
-from symobs.analysis.observability import Observability as _Observability
-from symobs.analysis.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
-from symobs.analysis.stability_region import StabilityRegion as _StabilityRegion
-from symobs.analysis.time_varying import TimeVaryingObservability as _TimeVaryingObservability
-from symobs.analysis.transfer_function import TransferFunction as _TransferFunction
-from symobs.design.feedforward import FeedforwardDesign as _FeedforwardDesign
-from symobs.design.observer import ObserverDesign as _ObserverDesign
-from symobs.design.output_feedback import OutputFeedback as _OutputFeedback
-from symobs.design.pole_advice import PoleAdvice as _PoleAdvice
-from symobs.design.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
-from symobs.design.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
-from symobs.design.tracking import TrackingDesign as _TrackingDesign
+from symobs.analysis.modes.detectability import Detectability as _Detectability
+from symobs.analysis.modes.detectability import Stabilizability as _Stabilizability
+from symobs.analysis.modes.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
+from symobs.analysis.rank.observability import Controllability as _Controllability
+from symobs.analysis.rank.observability import Observability as _Observability
+from symobs.analysis.realization.canonical_form import CanonicalForm as _CanonicalForm
+from symobs.analysis.realization.characteristic_polynomial import CharacteristicPolynomial as _CharacteristicPolynomial
+from symobs.analysis.realization.dual import Dual as _Dual
+from symobs.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
+from symobs.analysis.realization.transfer_function import TransferFunction as _TransferFunction
+from symobs.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
+from symobs.analysis.time_response.gramian import Gramian as _Gramian
+from symobs.analysis.time_response.initial_state import InitialState as _InitialState
+from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
+from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
+from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
+from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
+from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
+from symobs.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvice
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
+from symobs.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
+from symobs.design.reference.tracking import TrackingDesign as _TrackingDesign
 from symobs.errors import BudgetExceeded as BudgetExceeded
 from symobs.errors import CertificateRejected as CertificateRejected
 from symobs.errors import DerivationRejected as DerivationRejected
@@ -515,9 +515,7 @@ class _StabilityRegionResult(_StabilityRegion):
     def intervals_decimal(self) -> tuple[Any, ...]: ...
 
 def stability_region(
-    plant: StateSpace | object = None,
-    symbols: Mapping[str, Any] | None = None,
-    dt: object = 0,
+    plant: StateSpace | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
     *,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_HERE = Path(__file__).parent
+_HERE = Path(__file__).parents[1]
 #: A task as it stands in its module: the decorator, the name, and the first line of the docstring.
 _TASK = re.compile(r'^@task(?:_in_time)?\ndef (\w+)\(.*?\) -> \w+:\n    """(.*?)(?:"""|\n)', re.MULTILINE | re.DOTALL)
 _FORMAT = re.compile(r'name: ClassVar\[str\] = "(\w+)"\n    suffix: ClassVar\[str\] = "(\.\w+)"')
@@ -35,7 +35,7 @@ def format_suffixes(package: str) -> dict[str, str]:
 
 def _sources(package: str, mark: str) -> Iterator[str]:
     """Yield the sources of a package that contain a mark."""
-    for path in _HERE.joinpath(*package.split(".")[1:]).glob("*.py"):
+    for path in _HERE.joinpath(*package.split(".")[1:]).rglob("*.py"):
         source = path.read_text(encoding="utf-8")
         if mark in source:
             yield source

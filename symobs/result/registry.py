@@ -6,7 +6,8 @@ import importlib
 import inspect
 import pkgutil
 from collections.abc import Callable, Iterator, Mapping
-from functools import wraps
+from functools import lru_cache, wraps
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import symobs
@@ -15,10 +16,12 @@ from symobs.errors import InputError, UsageError
 from symobs.system import as_plant
 
 if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
     from symobs.result.result import Document, Result
 
 Kind = TypeVar("Kind", bound=type)
 Callback = TypeVar("Callback", bound=Callable[..., Any])
+Writer = TypeVar("Writer", bound="Callable[[Page, Any], None]")
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ _TASKS: dict[str, Task] = {}
 _IN_TIME: list[str] = []
 _METHODS: dict[str, Method] = {}
 _FORMATS: dict[str, Any] = {}
+_PAGES: dict[type, Callable[[Page, Any], None]] = {}
 _DISCOVERED: set[str] = set()
 
 
@@ -127,6 +131,30 @@ def method(name: str, *, source: str, page: Callable[..., None] | None = None) -
     return register
 
 
+def page_of(kind: type[Result]) -> Callable[[Writer], Writer]:
+    """Register the function that writes the page of a result type.
+
+    It stands beside the type, in the module of the same name with `_page` after it, and is imported when first needed.
+    """
+
+    def register(writer: Writer) -> Writer:
+        _PAGES[kind] = writer
+        return writer
+
+    return register
+
+
+def writer_of(kind: type[Result]) -> Callable[[Page, Any], None]:
+    """Return what writes the page of a result type: its own, or that of the type it is derived from."""
+    for base in kind.__mro__:
+        if base not in _PAGES and find_spec(f"{base.__module__}_page") is not None:
+            importlib.import_module(f"{base.__module__}_page")
+        if base in _PAGES:
+            return _PAGES[base]
+    message = f"no page is registered for {kind.__name__}: write {kind.__module__.replace('.', '/')}_page.py"
+    raise NotImplementedError(message)
+
+
 def output_format(kind: Kind) -> Kind:
     """Register an output format: a class with `name`, `suffix` and `render(document)`."""
     _FORMATS[kind.name] = kind()  # type: ignore[attr-defined]
@@ -138,16 +166,33 @@ def _summary(function: Callable[..., Any]) -> str:
 
 
 def _discover(package: str) -> None:
-    """Import every module of a package, once: of what was interrupted the rest follows the next time."""
+    """Import every module of a package and of its folders, once: of what was interrupted the rest follows next time."""
     if package not in _DISCOVERED:
-        for found in _modules(package):
-            importlib.import_module(f"{package}.{found.name}")
+        for name in _modules(package):
+            importlib.import_module(name)
         _DISCOVERED.add(package)
 
 
-def _modules(package: str) -> Iterator[pkgutil.ModuleInfo]:
-    """Yield the modules of a package, without importing them."""
-    yield from pkgutil.iter_modules(importlib.import_module(package).__path__)
+@lru_cache(maxsize=8)
+def _modules(package: str) -> tuple[str, ...]:
+    """Return the modules of a package and of its folders by dotted name, without importing them."""
+    return tuple(name for path in importlib.import_module(package).__path__ for name in _below(path, package))
+
+
+def _below(folder: str, package: str) -> Iterator[str]:
+    for found in pkgutil.iter_modules([folder]):
+        name = f"{package}.{found.name}"
+        if found.ispkg:
+            yield from _below(f"{folder}/{found.name}", name)
+        else:
+            yield name
+
+
+def _look_at(package: str, name: str) -> None:
+    """Import the modules of this name below a package, wherever they lie."""
+    for found in _modules(package):
+        if found.rpartition(".")[2] == name:
+            importlib.import_module(found)
 
 
 def tasks() -> Mapping[str, Task]:
@@ -161,8 +206,7 @@ def task_named(name: str) -> Task | None:
     """Return a task, None where there is none; a module of its name is looked at first: a run pays for what it needs."""
     if name not in _TASKS:
         for package in symobs.TASK_PACKAGES:
-            if name in {found.name for found in _modules(package)}:
-                importlib.import_module(f"{package}.{name}")
+            _look_at(package, name)
     return _TASKS.get(name) or tasks().get(name)
 
 
@@ -199,8 +243,7 @@ def format_named(name: str) -> Any:
 
     A module with the format's name is looked at first, so that a run which needs one format does not pay for all.
     """
-    if name in {found.name for found in _modules(symobs.FORMAT_PACKAGE)}:
-        importlib.import_module(f"{symobs.FORMAT_PACKAGE}.{name}")
+    _look_at(symobs.FORMAT_PACKAGE, name)
     if name not in _FORMATS and name not in formats():
         message = f"{name[:40]!r} is not an output format"
         raise UsageError(message, repair=f"use one of {', '.join(sorted(_FORMATS))}")

@@ -19,7 +19,7 @@ from symobs.derivation import translated
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.result.conversions import Faces
-from symobs.result.registry import render
+from symobs.result.registry import render, writer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -100,8 +100,8 @@ class Result(Faces):
         raise NotImplementedError
 
     def write(self, page: Page) -> None:
-        """Write the derivation."""
-        raise NotImplementedError
+        """Write the derivation: by default as the page registered for this type does."""
+        writer_of(type(self))(page, self)
 
     @property
     def verdict(self) -> str:

@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from symobs._dataclass import dataclass
-from symobs.analysis.modes.detectability_page import write_page
 from symobs.analysis.modes.modes import ModeResult, polynomial_of
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of, too_long
 from symobs.conditions import Condition
@@ -31,7 +30,6 @@ from symobs.stability.criteria.stability import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.derivation.builder import Page
     from symobs.specification import Name
     from symobs.system import StateSpace
 
@@ -183,10 +181,6 @@ class HiddenStability(ModeResult):
             "polynomial": self.answer["polynomial"],
             "rank": self.test.answer["rank"],
         }
-
-    def write(self, page: Page) -> None:
-        """Write the test at the eigenvalues that are not stable, or with parameters the hidden modes."""
-        write_page(page, self)
 
 
 def _is_stable(factor: Scalar, plant: StateSpace) -> bool:

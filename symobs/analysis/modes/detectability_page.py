@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs.analysis.modes.detectability import HiddenStability
 from symobs.analysis.modes.modes import stable_modes
 from symobs.analysis.modes.modes_page import (
     at_eigenvalues,
@@ -26,16 +27,17 @@ from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE
 from symobs.formula import Exactly, Together
+from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
-    from symobs.analysis.modes.detectability import HiddenStability
     from symobs.derivation import Step
     from symobs.formula.term import Term
     from symobs.result import Case
 
 
+@page_of(HiddenStability)
 def write_page(page: Page, result: HiddenStability) -> None:
     """Write the page."""
     given(page)

@@ -18,7 +18,7 @@ from symobs.analysis.stability_region.stability_region_fields import (
 from symobs.analysis.stability_region.stability_region_question import Question, read_question
 from symobs.certificate.claims import Claim, Statement
 from symobs.conditions import Condition
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.exact import Scalar
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
@@ -234,12 +234,6 @@ class StabilityRegion(Result):
         if not isinstance(self.region, LineRegion):
             return None
         return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
-
-    def write(self, page: Page) -> None:
-        """Write χ, the table, the conditions, the region in words, and its picture."""
-        from symobs.analysis.stability_region.stability_region_page import write_region  # noqa: PLC0415 - it stands on this type
-
-        write_region(page, self)
 
 
 def _bounds_of(question: Question) -> tuple[tuple[Bound, ...] | None, Equivalence | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from symobs.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, state_signs
+from symobs.analysis.stability_region.stability_region import StabilityRegion
 from symobs.analysis.stability_region.stability_region_fields import solved
 from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
@@ -13,6 +14,7 @@ from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
 from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
+from symobs.result import page_of
 from symobs.stability.criteria.stability import hurwitz_matrix
 from symobs.stability.plots.region_plot import picture_of_line
 from symobs.stability.regions.description import are_whole, is_written, relations_of
@@ -20,7 +22,6 @@ from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 
 if TYPE_CHECKING:
-    from symobs.analysis.stability_region.stability_region import StabilityRegion
     from symobs.derivation.builder import Page
     from symobs.formula import Formula, Relation
     from symobs.result import Case
@@ -33,6 +34,7 @@ HOW = {"points_decide", "point_decides", "cells_decide"}
 WRITTEN_ORDER = 4
 
 
+@page_of(StabilityRegion)
 def write_region(page: Page, result: StabilityRegion) -> None:
     """Write the whole page."""
     question = result.question

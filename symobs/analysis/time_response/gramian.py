@@ -20,7 +20,6 @@ from symobs.analysis.time_response.damping_cases import (
     time_environment,
     vanishing_denominators,
 )
-from symobs.analysis.time_response.gramian_page import write_gramian
 from symobs.analysis.time_response.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
 from symobs.analysis.time_response.matrix_exponential import TIME, closed_form, question_of, require_continuous
 from symobs.certificate.claims import Claim
@@ -245,10 +244,6 @@ class Gramian(Branched):
         found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
         found |= {"rank": self.answer["rank"]["rank"], "kernel": vectors}
         return {**found, **({"question": asked} if asked else {})}
-
-    def write(self, page: Page) -> None:
-        """Write e^{At}, the integral, the finite sum and the kernel."""
-        write_gramian(self, page)
 
     def tell(self, page: Page) -> None:
         """Write one branch."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import HIDDEN, given, hidden, hidden_polynomial
+from symobs.analysis.time_response.gramian import Gramian
 from symobs.analysis.time_response.horizons import INFINITE, lyapunov
 from symobs.analysis.time_response.matrix_exponential import (
     closed_form,
@@ -20,11 +21,11 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import substitute
 from symobs.formula import Exactly, Literal, Quotient, Together
 from symobs.formula.calculus import since_start
+from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
-    from symobs.analysis.time_response.gramian import Gramian
     from symobs.derivation.builder import Page
     from symobs.formula.term import Term
 
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
 _LYAPUNOV_UP_TO = 3
 
 
-def write_gramian(result: Gramian, page: Page) -> None:
+@page_of(Gramian)
+def write_gramian(page: Page, result: Gramian) -> None:
     """Write the whole page."""
     horizon = result.answer["horizon"]
     values = list(result.everything())

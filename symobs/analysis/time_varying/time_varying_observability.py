@@ -15,7 +15,6 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import strata
 from symobs.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.analysis.time_varying.time_interval import instant_where_not_zero, reject_poles, reject_sizes_and_names
-from symobs.analysis.time_varying.time_varying_observability_page import write
 from symobs.analysis.time_varying.time_varying_solution import Asked, closed_form, dependences
 from symobs.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
 from symobs.certificate.claims import Claim
@@ -33,7 +32,6 @@ from symobs.specification import read_interval, read_signal
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.derivation.builder import Page
     from symobs.specification import IntervalText, Name, SignalText
     from symobs.system import StateSpace
 
@@ -312,10 +310,6 @@ class TimeVaryingObservability(Result):
         """Also the ends of the interval."""
         ends = self.asked_for.interval
         return {**super().data, **({"t_start": ends[0], "t_end": ends[1]} if ends else {})}
-
-    def write(self, page: Page) -> None:
-        """Write the page in the order of the theory: Φ, the Gramian, the stack, the initial state."""
-        write(page, self)
 
 
 def _det(matrix: Matrix, environment: Environment) -> Term:

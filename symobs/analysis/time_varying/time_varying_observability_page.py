@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form, given, stratum_of, undecided
+from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability
 from symobs.analysis.time_varying.time_varying_solution import dependences, has_functions
 from symobs.analysis.time_varying.transition_matrix import (
     START,
@@ -22,9 +23,9 @@ from symobs.exact import Matrix, Scalar, antiderivative, rank
 from symobs.exact.kernel.generators import substitute
 from symobs.formula import Integral, Literal, Shown
 from symobs.formula.term import Term, block
+from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability
     from symobs.derivation import Step
     from symobs.derivation.builder import Page
     from symobs.result import Case
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 _DUMMIES = ("sigma", "tau", "rho", "nu")
 
 
+@page_of(TimeVaryingObservability)
 def write(page: Page, result: TimeVaryingObservability) -> None:
     """Write the page in the order of the theory."""
     asked = result.asked_for

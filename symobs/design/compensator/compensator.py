@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Self
 
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
@@ -99,12 +99,6 @@ class CompensatorDesign(OutputFeedback):
         """[A, −BK; LC, A − BK − LC] in (x, x̂)."""
         m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.compensator.compensator_page import write_compensator  # noqa: PLC0415 - the page stands on this type
-
-        write_compensator(page, self)
 
 
 def realised(plant: StateSpace, K: Matrix, L: Matrix) -> Realisation:

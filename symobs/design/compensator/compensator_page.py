@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, is_narrow
 from symobs.derivation.builder import Page, predicate, relation
+from symobs.design.compensator.compensator import CompensatorDesign
 from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.side_by_side_page import can_stand_side_by_side, write_side_by_side
@@ -21,6 +22,7 @@ from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root
 from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.phrases import PHRASES
+from symobs.result import page_of
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -28,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.derivation.builder import Slot
-    from symobs.design.compensator.compensator import CompensatorDesign
     from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.formula import Fact
 
@@ -46,6 +47,7 @@ _LOOP_TERMS = 16
 _UNFACTORED = 4
 
 
+@page_of(CompensatorDesign)
 def write_compensator(page: Page, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))

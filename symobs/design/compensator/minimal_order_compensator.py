@@ -12,7 +12,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.gain_design import letters_of
@@ -185,12 +185,6 @@ class MinimalOrderCompensator(OutputFeedback):
     def free_signals(self) -> Mapping[str, int]:
         """The estimate of x₂."""
         return self.estimator.free_signals
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.compensator.minimal_order_compensator_page import write_minimal_order  # noqa: PLC0415 - the page stands on this type
-
-        write_minimal_order(page, self)
 
 
 def split(K: Matrix, estimator: ReducedOrderObserver) -> tuple[Matrix, Matrix]:

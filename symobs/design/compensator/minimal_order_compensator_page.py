@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given
 from symobs.conditions import vanishing_factors
@@ -21,6 +19,7 @@ from symobs.design.compensator.compensator_page import (
 )
 from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
+from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.gain.gain_page import FEEDBACK, error_determinant, name_entries, write_gain
 from symobs.design.gain.page_style import page_style
 from symobs.design.page_parts.component_equations import combination
@@ -29,11 +28,10 @@ from symobs.design.reduced_order.reduced_order_observer_page import observer_sta
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Literal, Quotient
 from symobs.formula.term import Term, block
-
-if TYPE_CHECKING:
-    from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
+from symobs.result import page_of
 
 
+@page_of(MinimalOrderCompensator)
 def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, sign_of
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.pole_advice.pole_candidates import (
     Zeros,
     as_number,
@@ -272,12 +272,6 @@ class PoleAdvice(Result):
         if self.wish.radius is None:
             found |= {"sigma": self.answer["sigma"], "omega_d": self.answer["omega_d"]}
         return found
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.pole_advice.pole_advice_page import write_pole_advice  # noqa: PLC0415 - the page stands on this type
-
-        write_pole_advice(page, self)
 
 
 def numerator_term(e: Environment, plant: StateSpace) -> Term:

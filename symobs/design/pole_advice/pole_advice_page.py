@@ -11,20 +11,20 @@ from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Given
 from symobs.derivation.builder import Page, predicate, relation, sentence
-from symobs.design.pole_advice.pole_advice import FURTHER_LEFT, numerator_term
+from symobs.design.pole_advice.pole_advice import FURTHER_LEFT, PoleAdvice, numerator_term
 from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.kernel.generators import function
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
 from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product
+from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.derivation import Step
-    from symobs.design.pole_advice.pole_advice import PoleAdvice
     from symobs.design.pole_advice.pole_warnings import Beware
     from symobs.formula import Relation
     from symobs.formula.term import Term
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
+@page_of(PoleAdvice)
 def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
     page.with_roots(*_written(advice))

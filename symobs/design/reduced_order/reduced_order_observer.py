@@ -13,7 +13,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import carried, equations_of, strata
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_cases import chosen
 from symobs.design.gain.gain_design import letters_of
@@ -256,12 +256,6 @@ class ReducedOrderObserver(Result):
             "fixed_modes": self.unmoved_modes,
             "family": self.gain_family,
         }
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.reduced_order.reduced_order_observer_page import write_reduced_order  # noqa: PLC0415 - the page stands on this type
-
-        write_reduced_order(page, self)
 
 
 def _meets(case: Case, value: Scalar) -> bool:

@@ -16,15 +16,15 @@ from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.time_responses import plot_error
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
-from symobs.design.reduced_order.reduced_order_observer import Partition, partition
+from symobs.design.reduced_order.reduced_order_observer import Partition, ReducedOrderObserver, partition
 from symobs.design.reduced_order.undetermined_matrices_page import write_undetermined
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import Term, block
+from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
-    from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
     from symobs.formula import Relation
 
 #: Plants of a larger order have their blocks listed one by one.
@@ -35,6 +35,7 @@ _WRITTEN_OUT = 80
 _FEW_UNKNOWNS = 2
 
 
+@page_of(ReducedOrderObserver)
 def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
     """Write data, test, gain, and the observer without the derivative of the output."""
     given(page, ("observer", design.desired))

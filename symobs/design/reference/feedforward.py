@@ -9,7 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import carried, strata
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
 from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.gain.gain_design import letters_of
@@ -166,12 +166,6 @@ class FeedforwardDesign(Result):
     def free_signals(self) -> Mapping[str, int]:
         """The new input, and what the loop's page starts with."""
         return {"v_r": self.plant.outputs, **self.loop.free_signals}
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.reference.feedforward_page import write_feedforward  # noqa: PLC0415 - the page stands on this type
-
-        write_feedforward(page, self)
 
 
 def moving_at_rest(loop: OutputFeedback) -> Matrix:

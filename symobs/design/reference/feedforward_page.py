@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.derivation.builder import Page, relation
 from symobs.design.compensator.compensator_page import MATRIX
@@ -13,13 +11,13 @@ from symobs.design.compensator.minimal_order_compensator_page import partitioned
 from symobs.design.compensator.unstable_law_caution import caution_law
 from symobs.design.gain.gain_page import FEEDBACK, OBSERVER, error_determinant
 from symobs.design.page_parts.block_diagrams import draw_feedforward
+from symobs.design.reference.feedforward import FeedforwardDesign
 from symobs.exact import Matrix, Scalar, rank, transfer_matrix
 from symobs.formula.term import Term, block
-
-if TYPE_CHECKING:
-    from symobs.design.reference.feedforward import FeedforwardDesign
+from symobs.result import page_of
 
 
+@page_of(FeedforwardDesign)
 def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
     """Write the gains, the loop with its new input, and F."""
     loop = design.loop

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import carried, common_zeros, strata
 from symobs.certificate.claims import Certificate, Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
@@ -190,12 +190,6 @@ class TrackingDesign(Result):
     def free_signals(self) -> Mapping[str, int]:
         """The reference, and what the loop's page starts with."""
         return {"x_d": self.plant.order, **self.loop.free_signals}
-
-    def write(self, page: Page) -> None:
-        """Write the page."""
-        from symobs.design.reference.tracking_page import write_tracking  # noqa: PLC0415 - the page stands on this type
-
-        write_tracking(page, self)
 
 
 def trajectory(reference: Matrix, start: Matrix | None) -> Matrix:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation.builder import Page, relation
 from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
@@ -11,13 +9,13 @@ from symobs.design.compensator.minimal_order_compensator_page import partitioned
 from symobs.design.compensator.unstable_law_caution import caution_law
 from symobs.design.page_parts.block_diagrams import draw_tracking
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.design.reference.tracking import TrackingDesign
 from symobs.exact import Matrix
 from symobs.formula.term import Term, block
-
-if TYPE_CHECKING:
-    from symobs.design.reference.tracking import TrackingDesign
+from symobs.result import page_of
 
 
+@page_of(TrackingDesign)
 def write_tracking(page: Page, design: TrackingDesign) -> None:
     """Write the reference, the gains, K_d and the errors."""
     loop = design.loop
