@@ -19,7 +19,7 @@ from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.exponential import OpenBranch
 from symobs.exact.functions import all_roots, identities, known, substitute, symbols_in
-from symobs.formula import Environment, Literal
+from symobs.formula import Environment, Literal, Together
 from symobs.formula.term import Term, letter
 from symobs.method import Case, Result
 from symobs.page import Page, relation, sentence
@@ -155,7 +155,9 @@ class Branched(Result):
         if chosen:
             page.steps += _narrowed(steps, chosen)
         else:
-            page.steps.append(CaseStep(relation(product_of(zeros), "!=", 0), (), steps))
+            apart = relation(product_of(zeros), "!=", 0)
+            # on a stratum what is told rests on what does not vanish: a basis is one outside of its own cases only
+            page.steps.append(CaseStep(Together((apart,)) if self.plant.equations else apart, (), steps))
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 
