@@ -99,6 +99,12 @@ def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
         ("gramian", {"A": "[0 a; 0 b]", "B": "[b+1; a]"}, {"of": "controllability", "horizon": "inf"}),
         # What a case excludes is excluded within it too, though nothing is left of its equations.
         ("detectability", {"A": "[b 0 0; 0 a-1 b^2-a; 0 0 0]", "C": "[1 1 0]"}, {}),
+        # The polynomial of the fixed modes is shorter by the equations of the case than as a determinant.
+        (
+            "detectability",
+            {"A": "[b+1 2 b; -a a*b 0; a+b -1 0]", "C": "[2 a-b 2]"},
+            {},
+        ),
         ("transfer_function", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {}),
         ("pole_advice", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {"radius": "2"}),
     ],
