@@ -77,6 +77,13 @@ class Branched(Result):
         """Polynomials in the parameters beyond the denominators whose zeros are cases."""
         return ()
 
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """That of the plant; and a horizon is positive, where no sign says so."""
+        end = self.answer.get("horizon")
+        is_open = isinstance(end, Scalar) and sign_of(end, self.plant.symbols.signs) != "positive"
+        return (*super().domain, Condition("domain", end, ">")) if is_open else super().domain
+
     @property
     def verdict(self) -> str:
         """`undecided` where there is no closed form."""
@@ -141,6 +148,18 @@ class Branched(Result):
         for case in self.case_tree:
             if isinstance(case.result, Branched):
                 yield from case.result.everything()
+
+    def state(self, page: Page) -> None:
+        """State the data, and what the horizon must be."""
+        from symobs.analysis.pages import given  # noqa: PLC0415
+
+        given(page)
+        beyond = [c.expression for c in self.domain if c.operator == ">"]
+        if beyond:
+            page.start, page.environment = (
+                replace(each, above=(*each.above, *beyond)) for each in (page.start, page.environment)
+            )
+            page.conclude("declared", signs=Together(tuple(relation(value, ">", 0) for value in beyond)))
 
     def tell_branches(self, page: Page) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
