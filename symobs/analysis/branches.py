@@ -81,8 +81,9 @@ class Branched(Result):
     def domain(self) -> tuple[Condition, ...]:
         """That of the plant; and a horizon is positive, where no sign says so."""
         end = self.answer.get("horizon")
-        is_open = isinstance(end, Scalar) and sign_of(end, self.plant.symbols.signs) != "positive"
-        return (*super().domain, Condition("domain", end, ">")) if is_open else super().domain
+        if not isinstance(end, Scalar) or sign_of(end, self.plant.symbols.signs) == "positive":
+            return super().domain
+        return (*super().domain, Condition("domain", end, ">"))
 
     @property
     def verdict(self) -> str:
