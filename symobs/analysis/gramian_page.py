@@ -11,7 +11,7 @@ from symobs.analysis.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.analysis.pages import HIDDEN, given, hidden, hidden_polynomial
+from symobs.analysis.pages import HIDDEN, hidden, hidden_polynomial
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude
@@ -39,7 +39,7 @@ def write_gramian(result: Gramian, page: Page) -> None:
     if isinstance(horizon, Scalar):
         values += [substitute(value, {"t": horizon}) for value in values]
     page.in_time(*values)
-    given(page)
+    result.state(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
         page.environment = page.environment.having(values={})

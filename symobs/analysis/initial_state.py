@@ -14,7 +14,6 @@ from symobs.analysis.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.initial_state_page import tell_initial_state
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
 from symobs.analysis.measurements import read_functions
-from symobs.analysis.pages import given
 from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.certificate import Claim
 from symobs.errors import InputError
@@ -207,7 +206,7 @@ class InitialState(Branched):
         if self.answer["horizon"] != INFINITE:
             values += [substitute(value, {"t": self.answer["horizon"]}) for value in values]
         page.in_time(*values)
-        given(page)
+        self.state(page)
         with page.section("initial_state"):
             tell_polynomial(page)
             self.tell_branches(page)

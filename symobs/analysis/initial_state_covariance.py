@@ -13,7 +13,6 @@ from symobs.analysis.branches import Branched, Signs, from_zero, rate_of, time_e
 from symobs.analysis.covariance_page import tell_covariance
 from symobs.analysis.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.matrix_exponential import TIME, closed_form, question_of, require_continuous, tell_polynomial
-from symobs.analysis.pages import given
 from symobs.analysis.rank_result import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.analysis.stationary import stationary
 from symobs.certificate import Claim
@@ -98,8 +97,8 @@ class InitialStateCovariance(Branched):
 
     @cached_property
     def stated(self) -> tuple[Condition, ...]:
-        """The horizon is positive: that it is not 0 is no condition, and 0 no case."""
-        return tuple(c for c in super().stated if c.expression.names != {"T"})
+        """The horizon is positive: that it is not 0 is no further condition, and 0 no case."""
+        return tuple(c for c in super().stated if c.kind == "domain" or c.expression.names != {"T"})
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -174,7 +173,7 @@ class InitialStateCovariance(Branched):
         """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
         values = list(self.everything())
         page.in_time(*values, *(substitute(value, {"t": self.answer["horizon"]}) for value in values))
-        given(page)
+        self.state(page)
         with page.section("covariance"):
             tell_polynomial(page)
             self.tell_branches(page)

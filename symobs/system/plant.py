@@ -215,12 +215,15 @@ class StateSpace:
         plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
         images = [equation.substitute(values).numerator for equation in self.equations]
         nonzero = [value.substitute(values).numerator for value in self.nonzero]
+        if any(value.is_zero for value in nonzero):
+            message = "what does not vanish is 0"
+            raise ZeroDivisionError(message)
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
-        ideal = Ideal.of((*self.equations, *equations))
-        if not ideal.generators:
+        ideal, apart = Ideal.of((*self.equations, *equations)), tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        if not ideal.generators and apart == self.nonzero:
             return self
         m, plant = self.matrices, copy(self)
         plant.__dict__.pop("field", None)
@@ -230,7 +233,7 @@ class StateSpace:
             modulo(m.C, ideal) if m.has_output else None,
             modulo(m.D, ideal),
         )
-        plant.equations, plant.nonzero = ideal.generators, tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        plant.equations, plant.nonzero = ideal.generators, apart
         return plant
 
     def simplified(self, value: Scalar) -> Scalar:
@@ -248,8 +251,8 @@ class StateSpace:
 
     @property
     def relations(self) -> tuple[Scalar, ...]:
-        """What vanishes for the parameters considered: the equations, and 1 − w p for each p that does not vanish."""
-        return (*self.equations, *map(apart_from_zero, self.nonzero))
+        """What vanishes on a stratum: the equations, and 1 − w p for each p that does not vanish; else nothing."""
+        return (*self.equations, *map(apart_from_zero, self.nonzero)) if self.equations else ()
 
     def knowing(self, *values: object) -> StateSpace:
         """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
