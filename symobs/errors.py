@@ -134,3 +134,10 @@ class DerivationRejected(SymobsError):
     """A line of a derivation is not true: always a bug of symobs, never of the input."""
 
     exit_code = 1
+
+
+def reason_of(error: Exception) -> str:
+    """Return in words of a user why a file cannot be read or written."""
+    if isinstance(error, UnicodeDecodeError):
+        return f"byte {error.start} is not UTF-8"
+    return getattr(error, "strerror", None) or " ".join(str(error).split())
