@@ -240,8 +240,11 @@ def test_json_keeps_the_tasks_that_were_finished(monkeypatch: pytest.MonkeyPatch
     tasks = '["observability", "observer", "detectability"]'
     text = NOT_OBSERVABLE.replace('task = "observability"', f"tasks = {tasks}") + '[specification]\npoles = "-1, -2"\n'
     alone = json.loads(inside("solve", "-", "--format", "json", stdin=NOT_OBSERVABLE.encode()).out)["results"]
-    slow = replace(registry.tasks()["observer"], function=lambda *_, **__: os.kill(os.getpid(), signal.SIGALRM))
-    monkeypatch.setitem(registry._TASKS, "observer", slow)
+
+    def slow(*_: object, **__: object) -> Any:
+        os.kill(os.getpid(), signal.SIGALRM)
+
+    monkeypatch.setitem(registry._TASKS, "observer", replace(registry.tasks()["observer"], function=slow))
     run = inside("solve", "-", "--format", "json", "--timeout", f"{LONG:g}", stdin=text.encode())
     assert run.code == 5
     assert "at work on observer; " in run.err
