@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from symobs.cli.options import OF_A_PAGE, options, quoted
-from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 from symobs.output import binary, write, write_all
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def _format_of(format_name: str | None, target: str | None) -> str:
 def _place(file: str) -> str:
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
-    return shown(file, 200) if file != "-" else "standard input"
+    return shown(file, 200) or "an empty name" if file != "-" else "standard input"
 
 
 def _read(file: str) -> str:
@@ -223,17 +223,15 @@ def _read(file: str) -> str:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
-        reason = getattr(error, "strerror", None) or str(error)
         repair = "give the path of a problem file, or - for standard input"
-        raise InputError(reason, where=where, repair=repair) from None
+        raise InputError(reason_of(error), where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"
         raise InputError(message, where=where, repair="keep one problem to a file")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        message = f"byte {error.start} is not UTF-8"
-        raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
+        raise InputError(reason_of(error), where=where, repair="save the file as UTF-8 text") from None
 
 
 # -- lists ----------------------------------------------------------------------------------------------------------
@@ -292,8 +290,7 @@ def copy(folder: str) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(reason, where=_place(folder), repair="name a folder that can be written") from None
+        raise InputError(reason_of(error), where=_place(folder), repair="name a folder that can be written") from None
     write_all([(path.read_bytes(), str(target / path.name)) for path in _templates()])
 
 

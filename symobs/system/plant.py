@@ -11,7 +11,7 @@ from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companio
 from symobs.expression import parse_polynomial
 from symobs.system.fraction import MOST_STATES, Written, read_transfer_function, realise
 from symobs.system.matrices import Matrices
-from symobs.system.reading import has_decimals, read_matrix, read_scalar
+from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time import Continuous, Discrete, TimeVarying, read_time
 
@@ -206,13 +206,17 @@ class StateSpace:
         m = self.matrices
         return m.A.field | m.B.field | m.C.field | m.D.field
 
-    def substitute(self, values: Mapping[str, Scalar]) -> StateSpace:
-        """Return the plant with parameters replaced; raises ZeroDivisionError where it ceases to exist."""
-        m = self.matrices
+    def substitute(self, values: Mapping[Any, Any]) -> StateSpace:
+        """Return the plant with parameters replaced: {"c": "1/2"}, or SymPy symbols and what an entry may be.
+
+        Raises `InputError` for what is no parameter or cannot have the value, ZeroDivisionError where no plant is left.
+        """
+        m, symbols = self.matrices, self.symbols.seen(list(values.values()))
+        values = read_values(values, symbols, {*self.field.names, *symbols.signs})
         B = m.B.substitute(values) if m.has_input else None
         C = m.C.substitute(values) if m.has_output else None
         D = m.D.substitute(values) if m.has_input and m.has_output else None
-        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=symbols)
         images = [equation.substitute(values).numerator for equation in self.equations]
         nonzero = [value.substitute(values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero):
