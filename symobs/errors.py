@@ -146,3 +146,10 @@ class NotShown(ArithmeticError):
 
 class SymobsWarning(UserWarning):
     """A page lacks a line or a picture whose check failed; what is printed is checked all the same."""
+
+
+def reason_of(error: Exception) -> str:
+    """Return in words of a user why a file cannot be read or written."""
+    if isinstance(error, UnicodeDecodeError):
+        return f"byte {error.start} is not UTF-8"
+    return getattr(error, "strerror", None) or " ".join(str(error).split())

@@ -27,7 +27,7 @@ from symobs.cli.common import (
 )
 from symobs.cli.options import OF_A_PAGE, options, quoted
 from symobs.cli.output import write, write_all
-from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from symobs.cli.outcome import Outcome, Tell
@@ -218,8 +218,7 @@ def copy(folder: str) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(reason, where=_place(folder), repair="name a folder that can be written") from None
+        raise InputError(reason_of(error), where=_place(folder), repair="name a folder that can be written") from None
     write_all([(path.read_bytes(), str(target / path.name)) for path in _templates()])
 
 

@@ -11,7 +11,7 @@ import click
 
 from symobs.cli.options import quoted
 from symobs.cli.output import binary, write_all
-from symobs.errors import InputError, UsageError
+from symobs.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,7 +78,7 @@ def _format_of(format_name: str | None, target: str | None) -> str:
 def _place(file: str) -> str:
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
-    return shown(file, 200) if file != "-" else "standard input"
+    return shown(file, 200) or "an empty name" if file != "-" else "standard input"
 
 
 def _read(file: str) -> str:
@@ -93,14 +93,12 @@ def _read(file: str) -> str:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
-        reason = getattr(error, "strerror", None) or str(error)
         repair = "give the path of a problem file, or - for standard input"
-        raise InputError(reason, where=where, repair=repair) from None
+        raise InputError(reason_of(error), where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"
         raise InputError(message, where=where, repair="keep one problem to a file")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        message = f"byte {error.start} is not UTF-8"
-        raise InputError(message, where=where, repair="save the file as UTF-8 text") from None
+        raise InputError(reason_of(error), where=where, repair="save the file as UTF-8 text") from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,8 @@ from symobs.errors import OutOfBudget, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now.
+    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now, or a function
+    #: that makes this, which is called only where the work can be ended.
     Tell = Callable[[object], None]
 
 #: Exit codes of the contract.
@@ -86,13 +88,12 @@ def solved(
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
 
-    if format_name == "json":
-        from symobs.render.formats.json import given_up  # noqa: PLC0415 - only with --format json
+    def begins(name: str, so_far: tuple[Any, ...]) -> None:
+        if format_name == "json":
+            tell(partial(_as_far_as, found, so_far, convention, target))
+        tell(name)
 
-        names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
-        undecided = given_up(found.title, names, method, found.plant.symbols.signs, convention or found.convention)
-        tell(Outcome(((undecided, target),), (), EXIT_UNDECIDED))
-    results = found.solve(tell)
+    results = found.solve(begins)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if some else found.expect
     unmet = mismatches(viewed, expect)
@@ -112,6 +113,16 @@ def solved(
     messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
     code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0
     return Outcome(tuple(outputs), (*unmet, *messages), code)
+
+
+def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None) -> Outcome:
+    """Return what is left where the work ends now: the results so far, every other task undecided."""
+    from symobs.render.formats.json import given_up  # noqa: PLC0415 - only with --format json
+
+    names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
+    document = found.document(so_far, convention)
+    whole = given_up(document, names, method, found.plant.symbols.signs)
+    return Outcome(((whole, target),), (), EXIT_UNDECIDED)
 
 
 def bounded(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError, SymobsError, UsageError
+from symobs.errors import InputError, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -180,7 +180,7 @@ def _explained(target: str | None) -> Iterator[None]:
     except (BrokenPipeError, SymobsError):
         raise
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte, a closed stream
-        reason = getattr(error, "strerror", None) or str(error)
+        reason = reason_of(error)
         is_stream = target is None or target == "-"
         where, other = ("standard output", "name a file with -o") if is_stream else (_shown(target), _ELSEWHERE)
         repair = _REPAIRS.get(getattr(error, "errno", 0) or 0, other)

@@ -52,8 +52,8 @@ class _TimeOver(BaseException):
 def within(budget: Budget, work: Callable[[Tell], Value], where: str = "") -> Value:
     """Return what `work` returns, or raise what it raises; raises `OutOfBudget` where it takes more than it may.
 
-    `work` is given a function that takes how far it has come: a text says what it is at work on, anything else is what
-    would be left of it now, and stands in `OutOfBudget.facts["left"]`.
+    `work` is given a function that takes how far it has come: a text says what it is at work on, anything else, or
+    what a function returns, is what would be left of it now, and stands in `OutOfBudget.facts["left"]`.
     """
     _require_child_processes(budget)
     for stream in (sys.stdout, sys.stderr):
@@ -93,7 +93,7 @@ def _work(budget: Budget, work: Callable[[Tell], Any], writing: int) -> NoReturn
         with open(writing, "wb", buffering=0) as stream:
 
             def tell(reached: object) -> None:
-                _say(stream, "reached", reached)
+                _say(stream, "reached", reached() if callable(reached) else reached)
 
             try:
                 listeners.append(lambda group: _say(stream, "group", group))

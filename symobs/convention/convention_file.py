@@ -19,7 +19,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from symobs.convention.convention import Convention
-from symobs.errors import InputError, ProblemErrors
+from symobs.errors import InputError, ProblemErrors, reason_of
 from symobs.notation import LETTERS
 from symobs.parser_limits import refuse_costly
 
@@ -77,8 +77,8 @@ def of_file(path: Path) -> Convention:
         refuse_costly(text, _MOST_BYTES)
         table = tomllib.loads(text)
     except (OSError, ValueError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        unreadable = InputError(f"no convention can be read: {reason}", where=where, repair="write a small TOML file")
+        message = f"no convention can be read: {reason_of(error)}"
+        unreadable = InputError(message, where=where, repair="write a small TOML file")
         raise ProblemErrors((unreadable,)) from None
     return read_convention(table, where)
 

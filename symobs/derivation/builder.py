@@ -45,7 +45,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain_text import plain_relation
 from symobs.formula.term import Term
-from symobs.notation import LETTERS, printed_alike
+from symobs.notation import LETTERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -170,13 +170,10 @@ class Page:
 
     def derivation(self) -> Derivation:
         """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
-        letters = {*self.environment.values, *self.environment.signals}
-        parameters = set(self.plant.field.names) - self.plant.symbols.latex.keys()
-        shared = printed_alike(letters, LETTERS, parameters)
         written = Derivation(
             tuple(self.steps), self.start, {**self.plant.symbols.latex, **self.forms}, self.plant.is_discrete
         )
-        return set_apart(written, shared)
+        return set_apart(written, {*self.environment.values, *self.environment.signals}, LETTERS)
 
     # -- terms --------------------------------------------------------------------------------------------------------
 

@@ -53,7 +53,7 @@ from symobs.formula.sign_changes import negated
 from symobs.notation import LETTERS, printed_alike, sans_serif
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from symobs.convention import Convention
     from symobs.derivation.check import Derivation
@@ -84,12 +84,16 @@ def translated(derivation: Derivation, convention: Convention) -> Derivation:
     made = replace(derivation, steps=steps)
     after = made.check()
     _hold_against(before, after, convention.turned)
-    parameters = {name for literal in _literals(steps) for name in literal.names} - {derivation.variable}
-    return set_apart(made, printed_alike(letters, {**LETTERS, **forms}, parameters - derivation.symbols.keys()))
+    return set_apart(made, letters, {**LETTERS, **forms})
 
 
-def set_apart(derivation: Derivation, shared: Sequence[str]) -> Derivation:
-    """Return the derivation with these parameters set without serifs, and a note where the data are given."""
+def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str, LetterForm]) -> Derivation:
+    """Return the derivation with parameters that print like one of these letters set without serifs, and a note on each.
+
+    The parameters are those of all values written out, be they of the plant or of what is asked of it.
+    """
+    named = {name for literal in _literals(derivation.steps) for name in literal.names}
+    shared = printed_alike(letters, forms, named - {derivation.variable, *derivation.symbols})
     if not shared:
         return derivation
     told = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]

@@ -164,7 +164,10 @@ class Tokeniser:
             self._add("MULTIPLY", "*", at)
 
     def _is_imaginary_part(self, division: int, at: int) -> bool:
-        """Whether the imaginary unit follows a number that something is divided by: 3/2 i, which all read alike."""
+        """Whether the imaginary unit follows a number that something is divided by.
+
+        3/2 j and 52/25 I are these fractions times i, as all read them, and never a number over 2 i or 25 i.
+        """
         name = NAME.match(self.text, at)
         divisor = self.tokens[division + 1 :]
         is_number = len(divisor) == 1 and isinstance(divisor[0].value, Scalar) and divisor[0].value.is_constant

@@ -52,13 +52,16 @@ class Problem:
     text: str = ""
     printed: tuple[Mapping[str, Any], ...] = ()
 
-    def solve(self, report: Callable[[str], None] | None = None) -> tuple[Result, ...]:
-        """Run every task; `report` is told which one begins.  All errors of all tasks are raised together."""
+    def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
+        """Run every task; `report` is told which one begins and the results there are.
+
+        All errors of all tasks are raised together.
+        """
         results: list[Result] = []
         errors = _Errors()
         for task in self.tasks:
             if report is not None:
-                report(task.name)
+                report(task.name, tuple(results))
             own, keys = _Errors(), keys_of(task, self.specification)
             with own:
                 results.append(task.function(self.plant, **{name: self.specification[keys[name]] for name in keys}))

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from symobs.errors import InexactInput, ShapeMismatch
+from symobs.conditions import sign_of
+from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.expression import parse_matrix, parse_scalar
+from symobs.expression.source import shown
 from symobs.system.symbols import Symbols, is_sympy, sympy_symbols
 
+#: Signs that a value cannot have whose parameter is declared with another.
+_EXCLUDED = {
+    "positive": ("negative", "nonpositive", "zero"),
+    "negative": ("positive", "nonnegative", "zero"),
+    "nonnegative": ("negative",),
+    "nonpositive": ("positive",),
+    "nonzero": ("zero",),
+}
 _DECIMAL = re.compile(r"\d\.\d")
 
 
@@ -70,6 +80,29 @@ def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
 
         return scalar_from_sympy(value, where)
     return parse_scalar(value, symbols.names, where=where)
+
+
+def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[str]) -> dict[str, Scalar]:
+    """Return the values that parameters, given by their names or as SymPy symbols, are to have.
+
+    Raises `InputError` for what is none of the names, and for a value that the declared sign of its parameter excludes.
+    """
+    read: dict[str, Scalar] = {}
+    for key, value in values.items():
+        name = str(getattr(key, "name", key))
+        where = f"substitute.{shown(name, 40)}"
+        if name not in names and not isinstance(value, Scalar):
+            message, repair = (
+                f"{shown(name, 40)} is no parameter of the plant",
+                f"use {', '.join(sorted(names)) or 'none'}",
+            )
+            raise InputError(message, where=where, repair=repair)
+        read[name] = read_scalar(value, symbols, where)
+        sign = symbols.sign(name)
+        if not isinstance(value, Scalar) and sign_of(read[name], symbols.signs) in _EXCLUDED.get(sign, ()):
+            message = f"{read[name]} is not {sign}, as {name} is declared"
+            raise InputError(message, where=where, repair="give a value of that sign, or declare another")
+    return read
 
 
 def _from_numpy(value: Any, where: str) -> object:

@@ -10,7 +10,7 @@ from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismat
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
 from symobs.system.matrices import Matrices
-from symobs.system.reading import has_decimals, read_matrix, read_scalar
+from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
 from symobs.system.transfer_function_text import MOST_STATES, Written, read_transfer_function, realise
@@ -206,21 +206,28 @@ class StateSpace:
         m = self.matrices
         return m.A.field | m.B.field | m.C.field | m.D.field
 
-    def substitute(self, values: Mapping[str, Scalar]) -> StateSpace:
-        """Return the plant with parameters replaced; raises ZeroDivisionError where it ceases to exist."""
-        m = self.matrices
+    def substitute(self, values: Mapping[Any, Any]) -> StateSpace:
+        """Return the plant with parameters replaced: {"c": "1/2"}, or SymPy symbols and what an entry may be.
+
+        Raises `InputError` for what is no parameter or cannot have the value, ZeroDivisionError where no plant is left.
+        """
+        m, symbols = self.matrices, self.symbols.seen(list(values.values()))
+        values = read_values(values, symbols, {*self.field.names, *symbols.signs})
         B = m.B.substitute(values) if m.has_input else None
         C = m.C.substitute(values) if m.has_output else None
         D = m.D.substitute(values) if m.has_input and m.has_output else None
-        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=self.symbols)
+        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=symbols)
         images = [equation.substitute(values).numerator for equation in self.equations]
         nonzero = [value.substitute(values).numerator for value in self.nonzero]
+        if any(value.is_zero for value in nonzero):
+            message = "what does not vanish is 0"
+            raise ZeroDivisionError(message)
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
-        ideal = Ideal.of((*self.equations, *equations))
-        if not ideal.generators:
+        ideal, apart = Ideal.of((*self.equations, *equations)), tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        if not ideal.generators and apart == self.nonzero:
             return self
         m, plant = self.matrices, copy(self)
         plant.__dict__.pop("field", None)
@@ -230,7 +237,7 @@ class StateSpace:
             modulo(m.C, ideal) if m.has_output else None,
             modulo(m.D, ideal),
         )
-        plant.equations, plant.nonzero = ideal.generators, tuple(dict.fromkeys((*self.nonzero, *nonzero)))
+        plant.equations, plant.nonzero = ideal.generators, apart
         return plant
 
     def simplified(self, value: Scalar) -> Scalar:
@@ -248,8 +255,8 @@ class StateSpace:
 
     @property
     def relations(self) -> tuple[Scalar, ...]:
-        """What vanishes for the parameters considered: the equations, and 1 − w p for each p that does not vanish."""
-        return (*self.equations, *map(apart_from_zero, self.nonzero))
+        """What vanishes on a stratum: the equations, and 1 − w p for each p that does not vanish; else nothing."""
+        return (*self.equations, *map(apart_from_zero, self.nonzero)) if self.equations else ()
 
     def knowing(self, *values: object) -> StateSpace:
         """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 import symobs
 
 A = "[0 1/L; -1/C -R/L]"
@@ -34,3 +36,22 @@ def test_a_way_of_writing_that_was_declared_stays() -> None:
 def test_names_that_are_no_letters_stay() -> None:
     plant = symobs.StateSpace("[0 1; -k -d]", None, "[1 0]", symbols={"k": "positive", "d": "positive"})
     assert "serifs" not in str(symobs.observer(plant, poles="-1, -2").to("fragment"))
+
+
+def test_a_letter_that_stands_in_the_specification_only_is_a_parameter_too() -> None:
+    """Poles at −K and −2K ask for the gain [2K² 3K], which is no equation for the gain."""
+    found = symobs.state_feedback(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), poles="-K, -2*K")
+    page = str(found.to("fragment"))
+    assert r"Set without serifs, $\mathsf{K}$ is a parameter of the data" in page
+    assert r"2\mathsf{K}^{2}" in page.replace(" ", "") or r"2\mathsf{K}^2" in page.replace(" ", "")
+    assert re.search(r"\d ?K", page) is None
+    assert "+BK)" in page.replace(" ", "")
+
+
+@pytest.mark.parametrize("name", ["x", "L"])
+def test_a_pole_is_named_like_a_state_or_an_observer(name: str) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", None, "[1 0]", symbols={name: "positive"})
+    page = str(symobs.observer(plant, poles=f"-{name}, -2*{name}").to("fragment"))
+    assert rf"Set without serifs, $\mathsf{{{name}}}$ is a parameter" in page
+    assert re.search(rf"3 ?{name}(?![a-z])", page) is None
+    assert rf"3\mathsf{{{name}}}" in page.replace(" ", "")

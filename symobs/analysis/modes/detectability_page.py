@@ -18,7 +18,16 @@ from symobs.analysis.modes.modes_page import (
     show_spectrum,
     stack_of,
 )
-from symobs.analysis.page_parts import as_written, given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
+from symobs.analysis.page_parts import (
+    as_written,
+    given,
+    hidden,
+    hidden_polynomial,
+    say_stability,
+    set_anew,
+    stratum_of,
+    undecided,
+)
 from symobs.analysis.rank.rank_page import square_test
 from symobs.certificate.claims import verify
 from symobs.derivation import Case as CaseStep
@@ -113,14 +122,13 @@ def _judge(page: Page, result: HiddenStability, about: Term) -> None:
 def _where(page: Page, result: HiddenStability, about: Term) -> None:
     """Say exactly where the fixed modes are stable; under the weaker reading what is left open."""
     signs, conditions = page.plant.symbols.signs, result.hidden.where
-    weak = all(condition.operator == ">=" for condition in conditions)
-    solved = [as_inequality(condition.expression, signs) for condition in conditions]
-    where = tuple(relation(left, operator + "=" * weak, right) for left, operator, right in solved)
-    if weak:
+    if all(condition.operator == ">=" for condition in conditions):
+        solved = [as_inequality(condition.expression, signs) for condition in conditions]
+        where = tuple(relation(left, f"{operator}=", right) for left, operator, right in solved)
         page.conclude("marginal_if", where=Exactly(predicate("marginal", about), where))
         page.conclude(f"exactly_there_{result.task}")
         return
-    page.conclude(f"stable_if_{_time(page)}", where=Exactly(predicate("stable", about), where))
+    say_stability(page, about)  # of the polynomial as the page has it, which equations may make a shorter one
     page.conclude(f"exactly_there_{result.task}" if result.meaning == "asymptotic" else "boundary_undecided")
 
 

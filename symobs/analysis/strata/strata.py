@@ -38,6 +38,8 @@ def strata(plant: StateSpace, existence: Iterable[Scalar], solve: Solve) -> tupl
     found: list[Case] = []
     region = region_of(plant)
     for factor in vanishing_factors(existence, signs):
+        if factor in region.nonzero:
+            continue
         linear = None if plant.equations else _linear(factor, signs)
         if linear is None:
             found += _below([factor], region, plant, solve)
@@ -94,11 +96,9 @@ def _case(
 ) -> Iterator[Case]:
     """Yield a case; none where there is no plant, or nothing is asked for."""
     try:
-        if values is None:
-            equations, others = ([c.expression for c in when if c.operator == sign] for sign in ("==", "!="))
-            there = plant.restricted(equations, others)
-        else:
-            there = plant.substitute(values)
+        equations, others = ([c.expression for c in when if c.operator == sign] for sign in ("==", "!="))
+        there = plant.restricted((), others)
+        there = there.restricted(equations) if values is None else there.substitute(values)
         found = solve(there, values or {})
         if there.equations:  # its own strata are made now, where what cannot be claimed on them can be left undecided
             _ = found.case_tree

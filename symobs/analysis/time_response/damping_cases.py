@@ -20,7 +20,7 @@ from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.kernel.generators import all_roots, identities, known, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
-from symobs.formula import Environment, Literal
+from symobs.formula import Environment, Literal, Together
 from symobs.formula.term import Term, letter
 from symobs.result import Case, Result
 
@@ -76,6 +76,14 @@ class Branched(Result):
     def further_zeros(self) -> tuple[Scalar, ...]:
         """Polynomials in the parameters beyond the denominators whose zeros are cases."""
         return ()
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """That of the plant; and a horizon is positive, where no sign says so."""
+        end = self.answer.get("horizon")
+        if not isinstance(end, Scalar) or sign_of(end, self.plant.symbols.signs) == "positive":
+            return super().domain
+        return (*super().domain, Condition("domain", end, ">"))
 
     @property
     def verdict(self) -> str:
@@ -142,6 +150,18 @@ class Branched(Result):
             if isinstance(case.result, Branched):
                 yield from case.result.everything()
 
+    def state(self, page: Page) -> None:
+        """State the data, and what the horizon must be."""
+        from symobs.analysis.page_parts import given  # noqa: PLC0415
+
+        given(page)
+        beyond = [c.expression for c in self.domain if c.operator == ">"]
+        if beyond:
+            page.start, page.environment = (
+                replace(each, above=(*each.above, *beyond)) for each in (page.start, page.environment)
+            )
+            page.conclude("declared", signs=Together(tuple(relation(value, ">", 0) for value in beyond)))
+
     def tell_branches(self, page: Page) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
@@ -155,7 +175,9 @@ class Branched(Result):
         if chosen:
             page.steps += _narrowed(steps, chosen)
         else:
-            page.steps.append(CaseStep(relation(product_of(zeros), "!=", 0), (), steps))
+            apart = relation(product_of(zeros), "!=", 0)
+            # on a stratum what is told rests on what does not vanish: a basis is one outside of its own cases only
+            page.steps.append(CaseStep(Together((apart,)) if self.plant.equations else apart, (), steps))
         page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import HIDDEN, given, hidden, hidden_polynomial
+from symobs.analysis.page_parts import HIDDEN, hidden, hidden_polynomial
 from symobs.analysis.time_response.gramian import Gramian
 from symobs.analysis.time_response.horizons import INFINITE, lyapunov
 from symobs.analysis.time_response.matrix_exponential import (
@@ -41,7 +41,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
     if isinstance(horizon, Scalar):
         values += [substitute(value, {"t": horizon}) for value in values]
     page.in_time(*values)
-    given(page)
+    result.state(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
         page.environment = page.environment.having(values={})

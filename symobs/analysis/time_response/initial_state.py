@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.page_parts import given
 from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
@@ -213,7 +212,7 @@ class InitialState(Branched):
         if self.answer["horizon"] != INFINITE:
             values += [substitute(value, {"t": self.answer["horizon"]}) for value in values]
         page.in_time(*values)
-        given(page)
+        self.state(page)
         with page.section("initial_state"):
             tell_polynomial(page)
             self.tell_branches(page)

@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.page_parts import given
 from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.analysis.time_response.best_horizon import stationary
 from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
@@ -114,8 +113,8 @@ class InitialStateCovariance(Branched):
 
     @cached_property
     def stated(self) -> tuple[Condition, ...]:
-        """The horizon is positive: that it is not 0 is no condition, and 0 no case."""
-        return tuple(c for c in super().stated if c.expression.names != {"T"})
+        """The horizon is positive: that it is not 0 is no further condition, and 0 no case."""
+        return tuple(c for c in super().stated if c.kind == "domain" or c.expression.names != {"T"})
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -190,7 +189,7 @@ class InitialStateCovariance(Branched):
         """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
         values = list(self.everything())
         page.in_time(*values, *(substitute(value, {"t": self.answer["horizon"]}) for value in values))
-        given(page)
+        self.state(page)
         with page.section("covariance"):
             tell_polynomial(page)
             self.tell_branches(page)

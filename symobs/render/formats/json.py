@@ -52,12 +52,14 @@ class Json:
         return _written({"schema": SCHEMA, "title": sheet.title, "problems": problems})
 
 
-def given_up(title: str, tasks: Sequence[str], method: str, signs: Mapping[str, str], convention: Convention) -> str:
-    """Return what is said of tasks that took more than they may: undecided, and nothing is claimed of them."""
+def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mapping[str, str]) -> str:
+    """Return what there is of these tasks: those without a result took too much, are undecided, and claim nothing."""
     empty: dict[str, list[str]] = {"conditions": [], "condition_kinds": [], "cases": [], "certificates": []}
-    names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": convention.name}}
-    results = [{"task": task, "method": method, "verdict": "undecided", **empty, **names} for task in tasks]
-    return _written({"schema": SCHEMA, "title": title, "results": results})
+    names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": document.convention.name}}
+    found = {result.task: result_object(result, document.convention) for result in document.results}
+    undecided = {"method": method, "verdict": "undecided", **empty, **names}
+    results = [found.get(task, {"task": task, **undecided}) for task in tasks]
+    return _written({"schema": SCHEMA, "title": document.title, "results": results})
 
 
 def _written(whole: Mapping[str, object]) -> str:

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symobs.errors import InputError
+from symobs.errors import InputError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -63,10 +63,9 @@ def _reason(error: Exception) -> str:
     """Return what is wrong with a template, on one line."""
     from jinja2 import TemplateNotFound  # noqa: PLC0415 - as below
 
-    said = " ".join(str(error).split())
     if isinstance(error, TemplateNotFound):
-        return f"there is no template {said[:80]!r} in this folder or among the built-in ones"
-    return f"the template cannot be used: {said[:200]}"
+        return f"there is no template {' '.join(str(error).split())[:80]!r} in this folder or among the built-in ones"
+    return f"the template cannot be used: {reason_of(error)[:200]}"
 
 
 def _place(error: Exception, template: str) -> str:

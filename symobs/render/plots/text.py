@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
@@ -16,9 +17,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symobs.figures.plot import Interval, Picture, Place
+    from symobs.render.plots.scene import Point
     from symobs.render.printers.text_printer import TextPrinter
 
 _COLUMNS, _ROWS, _LINE = 41, 17, 61
+#: Areas end close to the lines at which the plane was cut.  Where two stand this part of the window on either side of a
+#: place, and no curve is drawn between them, the place belongs to the region as they do.
+_SEAM = 1 / 800
 
 
 def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
@@ -43,14 +48,33 @@ def _region(picture: RegionPicture, printer: TextPrinter) -> str:
     """`#` where it is stable, `.` elsewhere."""
     areas = [[(float(x), float(y)) for x, y in area] for area in picture.areas]
 
+    curves = [[(float(x), float(y)) for x, y in curve.points] for curve in picture.curves]
+    across, upwards = (float(high - low) * _SEAM for low, high in picture.window)
+
+    def filled(x: float, y: float) -> bool:
+        return any(contains(area, (x, y)) for area in areas)
+
+    def on_seam(x: float, y: float) -> bool:
+        ways = ((x - across, y), (x + across, y)), ((x, y - upwards), (x, y + upwards))
+        return any(filled(*a) and filled(*b) and not any(_crosses(c, a, b) for c in curves) for a, b in ways)
+
     def character(x: float, y: float) -> str:
-        return "#" if any(contains(area, (x, y)) for area in areas) else "."
+        return "#" if filled(x, y) or on_seam(x, y) else "."
 
     grid = _grid(picture.window, character)
     for mark in picture.marks:
         if mark.kind == "excluded":
             _put(grid, picture.window, mark.place, "o")
     return _framed(grid, picture.window, [symbol(name) for name in picture.axes], printer)
+
+
+def _crosses(line: Sequence[Point], a: Point, b: Point) -> bool:
+    """Whether a line that is drawn meets the segment from a to b, or touches it."""
+
+    def side(p: Point, q: Point, place: Point) -> float:
+        return (q[0] - p[0]) * (place[1] - p[1]) - (q[1] - p[1]) * (place[0] - p[0])
+
+    return any(side(a, b, p) * side(a, b, q) <= 0 and side(p, q, a) * side(p, q, b) <= 0 for p, q in pairwise(line))
 
 
 def _poles(picture: PoleMap, printer: TextPrinter) -> str:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import pytest
 
+import symobs
 from symobs import StateSpace, compensator, controllability, state_feedback
 from symobs.certificate.claims import verify
 from symobs.certificate.pointwise import never_together_zero
@@ -13,6 +16,9 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import square_root
 from symobs.formula import Apply, Environment, Letter, Literal, Relation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 k, m = (Scalar.symbol(name) for name in "km")
 CURVE = k**2 - k * m**2 - m**2  # without a rational parametrisation, and through k = m = 0
@@ -84,3 +90,37 @@ def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
     assert not never_together_zero([Scalar.of(0)], roots, {}, known)
     assert not never_together_zero([k - 3], roots, {}, known)
     assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, known), "its own root is known"
+
+
+@pytest.mark.parametrize(
+    ("task", "plant", "asked"),
+    [
+        # The basis [a; -b - 1] of what the input does not move vanishes at a point of the case's curve.
+        ("gramian", {"A": "[0 a; 0 b]", "B": "[b+1; a]"}, {"of": "controllability", "horizon": "inf"}),
+        # What a case excludes is excluded within it too, though nothing is left of its equations.
+        ("detectability", {"A": "[b 0 0; 0 a-1 b^2-a; 0 0 0]", "C": "[1 1 0]"}, {}),
+        # The polynomial of the fixed modes is shorter by the equations of the case than as a determinant.
+        (
+            "detectability",
+            {"A": "[b+1 2 b; -a a*b 0; a+b -1 0]", "C": "[2 a-b 2]"},
+            {},
+        ),
+        ("transfer_function", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {}),
+        ("pole_advice", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {"radius": "2"}),
+    ],
+)
+def test_an_answer_with_cases_has_a_page(task: str, plant: dict[str, str], asked: dict[str, str]) -> None:
+    result = getattr(symobs, task)(StateSpace(**plant, symbols={"a": "real", "b": "real"}), **asked)
+    assert result.to_json()
+    assert result.to_latex()
+    assert not list(_impossible(result))
+
+
+def _impossible(result: Any, known: tuple[Any, ...] = ()) -> Iterator[Any]:
+    """Yield nested cases whose single equation is what a case around them excludes."""
+    for case in result.case_tree:
+        if len(case.when) == 1 and case.when[0].operator == "==" and case.when[0].expression in known:
+            yield case
+        excluded = (c.expression.substitute(case.substitution).numerator for c in case.when if c.operator == "!=")
+        if case.result is not None:
+            yield from _impossible(case.result, (*known, *excluded))

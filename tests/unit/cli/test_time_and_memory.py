@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -18,6 +19,7 @@ from symobs.cli import time_and_memory as budget_module
 from symobs.cli.time_and_memory import Budget, within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
 from symobs.render.formats.pdf import compiled
+from symobs.result import registry
 from tests.support.tools.command_line import ROOT, SAFETY, SERVO, environment, inside
 from tests.unit.render.test_pdf import ends, program
 
@@ -218,7 +220,7 @@ def test_hostile_problems_end_undecided(text: str, option: str, amount: str, sai
 
 
 def test_json_says_undecided_of_every_task(hard: Path) -> None:
-    text = hard.read_text(encoding="utf-8").replace('task = "observer"', 'tasks = ["observability", "observer"]')
+    text = hard.read_text(encoding="utf-8").replace('task = "observer"', 'tasks = ["observer", "observability"]')
     run = inside("solve", "-", "--format", "json", "--timeout", "20", stdin=text.encode())
     assert run.code == 5
     assert re.fullmatch(
@@ -226,13 +228,34 @@ def test_json_says_undecided_of_every_task(hard: Path) -> None:
     )
     whole = json.loads(run.out)
     assert (whole["schema"], whole["title"]) == ("symobs/1", "All of sixth order")
-    assert [result["task"] for result in whole["results"]] == ["observability", "observer"]
+    assert [result["task"] for result in whole["results"]] == ["observer", "observability"]
     decided = json.loads(inside("solve", str(SERVO), "--format", "json").out)["results"][0]
     for result in whole["results"]:
         assert result["verdict"] == "undecided"
         assert result["certificates"] == result["cases"] == result["conditions"] == []
         assert result["symbols"] == dict.fromkeys(NAMES + OUTPUTS + POLES, "real")
         assert result.keys() <= decided.keys()
+
+
+def test_json_keeps_the_tasks_that_were_finished(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time is over in the second of three tasks: the first keeps its answer, the others are undecided."""
+    tasks = '["observability", "observer", "detectability"]'
+    text = NOT_OBSERVABLE.replace('task = "observability"', f"tasks = {tasks}") + '[specification]\npoles = "-1, -2"\n'
+    alone = json.loads(inside("solve", "-", "--format", "json", stdin=NOT_OBSERVABLE.encode()).out)["results"]
+
+    def slow(*_: object, **__: object) -> Any:
+        os.kill(os.getpid(), signal.SIGALRM)
+
+    monkeypatch.setitem(registry._TASKS, "observer", replace(registry.tasks()["observer"], function=slow))
+    run = inside("solve", "-", "--format", "json", "--timeout", f"{LONG:g}", stdin=text.encode())
+    assert run.code == 5
+    assert "at work on observer; " in run.err
+    first, *others = json.loads(run.out)["results"]
+    assert [first] == alone
+    assert [(each["task"], each["verdict"]) for each in others] == [
+        ("observer", "undecided"),
+        ("detectability", "undecided"),
+    ]
 
 
 def unbounded(*arguments: str, folder: Path, **more: str) -> tuple[int, str]:

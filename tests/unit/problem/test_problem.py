@@ -157,8 +157,10 @@ def test_any_damage_to_a_file_is_found_out(data: st.DataObject) -> None:
 def test_a_problem_of_one_task_and_of_several() -> None:
     one, several = read(OBSERVER), read(OBSERVER.replace('task = "observer"', 'tasks = ["observability", "observer"]'))
     assert [result.task for result in one.solve()] == ["observer"]
-    begun: list[str] = []
-    assert [result.task for result in several.solve(begun.append)] == begun == ["observability", "observer"]
+    begun: list[tuple[str, list[str]]] = []
+    results = several.solve(lambda name, so_far: begun.append((name, [result.task for result in so_far])))
+    assert [result.task for result in results] == ["observability", "observer"]
+    assert begun == [("observability", []), ("observer", ["observability"])]
     assert one.solve()[0].answer == several.solve()[1].answer
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import symobs
 from symobs.derivation import Derivation, Plot
 from symobs.errors import UsageError
 from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
@@ -316,6 +317,22 @@ def test_the_sketch_of_a_hyperbola() -> None:
     assert rows[-1] == "." * 41
     assert rows[0] == "." * 8 + "#" * 33
     assert rows[8] == "." * 10 + "#" * 31
+
+
+@pytest.mark.parametrize(("last", "line"), [("1", "#"), ("h^2", ".")])
+def test_a_line_is_drawn_as_it_is(last: str, line: str) -> None:
+    """Both are stable where h k < 1, but on h = 0 s² + s + 1 is stable and s² + s is not."""
+    result = symobs.stability_region(polynomial=f"s^2 + (1 - h k) s + {last}", parameters=("h", "k"))
+    shown = str(result.to("text"))
+    rows = re.findall(r" │([#.]{41})$", shown, re.MULTILINE)
+    top, bottom = (float(end) for end in re.findall(r"^ *([-.\d]+) │[#.]", shown, re.MULTILINE))
+    left, right = map(float, re.findall(r"─ h\n +(\S+) +(\S+)\n", shown)[0])
+    assert len(rows) == 17
+    for number, row in enumerate(rows):
+        k = top + (bottom - top) * (number + 0.5) / 17
+        for column, character in enumerate(row):
+            h = left + (right - left) * (column + 0.5) / 41
+            assert character == (line if column == 20 else "#" if h * k < 1 else "."), (h, k)
 
 
 def test_the_sketch_of_a_line() -> None:

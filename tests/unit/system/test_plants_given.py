@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -152,3 +153,40 @@ def test_a_transfer_matrix_of_python_control_is_refused() -> None:
     system = control.tf([[[1], [1]]], [[[1, 1], [1, 2]]])
     with pytest.raises(InputError, match=r"a transfer matrix has several realisations; convert it by control\.ss"):
         symobs.observability(system)
+
+
+# -- parameters replaced ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("key", ["p", p], ids=["name", "symbol"])
+@pytest.mark.parametrize(
+    "value", ["-1/2", Fraction(-1, 2), sympy.Rational(-1, 2)], ids=lambda value: type(value).__name__
+)
+def test_parameters_are_replaced_by_whatever_an_entry_may_be(key: object, value: object) -> None:
+    plant = StateSpace("[p 1; 0 b]", "[0; p^2]", "[1 0]").substitute({key: value, "b": 3})
+    assert sympy.Matrix([[sympy.Rational(-1, 2), 1], [0, 3]]) == plant.A
+    assert sympy.Matrix([0, sympy.Rational(1, 4)]) == plant.B
+
+
+def test_parameters_are_replaced_by_expressions_in_others() -> None:
+    q = sympy.Symbol("q", positive=True)
+    plant = StateSpace(sympy.Matrix([[p, 1], [0, b]])).substitute({p: q + b})
+    assert sympy.Matrix([[q + b, 1], [0, b]]) == plant.A
+    assert StateSpace("[p 1; 0 b]").substitute({"p": "2 b"}).A[0, 0] == 2 * b
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"q": 1}, "substitute.q: q is no parameter of the plant; use b, p"),
+        ({"p": 0.5}, 'substitute.p: 0.5 is a float; write an exact value such as "1/2"'),
+        ({"p": "1/"}, "substitute.p: .* is expected at the end"),
+        ({"p": "c"}, "substitute.p: .*c"),
+        ({"b": -1}, "substitute.b: -1 is not positive, as b is declared"),
+        ({"b": 0}, "substitute.b: 0 is not positive, as b is declared"),
+    ],
+)
+def test_values_that_cannot_be_are_refused(values: dict[Any, Any], said: str) -> None:
+    plant = StateSpace("[p 1; 0 b]", symbols={"p": "real", "b": "positive"})
+    with pytest.raises(InputError, match=said):
+        plant.substitute(values)

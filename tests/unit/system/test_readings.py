@@ -63,9 +63,13 @@ def test_spaces_in_brackets_set_entries_apart_after_a_division_too() -> None:
     assert parse_matrix("[1/b (b+1)]").shape == (1, 2)
 
 
-def test_a_fraction_before_the_imaginary_unit_is_its_factor() -> None:
-    (pole,) = parse_poles("-1 + 3/2 j")
-    assert (pole.real, pole.imaginary) == (parse_scalar("-1"), parse_scalar("3/2"))
+@pytest.mark.parametrize(
+    ("text", "fraction"), [("-1 + 3/2 j", "3/2"), ("-1 + 52/25 I", "52/25"), ("-1 + 1/4 i", "1/4")]
+)
+def test_a_fraction_before_the_imaginary_unit_is_its_factor(text: str, fraction: str) -> None:
+    """And no denominator: 1/(4 i) would be −i/4."""
+    (pole,) = parse_poles(text)
+    assert (pole.real, pole.imaginary) == (parse_scalar("-1"), parse_scalar(fraction))
 
 
 # -- SymPy symbols ----------------------------------------------------------------------------------------------------

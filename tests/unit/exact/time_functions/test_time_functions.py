@@ -521,3 +521,23 @@ def test_lengths_against_sympy() -> None:
         theirs = len(sympy.latex(sympy.Matrix(result.plant.A * t).exp()))
         print(f"{text}: {ours}, SymPy {theirs}")  # noqa: T201 - shown by pytest -s
         assert 2 * ours <= 3 * theirs
+
+
+@pytest.mark.parametrize("asked", [{}, {"symbols": {"T": "real"}}, {"symbols": {"T": "nonnegative"}}])
+def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, dict[str, str]]) -> None:
+    """At T = 0 the Gramian is 0 and sees nothing, though the finite sum has rank 2."""
+    plant = symobs.StateSpace("[0 1; 0 0]", C="[1 0]", **asked)
+    results = (
+        symobs.gramian(plant, horizon="T"),
+        symobs.initial_state(plant, horizon="T", output="t"),
+        symobs.initial_state_covariance(plant, horizon="T", R="1"),
+    )
+    for result in results:
+        assert [(c.kind, str(c)) for c in result.holds_where] == [("domain", "T > 0")]
+        assert "Throughout, $T>0$." in result.to_latex()
+
+
+def test_a_positive_horizon_needs_no_words() -> None:
+    result = symobs.gramian(symobs.StateSpace("[0 1; 0 0]", C="[1 0]", symbols={"T": "positive"}), horizon="T")
+    assert not result.holds_where
+    assert "Throughout" not in result.to_latex()
