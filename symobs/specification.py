@@ -335,10 +335,9 @@ def _text(entry: object) -> object:
     """Return a SymPy expression as text: the grammar reads its functions."""
     if not is_sympy(entry):
         return entry
-    from sympy import Symbol
+    from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
 
-    symbols = getattr(entry, "free_symbols", ())
-    return str(entry.xreplace({symbol: Symbol(symbol.name) for symbol in symbols}))  # type: ignore[attr-defined]
+    return str(with_plain_symbols(entry))
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:

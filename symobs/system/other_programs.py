@@ -80,9 +80,8 @@ def _from_sympy(system: Any) -> StateSpace:
     if not all(hasattr(found, name) for name in ("num", "den", "var")):
         message = f"a system of SymPy with one input and one output is expected, but a {type(found).__name__} came"
         raise InputError(message, where="plant", repair=_MAKE_ONE)
-    from sympy import Symbol
+    from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
 
-    variable = "z" if dt else "s"
-    own = {found.var: Symbol(variable)}
-    coefficients = (found.num.subs(own), found.den.subs(own))
+    own = {found.var: "z" if dt else "s"}
+    coefficients = tuple(with_plain_symbols(part, own) for part in (found.num, found.den))
     return StateSpace.from_transfer_function(coefficients, dt)

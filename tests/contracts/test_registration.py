@@ -180,7 +180,7 @@ def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
 def test_a_format_is_one_new_file(copy: Copy) -> None:
     refused = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
     assert refused.code == 2
-    copy.add("symobs/render/dummy.py", FORMAT)
+    copy.add("symobs/render/formats/dummy.py", FORMAT)
     solved = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
     assert (solved.code, solved.err) == (0, "")
     assert solved.out.startswith("observer ")

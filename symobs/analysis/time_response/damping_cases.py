@@ -53,10 +53,6 @@ class Branched(Result):
         """Return the result on a stratum, or with other signs."""
         raise NotImplementedError
 
-    def tell(self, page: Page) -> None:
-        """Write the steps of this branch."""
-        raise NotImplementedError
-
     def claims(self) -> Iterator[Claim]:
         """Yield that there is an answer or a question that is open, and that every root in the answer is real."""
         if self.answer.get(self.main) is None and self.answer.get("question") is None and self.has_answer:
@@ -162,14 +158,14 @@ class Branched(Result):
             )
             page.conclude("declared", signs=Together(tuple(relation(value, ">", 0) for value in beyond)))
 
-    def tell_branches(self, page: Page) -> None:
+    def write_branches(self, page: Page, write_branch: Callable[[Page, Any], None]) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         if not self.case_tree and not chosen:
-            self.tell(page)
+            write_branch(page, self)
             return
         inner = _inside(page, self.plant, {})
-        self.tell(inner)
+        write_branch(inner, self)
         zeros = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
         steps = tuple(inner.steps)
         if chosen:
@@ -178,7 +174,7 @@ class Branched(Result):
             apart = relation(product_of(zeros), "!=", 0)
             # on a stratum what is told rests on what does not vanish: a basis is one outside of its own cases only
             page.steps.append(CaseStep(Together((apart,)) if self.plant.equations else apart, (), steps))
-        page.steps += [_case(page, case, self.answer["chosen"]) for case in self.case_tree]
+        page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 
 
 def _distance(case: Case) -> Scalar:
@@ -186,14 +182,14 @@ def _distance(case: Case) -> Scalar:
     return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
 
 
-def _case(page: Page, case: Case, doubled: Signs) -> Step:
+def _case(page: Page, case: Case, doubled: Signs, write_branch: Callable[[Page, Any], None]) -> Step:
     from symobs.analysis.page_parts import stratum_of, undecided  # noqa: PLC0415
 
     if not isinstance(case.result, Branched):
         return undecided(page, case)
     condition = case.when[0]
     inner = _inside(page, case.result.plant, case.substitution)
-    case.result.tell_branches(inner)
+    case.result.write_branches(inner, write_branch)
     steps = tuple(inner.steps)
     if condition.operator != "==":
         return _narrowed(steps, case.when)[0]

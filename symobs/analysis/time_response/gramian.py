@@ -24,7 +24,7 @@ from symobs.analysis.time_response.horizons import INFINITE, infinite_gramian, o
 from symobs.analysis.time_response.matrix_exponential import TIME, closed_form, question_of, require_continuous
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.kernel.generators import symbols_in
@@ -244,12 +244,6 @@ class Gramian(Branched):
         found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
         found |= {"rank": self.answer["rank"]["rank"], "kernel": vectors}
         return {**found, **({"question": asked} if asked else {})}
-
-    def tell(self, page: Page) -> None:
-        """Write one branch."""
-        from symobs.analysis.time_response.gramian_page import tell_gramian  # noqa: PLC0415
-
-        tell_gramian(self, page)
 
 
 def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:

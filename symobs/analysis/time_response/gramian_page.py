@@ -50,7 +50,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
             tell_polynomial(page)
         if result.answer["chosen"]:
             _tell_lyapunov(result, page)
-        result.tell_branches(page)
+        result.write_branches(page, _write_branch)
     if result.answer["matrix"] is not None or result.decay.verdict == "no":
         with page.section("finite_sum"):
             _tell_finite_sum(result, page)
@@ -91,7 +91,7 @@ def _tell_lyapunov(result: Gramian, page: Page) -> None:
         page.remark("lyapunov_denominator")
 
 
-def tell_gramian(result: Gramian, page: Page) -> None:
+def _write_branch(page: Page, result: Gramian) -> None:
     """Write one branch: e^{At}, what the output sees of it, the integral."""
     answer = result.answer
     A, C = _letters(result, page)

@@ -13,17 +13,15 @@ from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
 from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
-from symobs.analysis.time_response.initial_state_page import tell_initial_state
 from symobs.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
     question_of,
     require_continuous,
-    tell_polynomial,
 )
 from symobs.analysis.time_response.measurements import read_functions
 from symobs.certificate.claims import Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.exact.kernel.generators import substitute, tidy
@@ -205,21 +203,6 @@ class InitialState(Branched):
         vectors = [list(N.select(range(N.shape[0]), [j]).entries) for j in range(N.shape[1])]
         found = {"x0": None if x0 is None else list(x0.entries), "kernel": vectors}
         return {**found, **({"question": asked} if asked else {})}
-
-    def write(self, page: Page) -> None:
-        """Write the document's five steps."""
-        values = list(self.everything())
-        if self.answer["horizon"] != INFINITE:
-            values += [substitute(value, {"t": self.answer["horizon"]}) for value in values]
-        page.in_time(*values)
-        self.state(page)
-        with page.section("initial_state"):
-            tell_polynomial(page)
-            self.tell_branches(page)
-
-    def tell(self, page: Page) -> None:
-        """Write one branch."""
-        tell_initial_state(self, page)
 
 
 def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Table) -> dict[str, Any]:

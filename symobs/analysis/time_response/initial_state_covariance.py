@@ -14,17 +14,15 @@ from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims
 from symobs.analysis.time_response.best_horizon import stationary
 from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
 from symobs.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
-from symobs.analysis.time_response.initial_state_covariance_page import tell_covariance
 from symobs.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
     question_of,
     require_continuous,
-    tell_polynomial,
 )
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, sign_of, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import relation
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import identities, roots_in, substitute
@@ -184,19 +182,6 @@ class InitialStateCovariance(Branched):
         found: dict[str, Any] = {name: self.answer.get(name) for name in names}
         found["best_horizon"] = self.best_horizon
         return {**found, **({"question": asked} if asked else {})}
-
-    def write(self, page: Page) -> None:
-        """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
-        values = list(self.everything())
-        page.in_time(*values, *(substitute(value, {"t": self.answer["horizon"]}) for value in values))
-        self.state(page)
-        with page.section("covariance"):
-            tell_polynomial(page)
-            self.tell_branches(page)
-
-    def tell(self, page: Page) -> None:
-        """Write one branch."""
-        tell_covariance(self, page)
 
 
 def _too_long(plant: StateSpace, found: Exponential) -> str:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.time_response.matrix_exponential import closed_form, tell_exponential, tell_question
+from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance
+from symobs.analysis.time_response.matrix_exponential import (
+    closed_form,
+    tell_exponential,
+    tell_polynomial,
+    tell_question,
+)
 from symobs.conditions import never_zero
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative
+from symobs.exact.kernel.generators import derivative, substitute
 from symobs.formula import Literal, Power
 from symobs.formula.calculus import since_start
+from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance
     from symobs.derivation.builder import Page
 
 #: How the output noise enters, and what stands between two inverse Gramians.
@@ -21,7 +27,18 @@ _WITH_INPUT = ("estimate_is", "parts_of_covariance")
 _OUTPUT_ONLY = ("estimate_of_output", "covariance_of_output")
 
 
-def tell_covariance(result: InitialStateCovariance, page: Page) -> None:
+@page_of(InitialStateCovariance)
+def write_covariance(page: Page, result: InitialStateCovariance) -> None:
+    """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
+    values = list(result.everything())
+    page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
+    result.state(page)
+    with page.section("covariance"):
+        tell_polynomial(page)
+        result.write_branches(page, _write_branch)
+
+
+def _write_branch(page: Page, result: InitialStateCovariance) -> None:
     """Write one branch: noise, Gramian, the two integrals, the parts, the sum."""
     answer = result.answer
     if result.verdict == "no":

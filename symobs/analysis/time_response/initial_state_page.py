@@ -6,7 +6,14 @@ from math import factorial
 from typing import TYPE_CHECKING
 
 from symobs.analysis.time_response.damping_cases import rate_of
-from symobs.analysis.time_response.matrix_exponential import closed_form, tell_exponential, tell_question
+from symobs.analysis.time_response.horizons import INFINITE
+from symobs.analysis.time_response.initial_state import InitialState
+from symobs.analysis.time_response.matrix_exponential import (
+    closed_form,
+    tell_exponential,
+    tell_polynomial,
+    tell_question,
+)
 from symobs.conditions import never_zero
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
@@ -15,9 +22,9 @@ from symobs.exact.time_functions.quasipolynomial import determinant, table_of
 from symobs.formula import Literal, Shown
 from symobs.formula.calculus import since_start
 from symobs.formula.term import block
+from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.analysis.time_response.initial_state import InitialState
     from symobs.derivation.builder import Page
     from symobs.formula.term import Term
 
@@ -25,7 +32,20 @@ if TYPE_CHECKING:
 _WARNED_UP_TO = 3
 
 
-def tell_initial_state(result: InitialState, page: Page) -> None:
+@page_of(InitialState)
+def write_initial_state(page: Page, result: InitialState) -> None:
+    """Write the document's five steps."""
+    values = list(result.everything())
+    if result.answer["horizon"] != INFINITE:
+        values += [substitute(value, {"t": result.answer["horizon"]}) for value in values]
+    page.in_time(*values)
+    result.state(page)
+    with page.section("initial_state"):
+        tell_polynomial(page)
+        result.write_branches(page, _write_branch)
+
+
+def _write_branch(page: Page, result: InitialState) -> None:
     """Write one branch."""
     answer = result.answer
     if answer.get("question") is not None:

@@ -117,21 +117,22 @@ class MatrixExponential(Branched):
         given(page)
         with page.section("matrix_exponential"):
             tell_polynomial(page)
-            self.tell_branches(page)
+            self.write_branches(page, _write_branch)
 
-    def tell(self, page: Page) -> None:
-        """Write one branch."""
-        if self.answer["matrix"] is None:
-            tell_question(page, self.answer["factor"])
-            return
-        signs = {**self.answer["taken"], **self.answer["chosen"]}
-        found, _ = closed_form(self.plant, signs, sums=not self.plant.equations)
-        tell_exponential(page, found, self.answer["matrix"], answer=True)
-        Phi = page["exp_At"]
-        if found.is_closed and not self.plant.field.names and self.plant.order <= _SHOWN_RATE:
-            page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
-        start = relation(Phi.at("t", 0), page.identity(self.plant.order))
-        page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
+
+def _write_branch(page: Page, result: MatrixExponential) -> None:
+    """Write one branch."""
+    if result.answer["matrix"] is None:
+        tell_question(page, result.answer["factor"])
+        return
+    signs = {**result.answer["taken"], **result.answer["chosen"]}
+    found, _ = closed_form(result.plant, signs, sums=not result.plant.equations)
+    tell_exponential(page, found, result.answer["matrix"], answer=True)
+    Phi = page["exp_At"]
+    if found.is_closed and not result.plant.field.names and result.plant.order <= _SHOWN_RATE:
+        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
+    start = relation(Phi.at("t", 0), page.identity(result.plant.order))
+    page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 
 
 def tell_polynomial(page: Page) -> None:

@@ -270,3 +270,9 @@ def rectangles(factor: Scalar, variable: str, first: int) -> tuple[tuple[Fractio
         interval = root._get_interval()  # noqa: SLF001 - SymPy tells its order in no other way
         found.append((Fraction(int(scale.p), int(scale.q)), interval))
     return tuple(found)
+
+
+def with_plain_symbols(expression: Any, names: Mapping[Any, str] | None = None) -> Any:
+    """Return a SymPy expression whose symbols carry no assumptions, or in which the symbols in `names` are renamed."""
+    chosen = {symbol: symbol.name for symbol in expression.free_symbols} if names is None else names
+    return expression.subs({symbol: sympy.Symbol(name) for symbol, name in chosen.items()}, simultaneous=True)
