@@ -1,4 +1,6 @@
-"""How fast symobs is beside giac, Maxima, PARI, SymPy, QEPCAD and FLINT itself: `python -m tests.programs.benchmarks` prints a table.
+"""How fast symobs is beside giac, Maxima, PARI, SymPy, QEPCAD and FLINT itself, in one table.
+
+Run it by `python -m tests.programs.benchmarks`.
 
 Run it in the top folder of the checkout, on a quiet machine, with giac (Debian package `xcas`), `maxima`, gp (`pari-gp`)
 and `qepcad` installed; what is missing is left out.  `--only cart-pole` runs one group, `--repetitions 15` repeats more

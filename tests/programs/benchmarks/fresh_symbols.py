@@ -1,4 +1,7 @@
-"""How memory grows over designs whose symbols no design before them had: `python -m tests.programs.benchmarks.fresh_symbols 20000`."""
+"""How memory grows over designs whose symbols no design before them had.
+
+Run it by `python -m tests.programs.benchmarks.fresh_symbols 20000`.
+"""
 
 from __future__ import annotations
 

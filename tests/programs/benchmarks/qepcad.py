@@ -1,7 +1,8 @@
 """QEPCAD B as a judge of regions: what it is asked, how long it takes, and its answer read back as a formula.
 
 It is asked in two ways.  The quick one gives it Liénard and Chipart's strict inequalities, made in plain fractions by
-`tests.support.independent_algebra.region_algebra`; the slow one gives it roots: some x + iy with x ≥ 0 (|z| ≥ 1) and χ(x + iy) = 0, quantified.
+`tests.support.independent_algebra.region_algebra`; the slow one gives it roots: some x + iy with x ≥ 0 (|z|
+≥ 1) and χ(x + iy) = 0, quantified.
 
 Debian's `qepcad` needs no environment variable.  It ends in a segmentation fault where its input ends early, so an
 answer counts only where it is printed whole.

@@ -1,7 +1,8 @@
 """Lies about random designs: `python -m tests.programs.mutation.claims --designs 1000 [--lines 60] [--log PATH]`.
 
 With `--examples` about the worked examples instead; with `--match NAME` about some of them.
-Every entry of every answer and witness is changed in every way of `tests.support.tampering.mutations`, and of the lines of the page as many
+Every entry of every answer and witness is changed in every way of `tests.support.tampering.mutations`, and
+of the lines of the page as many
 as are asked for, at even distances (all with `--lines 0`).  What is not rejected must be true as well by other means.
 """
 

@@ -1,4 +1,6 @@
-"""Answers with parameters against the plants at points of their strata: python -m tests.programs.strata_oracle.__main__ --plants 20000.
+"""Answers with parameters against the plants at points of their strata: a program.
+
+Run it by `python -m tests.programs.strata_oracle --plants 20000`.
 
 For a random plant of order two to four with one to three parameters, and one task, points are taken on every curve that
 stands in a condition or a case of the answer.  The plant is specialised there and solved anew, and every branch of the

@@ -1,6 +1,7 @@
 r"""Texts by which somebody would make TeX, a browser, a template or a terminal do something, and how to see that none did.
 
-`python -m tests.support.tampering.injection` puts all of them on sheets, typesets these with TeX, opens them in a browser, and prints what
+`python -m tests.support.tampering.injection` puts all of them on sheets, typesets these with TeX, opens them
+in a browser, and prints what
 it found; `tests/contracts/test_injection.py` does so with a part of them.
 
 A canary is a file whose contents no page may show; `owned` is a file that no run may make.  Every text is put wherever

@@ -1,4 +1,7 @@
-"""A short slice of the campaign in every run of the tests; the whole is `python -m tests.programs.campaign --designs 100000`."""
+"""A short slice of the campaign in every run of the tests.
+
+The whole is `python -m tests.programs.campaign --designs 100000`.
+"""
 
 from __future__ import annotations
 
