@@ -13,8 +13,9 @@ from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.side_by_side_page import can_stand_side_by_side, write_side_by_side
 from symobs.design.full_order.observer import write_observer
-from symobs.design.gain.gain_page import FEEDBACK, OBSERVER, error_determinant, name_entries, write_gain
+from symobs.design.gain.gain_page import name_entries, write_gain
 from symobs.design.gain.page_style import page_style
+from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop, draw_unity_loop
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
@@ -87,7 +88,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             named_return_path(page, design, own)
         else:
             return_path(page, design)
-    caution_hidden(page, design)
+    caution_hidden(page, design.answer["F"], design.own_matrix)
     caution_repeated(page, design)
 
 
@@ -203,7 +204,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     page.define("A_cl", matrix, say="closed_loop_matrix", closing=not large and is_narrow(matrix.value))
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
-    parts = error_determinant(page, FEEDBACK) @ error_determinant(page, OBSERVER)
+    parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
     product = page.term(formula_of_factored(design.loop_polynomial))
     page.equal(relation(determinant, parts, product), say="polynomial_splits")
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])

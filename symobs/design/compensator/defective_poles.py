@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation.builder import Page, relation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
-from symobs.design.gain.gain_page import FEEDBACK, closed_loop_matrix
+from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.exact import Factored, Scalar, rank, roots_of
 from symobs.formula import Roots
 from symobs.specification import DesiredPolynomial
@@ -30,7 +30,7 @@ def caution_repeated(page: Page, design: OutputFeedback) -> None:
     for factor, power in desired.grouped():
         if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
             pole = -factor.coefficients(plant.variable)[1]
-            closed, size = closed_loop_matrix(page, FEEDBACK), page.identity(plant.order)
+            closed, size = FEEDBACK.closed_loop_matrix(page), page.identity(plant.order)
             length = abs(pole.fraction())
             shift = size if length == 1 else page.value(Scalar.of(length)) @ size
             offset = closed + shift if pole.fraction() < 0 else closed - shift

@@ -12,7 +12,7 @@ from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
     from symobs.derivation.builder import Page
-    from symobs.design.compensator.output_feedback import OutputFeedback
+    from symobs.system import StateSpace
 
 #: A polynomial of more terms is not decided.
 _TERMS = 400
@@ -20,9 +20,11 @@ _TERMS = 400
 _MOST = 3
 
 
-def hidden_modes(loop: OutputFeedback) -> tuple[Scalar, Scalar] | None:
-    """Return the poles' polynomial of F, and that of the modes which F does not show; None where they are too long."""
-    F, variable = loop.answer["F"], loop.plant.variable
+def hidden_modes(F: Matrix | Scalar, own_matrix: Matrix, variable: str) -> tuple[Scalar, Scalar] | None:
+    """Return the polynomial of F's poles, and that of the modes which cancel in F; None where they are too long.
+
+    `own_matrix` is the state matrix of the compensator that F belongs to.
+    """
     if isinstance(F, Matrix):
         if F.size > _TERMS or max(F.shape) > _MOST:
             return None
@@ -31,31 +33,32 @@ def hidden_modes(loop: OutputFeedback) -> tuple[Scalar, Scalar] | None:
         poles = F.denominator
     if poles.size > _TERMS:
         return None
-    own = loop.own_matrix.characteristic_polynomial(variable)
+    own = own_matrix.characteristic_polynomial(variable)
     return poles, monic((own / poles).numerator, variable)
 
 
-def law_stability(loop: OutputFeedback) -> str:
-    """Return whether the compensator by itself is stable, with the modes that F does not show."""
-    found, plant = hidden_modes(loop), loop.plant
+def law_stability(F: Matrix | Scalar, own_matrix: Matrix, plant: StateSpace, stability_of_poles: str) -> str:
+    """Return whether the compensator by itself is stable: its poles, and the modes that cancel in F."""
+    found = hidden_modes(F, own_matrix, plant.variable)
     if found is None:
         return "undecided"
     hidden = stability(found[1], plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
-    if "no" in (hidden, loop.own_stability):
+    if "no" in (hidden, stability_of_poles):
         return "no"
-    return loop.own_stability if hidden == "yes" else hidden
+    return stability_of_poles if hidden == "yes" else hidden
 
 
-def caution_hidden(page: Page, loop: OutputFeedback) -> None:
+def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
     """Warn where a mode that cancels in F is not stable, surely or for some parameters."""
-    plant, found = page.plant, hidden_modes(loop)
+    plant = page.plant
+    found = hidden_modes(F, own_matrix, plant.variable)
     if found is None or found[1].degree(plant.variable) < 1:
         return
     poles, hidden = found
     told = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     if told.verdict == "yes":
         return
-    own = (page.s @ page.identity(loop.own_matrix.shape[0]) - page["A_c"]).apply("det")
+    own = (page.s @ page.identity(own_matrix.shape[0]) - page["A_c"]).apply("det")
     rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
     if rest.value != hidden:
         return

@@ -20,8 +20,9 @@ from symobs.design.compensator.compensator_page import (
 from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
-from symobs.design.gain.gain_page import FEEDBACK, error_determinant, name_entries, write_gain
+from symobs.design.gain.gain_page import name_entries, write_gain
 from symobs.design.gain.page_style import page_style
+from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.page_parts.component_equations import combination
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
@@ -57,7 +58,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
             named_return_path(page, design, _own_denominator(page))
         else:
             return_path(page, design)
-    caution_hidden(page, design)
+    caution_hidden(page, design.answer["F"], design.own_matrix)
     caution_repeated(page, design)
 
 
@@ -212,7 +213,7 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     state = block([[x], [e]])
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
-    parts = error_determinant(page, FEEDBACK) @ (page.s @ page.identity(estimated) - F).apply("det")
+    parts = FEEDBACK.error_determinant(page) @ (page.s @ page.identity(estimated) - F).apply("det")
     page.equal(
         relation(determinant, parts, page.term(formula_of_factored(design.loop_polynomial))), say="polynomial_splits"
     )

@@ -301,7 +301,7 @@ class OutputFeedback(Result):
         """Whether the compensator by itself is stable, with the modes that F does not show."""
         from symobs.design.compensator.hidden_modes import law_stability  # noqa: PLC0415 - gains in a loop of many are not asked
 
-        return law_stability(self)
+        return law_stability(self.answer["F"], self.own_matrix, self.plant, self.own_stability)
 
     @cached_property
     def _is_unavoidably_unstable(self) -> bool:

@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.rank.rank_page import square_test
 from symobs.derivation.builder import Page, relation
-from symobs.design.gain.gain_page import (
-    FEEDBACK,
-    OBSERVER,
-    error_determinant,
-    name_coefficients,
-    say_as_required,
-    write_case,
-)
+from symobs.design.gain.gain_page import name_coefficients, say_as_required, write_case
+from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER, PlacementProblem
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.term import Term, block
@@ -22,7 +16,6 @@ from symobs.formula.term import Term, block
 if TYPE_CHECKING:
     from symobs.design.compensator.compensator import CompensatorDesign
     from symobs.design.gain.gain_design import GainDesign
-    from symobs.design.gain.gain_page import Side
 
 
 #: The blocks of a test matrix of no larger order fit a column.
@@ -44,7 +37,7 @@ def write_side_by_side(page: Page, design: CompensatorDesign) -> None:
             _column(page, design.estimator, OBSERVER)
         with page.section("right_state_feedback"):
             _column(page, design.feedback, FEEDBACK)
-        own = error_determinant(page, OBSERVER)
+        own = OBSERVER.error_determinant(page)
         page.equal(relation(own, _determinant(page, OBSERVER), page["phi_o"]), say="transposed_back")
         page.equal(relation(page["L"], design.answer["L"]), say="gain_transposed", answer=True)
         for part, side in ((design.estimator, OBSERVER), (design.feedback, FEEDBACK)):
@@ -54,7 +47,7 @@ def write_side_by_side(page: Page, design: CompensatorDesign) -> None:
                 write_case(page, case, side)
 
 
-def _column(page: Page, design: GainDesign, side: Side) -> None:
+def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """Write the test, the polynomial, the gain and its check for one of the pairs."""
     A, order, value = _matrix(page, side), page.plant.order, design.answer[side.gain]
     if side is OBSERVER:
@@ -82,14 +75,14 @@ def _column(page: Page, design: GainDesign, side: Side) -> None:
     say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial), *grouped)
 
 
-def _matrix(page: Page, side: Side) -> Term:
+def _matrix(page: Page, side: PlacementProblem) -> Term:
     """Return Aᵀ on the left, A on the right."""
     return page["A"].T if side is OBSERVER else page["A"]
 
 
-def _determinant(page: Page, side: Side) -> Term:
+def _determinant(page: Page, side: PlacementProblem) -> Term:
     """Return det(sI − Aᵀ + CᵀLᵀ) on the left, det(sI − A + BK) on the right."""
     if side is FEEDBACK:
-        return error_determinant(page, side)
+        return side.error_determinant(page)
     moved = page["C"].T @ page["L"].T
     return (page.s @ page.identity(page.plant.order) - page["A"].T + moved).apply("det")

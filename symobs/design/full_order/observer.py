@@ -12,16 +12,10 @@ from symobs.derivation.builder import Page, relation
 from symobs.design.full_order.observer_existence_page import write_ansatz, write_found
 from symobs.design.gain.gain_design import GainDesign, require_one
 from symobs.design.gain.gain_methods_page import write_companion, write_matching
-from symobs.design.gain.gain_page import (
-    OBSERVER,
-    write_ackermann,
-    write_canonical,
-    write_gain,
-    write_member,
-    write_reduction,
-)
+from symobs.design.gain.gain_page import write_ackermann, write_canonical, write_gain, write_member, write_reduction
 from symobs.design.gain.gain_request import designed
 from symobs.design.gain.page_style import page_style
+from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_collected, draw_copy
 from symobs.design.page_parts.component_equations import write_components
 from symobs.design.page_parts.time_responses import plot_error

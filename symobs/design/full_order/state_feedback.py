@@ -10,16 +10,10 @@ from symobs.analysis.page_parts import given
 from symobs.analysis.rank.observability import Controllability
 from symobs.design.gain.gain_design import GainDesign, require_one
 from symobs.design.gain.gain_methods_page import write_companion, write_matching
-from symobs.design.gain.gain_page import (
-    FEEDBACK,
-    write_ackermann,
-    write_canonical,
-    write_gain,
-    write_member,
-    write_reduction,
-)
+from symobs.design.gain.gain_page import write_ackermann, write_canonical, write_gain, write_member, write_reduction
 from symobs.design.gain.gain_request import designed
 from symobs.design.gain.page_style import page_style
+from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.pole_placement.canonical_form_gain import canonical_gain, companion_gain
 from symobs.design.pole_placement.coefficient_matching import matched_gain
 from symobs.design.pole_placement.multiple_outputs import pair_of

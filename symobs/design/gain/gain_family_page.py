@@ -12,7 +12,7 @@ from symobs.exact import Matrix, companion
 
 if TYPE_CHECKING:
     from symobs.design.gain.gain_design import GainDesign
-    from symobs.design.gain.gain_page import Side
+    from symobs.design.gain.placement_problem import PlacementProblem
     from symobs.formula import Relation
     from symobs.formula.term import Term
     from symobs.specification import DesiredPolynomial
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MATRIX, _DETERMINANT, _GAIN, _SOLUTION = 40, 24, 40, 120
 
 
-def write_sylvester(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
     page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     chart = design.chart
@@ -56,7 +56,7 @@ def write_sylvester(page: Page, design: GainDesign, side: Side, desired: Desired
     page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
 
 
-def write_hidden_family(page: Page, design: GainDesign, side: Side) -> None:
+def write_hidden_family(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """Write one gain and the dimension of the family where some modes are fixed."""
     assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
     key = of_the_others(design)
@@ -70,7 +70,7 @@ def of_the_others(design: GainDesign) -> str:
     return "no_others" if design.fixed_polynomial.degree(design.plant.variable) == design.plant.order else "one_gain"
 
 
-def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def _only_gain(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """One output (input): G = e₁ᵀ, and X is unique."""
     pair = design.pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
@@ -79,7 +79,7 @@ def _only_gain(page: Page, design: GainDesign, side: Side, desired: DesiredPolyn
     page.define(side.gain, _gain(page, side, "", equation), say="gain_follows", answer=True)
 
 
-def _shift(page: Page, equation: Sylvester, side: Side, design: GainDesign) -> None:
+def _shift(page: Page, equation: Sylvester, side: PlacementProblem, design: GainDesign) -> None:
     """Part the spectra where they meet."""
     if equation.shift is None:
         return
@@ -88,11 +88,11 @@ def _shift(page: Page, equation: Sylvester, side: Side, design: GainDesign) -> N
     page.define(f"A_{side.index}0", page["A"] - moved)
 
 
-def _state_matrix(page: Page, side: Side, equation: Sylvester) -> Term:
+def _state_matrix(page: Page, side: PlacementProblem, equation: Sylvester) -> Term:
     return page["A"] if equation.shift is None else page[f"A_{side.index}0"]
 
 
-def _equation(page: Page, side: Side, which: str, equation: Sylvester, value: Matrix) -> None:
+def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylvester, value: Matrix) -> None:
     """Write G, the equation, and X with its determinant."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     page.set(G, value)
@@ -115,7 +115,7 @@ def _equation(page: Page, side: Side, which: str, equation: Sylvester, value: Ma
         )
 
 
-def _sylvester(page: Page, side: Side, which: str, equation: Sylvester) -> Relation:
+def _sylvester(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """AᵀX − XF = CᵀG, or AX − XF = BG."""
     A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
@@ -124,7 +124,7 @@ def _sylvester(page: Page, side: Side, which: str, equation: Sylvester) -> Relat
     return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
 
 
-def _gain(page: Page, side: Side, which: str, equation: Sylvester) -> Term:
+def _gain(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
     """L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     found = page[G] @ page[X].inverse
@@ -132,7 +132,7 @@ def _gain(page: Page, side: Side, which: str, equation: Sylvester) -> Term:
     return found if equation.shift is None else page[f"{side.gain}_0"] + found
 
 
-def _similar(page: Page, side: Side, which: str, equation: Sylvester) -> Relation:
+def _similar(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """(A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse

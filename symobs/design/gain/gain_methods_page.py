@@ -16,7 +16,7 @@ from symobs.formula.term import Term, block, product
 
 if TYPE_CHECKING:
     from symobs.design.gain.gain_design import GainDesign
-    from symobs.design.gain.gain_page import Side
+    from symobs.design.gain.placement_problem import PlacementProblem
     from symobs.formula import Relation
     from symobs.specification import DesiredPolynomial
 
@@ -26,7 +26,7 @@ _READABLE, _VECTORS = 150, 9
 _HARM = Fraction(1, 100)
 
 
-def write_ackermann_formula(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_ackermann_formula(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
@@ -60,7 +60,7 @@ def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
     return total**power
 
 
-def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
     system = matching(design.pair(page.plant), desired)
@@ -81,7 +81,7 @@ def write_matching(page: Page, design: GainDesign, side: Side, desired: DesiredP
     page.set(side.gain, solution)
 
 
-def write_companion(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """T = [q; qAᵀ; …] carries the dual pair to companion form, where the gain is the row of differences."""
     order, variable = page.plant.order, page.plant.variable
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
@@ -115,7 +115,7 @@ def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
     return row_reduction(design.pair(design.plant), design.desired)
 
 
-def write_row_reduction(page: Page, design: GainDesign, side: Side, _: DesiredPolynomial) -> None:
+def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
@@ -135,7 +135,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: Side, _: DesiredPo
     _rounded_too_early(page, gain.value)
 
 
-def _open_eigenvalues(page: Page, side: Side) -> None:
+def _open_eigenvalues(page: Page, side: PlacementProblem) -> None:
     """Say where the eigenvalues are without the gain, where they can be written down."""
     own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
     factors = own.scalar.factors()[1]
@@ -157,7 +157,7 @@ def _rounded_too_early(page: Page, gain: Matrix) -> None:
         page.equal(relation(spoiled, *shown), say="rounded_too_early")
 
 
-def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
+def _reduce(page: Page, side: PlacementProblem, part: Reduction, number: int) -> None:
     """Write one reduction."""
     if part.before is not None:
         page.equal(relation(part.matrix, "~", part.reduced), say="generalised", pole=_named(page, part))
@@ -175,7 +175,7 @@ def _reduce(page: Page, side: Side, part: Reduction, number: int) -> None:
     page.conclude_silently(relation(page.value(matrix) @ xi, right))
 
 
-def _matrix(page: Page, side: Side, part: Reduction) -> Term:
+def _matrix(page: Page, side: PlacementProblem, part: Reduction) -> Term:
     """Return [λI − Aᵀ : Cᵀ] (or [λI − A : B]) in letters; of a block J its blocks."""
     order, J = part.order, part.J
     A, driven = (page["A"].T, page["C"].T) if side.gain == "L" else (page["A"], page["B"])

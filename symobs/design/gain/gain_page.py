@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import (
-    HIDDEN,
     determinant_form,
     hidden,
     hidden_polynomial,
@@ -21,6 +19,7 @@ from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
 from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
+from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
 from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
@@ -40,33 +39,7 @@ _PLAIN_TERMS = 4
 _PAIR = 2
 
 
-@dataclass(frozen=True)
-class Side:
-    """The words and letters of one side: observers look at (C, A), state feedback at (A, B)."""
-
-    kind: str
-    gain: str
-    matrix: str
-    test: str
-    index: str
-    coefficient: str
-
-    @property
-    def hidden(self) -> tuple[str, str]:
-        """The letters of the hidden subspace: a page may speak of both sides."""
-        return HIDDEN[self.test]
-
-    @property
-    def phi(self) -> str:
-        """The letter of the polynomial asked for."""
-        return f"phi_{self.index}"
-
-
-OBSERVER = Side("observer", "L", "O", "observability", "o", "beta_")
-FEEDBACK = Side("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")
-
-
-def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
+def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
     """Write how the gain is found, in the style of a method, and the check the reader is shown."""
     if design.desired is None:
         _given_gain(page, design, side)
@@ -90,23 +63,23 @@ def write_gain(page: Page, design: GainDesign, side: Side, style: str) -> None:
         write_case(page, case, side)
 
 
-def _write_gain_alone(page: Page, design: GainDesign, side: Side, _: DesiredPolynomial) -> None:
+def _write_gain_alone(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """State the gain of a method without a page of its own; the check below is what shows it."""
     page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
 
 
-def write_reduction(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_reduction(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the row-reduced echelon method where its matrices can be read, else Ackermann's formula."""
     (write_row_reduction if readable(design) else write_ackermann)(page, design, side, desired)
 
 
-def write_ackermann(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_ackermann(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
     is_of_family = design.chart is not None or all_roots(design.answer[side.gain])
     (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
 
 
-def write_member(page: Page, design: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_member(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
     if all_roots(design.answer[side.gain]):
         page.with_roots(design.answer[side.gain])
@@ -115,18 +88,7 @@ def write_member(page: Page, design: GainDesign, side: Side, desired: DesiredPol
         write_sylvester(page, design, side, desired)
 
 
-def closed_loop_matrix(page: Page, side: Side) -> Term:
-    """Return A − LC or A − BK."""
-    return page["A"] - (page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"])
-
-
-def error_determinant(page: Page, side: Side) -> Term:
-    """Return det(sI − A + LC) or det(sI − A + BK)."""
-    moved = page["L"] @ page["C"] if side.gain == "L" else page["B"] @ page["K"]
-    return (page.s @ page.identity(page.plant.order) - page["A"] + moved).apply("det")
-
-
-def define_test_matrix(page: Page, side: Side) -> None:
+def define_test_matrix(page: Page, side: PlacementProblem) -> None:
     """Define 𝒪 or 𝒞 block by block."""
     A, order = page["A"], page.plant.order
     if side.gain == "L":
@@ -143,7 +105,7 @@ def _is_canonical(page: Page) -> bool:
     return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
 
 
-def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
+def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
     if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
         _say_canonical(page)
         return
@@ -156,7 +118,7 @@ def _test(page: Page, design: GainDesign, side: Side, style: str) -> None:
         page.conclude(f"assignable_{side.kind}")
 
 
-def name_coefficients(page: Page, design: GainDesign, side: Side) -> DesiredPolynomial:
+def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
     """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
@@ -203,7 +165,7 @@ def name_entries(page: Page, gain: str) -> None:
     page.set(gain, named)
 
 
-def write_canonical(page: Page, _: GainDesign, side: Side, desired: DesiredPolynomial) -> None:
+def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
@@ -234,7 +196,7 @@ def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
     return block([entries])
 
 
-def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
+def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
     variable = page.plant.variable
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
@@ -253,10 +215,10 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: Side) -> None:
     page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
 
 
-def _impossible(page: Page, design: GainDesign, side: Side) -> None:
+def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
     if design.zero and design.divides:
-        write_no_gain(page, design, side, lambda: error_determinant(page, side))
+        write_no_gain(page, design, side)
         return
     fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
     page.conclude(
@@ -268,40 +230,40 @@ def _impossible(page: Page, design: GainDesign, side: Side) -> None:
     )
 
 
-def _fixed(page: Page, side: Side, kernel: Matrix, restricted: Matrix) -> Term:
+def _fixed(page: Page, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
     for name, value in zip(side.hidden, (kernel, restricted), strict=True):
         page.set(name, value)
     return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
 
 
-def _given_gain(page: Page, design: GainDesign, side: Side) -> None:
+def _given_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """A gain is given: find its polynomial and say whether it is stable."""
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
-    closed = closed_loop_matrix(page, side)
+    closed = side.closed_loop_matrix(page)
     page.equal(relation(closed, closed.shown), say="closed_matrix")
     polynomial = design.answer["polynomial"]
     shown = factored_form(page, polynomial)
-    members = [error_determinant(page, side), page.value(polynomial)]
+    members = [side.error_determinant(page), page.value(polynomial)]
     if len(polynomial.factors()[1]) > 1:
         members.append(shown)
     page.equal(relation(*members), say="its_polynomial", answer=True)
-    say_stability(page, error_determinant(page, side))
+    say_stability(page, side.error_determinant(page))
 
 
-def _verified(page: Page, design: GainDesign, side: Side) -> None:
+def _verified(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
     polynomial = page[side.phi].value
     grouped = desired.grouped()
-    members = [error_determinant(page, side), page.value(polynomial)]
+    members = [side.error_determinant(page), page.value(polynomial)]
     if not desired.is_expanded and polynomial == desired.polynomial:
         members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
     say_as_required(page, desired, *members)
     caution_poles(page, desired, side.phi, side.kind)
     if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
-        say_stability(page, error_determinant(page, side))
+        say_stability(page, side.error_determinant(page))
 
 
 def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
@@ -317,14 +279,14 @@ def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> N
     page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
-def write_case(page: Page, case: Case, side: Side) -> None:
+def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
     """Say what is true on a stratum."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
         return
     result = case.result
     if result._pair.is_observable and result.answer[side.gain] is not None:  # noqa: SLF001 - the witness of the stratum
-        page.steps.append(another_gain(page, case, side, lambda: error_determinant(page, side), "case_another_gain"))
+        page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
     outer, environment = page.steps, page.environment
     page.steps = []
@@ -337,7 +299,7 @@ def write_case(page: Page, case: Case, side: Side) -> None:
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
-def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
+def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
@@ -350,10 +312,10 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: Side) -> None:
         return
     if not own:
         page.define(side.gain, gain)
-    page.conclude_silently(relation(error_determinant(page, side), page[side.phi]))
+    page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
 
 
-def design_gain_on(case: Case, page: Page, side: Side) -> bool:
+def design_gain_on(case: Case, page: Page, side: PlacementProblem) -> bool:
     """Whether there is a gain in the main line that is still finite on the stratum."""
     if not page.knows(side.gain):
         return False

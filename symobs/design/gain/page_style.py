@@ -1,4 +1,4 @@
-"""TODO symobs/design/gain/page_style.py."""
+"""The method whose derivation of a gain is printed where none was asked for."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
-    """Return whose page is written: canonical form for small plants unless a method was asked for."""
+    """Return the method whose page is printed: canonical form for small plants unless one was asked for."""
     if method_name != "auto":
         return method_name
     if several:

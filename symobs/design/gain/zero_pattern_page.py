@@ -12,22 +12,19 @@ from symobs.design.gain.gain_design import GainDesign
 from symobs.exact import EIGENVALUE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from symobs.derivation import Step
-    from symobs.design.gain.gain_page import Side
-    from symobs.formula.term import Term
+    from symobs.design.gain.placement_problem import PlacementProblem
     from symobs.result import Case
 
 #: A condition with more terms is not written out.
 _WRITTEN = 60
 
 
-def write_no_gain(page: Page, design: GainDesign, side: Side, assigned: Callable[[], Term]) -> None:
-    """Write why no gain has its zeros there, where one has, or one in a root; `assigned` is det(sI − A + LC)."""
+def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+    """Write why no gain has its zeros there, where one has, or one in a root."""
     listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
     if design.in_root is not None:
-        _in_root(page, design, side, assigned, listed)
+        _in_root(page, design, side, listed)
     elif not design.needed:
         page.conclude("undecided_zero", places=listed)
     elif design.needed[0].is_constant:
@@ -39,10 +36,10 @@ def write_no_gain(page: Page, design: GainDesign, side: Side, assigned: Callable
         else:
             page.remark("impossible_zero_in_general", places=listed)
         for case in design.case_tree:
-            page.steps.append(_case(page, case, side, assigned))
+            page.steps.append(_case(page, case, side))
 
 
-def _in_root(page: Page, design: GainDesign, side: Side, assigned: Callable[[], Term], listed: str) -> None:
+def _in_root(page: Page, design: GainDesign, side: PlacementProblem, listed: str) -> None:
     """A gain whose entries are polynomials in a real root λ."""
     found = design.in_root
     assert found is not None  # noqa: S101 - asked for only where there is one
@@ -51,14 +48,14 @@ def _in_root(page: Page, design: GainDesign, side: Side, assigned: Callable[[], 
     inner, page.steps, before = page.steps, [], page.environment
     page.environment = before.under((found.polynomial,))
     page.define(side.gain, design.oriented(found.gain), answer=True)
-    page.verified("as_required", check=relation(assigned(), page[side.phi]))
+    page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     changes = relation(page.value(at_ends[0]) @ page.value(at_ends[1]), "<", 0)
     page.conclude("zero_in_root", changes, places=listed, low=str(low), high=str(high))
     page.steps.append(CaseStep(relation(found.polynomial, 0), (), steps))
 
 
-def _case(page: Page, case: Case, side: Side, assigned: Callable[[], Term], say: str = "case_zero_gain") -> Step:
+def _case(page: Page, case: Case, side: PlacementProblem, say: str = "case_zero_gain") -> Step:
     """Write the gain on a stratum where there is one."""
     result = case.result
     if not isinstance(result, GainDesign) or (result.answer[side.gain] is None and result.verdict != "no"):
@@ -66,21 +63,21 @@ def _case(page: Page, case: Case, side: Side, assigned: Callable[[], Term], say:
     if result.answer[side.gain] is None:
         steps: tuple[Step, ...] = (Note(sentence("case_no_zero", {})),)
         return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps)
-    return another_gain(page, case, side, assigned, say)
+    return another_gain(page, case, side, say)
 
 
-def another_gain(page: Page, case: Case, side: Side, assigned: Callable[[], Term], say: str) -> Step:
+def another_gain(page: Page, case: Case, side: PlacementProblem, say: str) -> Step:
     """Write the gain on a stratum that is not the one of the main line."""
     result = case.result
     assert isinstance(result, GainDesign)  # noqa: S101 - the case is decided
     inner, page.steps, before = page.steps, [], page.environment
     page.with_roots(result.answer[side.gain])
     page.define(side.gain, result.answer[side.gain], say=say, answer=True)
-    page.conclude_silently(relation(assigned(), page[side.phi]))
+    page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
     conditions = [c.expression for c in result.holds_where if c.kind == "claim" and c.operator == "!="]
     if conditions:
         page.assume("gain_provided", *conditions)
     for further in result.case_tree:
-        page.steps.append(_case(page, further, side, assigned, say))
+        page.steps.append(_case(page, further, side, say))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps)

@@ -18,12 +18,12 @@ from symobs.result import Case
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.design.pole_advice.pole_advice import PoleAdvice
+    from symobs.design.pole_advice.advised_poles import AdvisedPoles
     from symobs.exact import Scalar
     from symobs.system import StateSpace
 
 
-def cases_of(advice: PoleAdvice) -> tuple[Case, ...]:
+def cases_of(advice: AdvisedPoles) -> tuple[Case, ...]:
     """Return the advice where zeros are stable that need not be, and on the strata where zeros or modes are lost."""
     return (*_of_open_zeros(advice), *_of_strata(advice))
 
@@ -39,7 +39,7 @@ def _lead(plant: StateSpace, numerator: Scalar) -> tuple[Scalar, ...]:
     return vanishing_factors([numerator.coefficients(plant.variable)[0]], plant.symbols.signs) if numerator else ()
 
 
-def _of_open_zeros(advice: PoleAdvice) -> Iterator[Case]:
+def _of_open_zeros(advice: AdvisedPoles) -> Iterator[Case]:
     """Yield, for each factor whose roots are places for poles under conditions only, the advice under these.
 
     Within it the factors before stay unused: where those are stable too, their own case comes first.
@@ -60,13 +60,13 @@ def _of_open_zeros(advice: PoleAdvice) -> Iterator[Case]:
             yield Case(conditions, {}, there)
 
 
-def _of_strata(advice: PoleAdvice) -> tuple[Case, ...]:
+def _of_strata(advice: AdvisedPoles) -> tuple[Case, ...]:
     """Return the advice on every stratum where a zero is lost, or a mode is not seen or not moved."""
     if advice.taken:
         return ()  # they are those of the advice in general
     plant = advice.plant
 
-    def solve(there: StateSpace, values: Mapping[str, Scalar]) -> PoleAdvice:
+    def solve(there: StateSpace, values: Mapping[str, Scalar]) -> AdvisedPoles:
         wish, radius = advice.wish, advice.wish.radius
         moved = wish if radius is None else replace(wish, radius=radius.substitute(values))
         try:
@@ -81,7 +81,7 @@ def _of_strata(advice: PoleAdvice) -> tuple[Case, ...]:
     return tuple({case.when: case for case in found}.values())
 
 
-def _of_kept_modes(advice: PoleAdvice) -> Iterator[Case]:
+def _of_kept_modes(advice: AdvisedPoles) -> Iterator[Case]:
     """Yield where modes that no gain moves are among the poles after all: there nothing is decided here."""
     if advice.missed.is_one:
         return

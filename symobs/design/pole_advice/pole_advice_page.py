@@ -11,7 +11,8 @@ from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Given
 from symobs.derivation.builder import Page, predicate, relation, sentence
-from symobs.design.pole_advice.pole_advice import FURTHER_LEFT, PoleAdvice, numerator_term
+from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
+from symobs.design.pole_advice.pole_advice import PoleAdvice
 from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.kernel.generators import function

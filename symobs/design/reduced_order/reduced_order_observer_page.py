@@ -10,7 +10,8 @@ from symobs.analysis.rank.observability import Observability
 from symobs.analysis.rank.rank_page import rank_cases, square_test
 from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, predicate, relation
-from symobs.design.gain.gain_page import OBSERVER, define_test_matrix, say_as_required
+from symobs.design.gain.gain_page import define_test_matrix, say_as_required
+from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_minimal_order
 from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles

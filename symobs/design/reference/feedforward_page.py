@@ -9,7 +9,7 @@ from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write
 from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
 from symobs.design.compensator.unstable_law_caution import caution_law
-from symobs.design.gain.gain_page import FEEDBACK, OBSERVER, error_determinant
+from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_feedforward
 from symobs.design.reference.feedforward import FeedforwardDesign
 from symobs.exact import Matrix, Scalar, rank, transfer_matrix
@@ -117,8 +117,8 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     page.conclude_silently(relation(state.derivative, page["A_cl"] @ state + driven @ v))
     determinant = (page.s @ page.identity(plant.order + errors) - page["A_cl"]).apply("det")
     of_rest = page.s @ page.identity(errors) - page["A_22"] + page["L"] @ page["A_12"] if minimal else None
-    of_error = error_determinant(page, OBSERVER) if of_rest is None else of_rest.apply("det")
-    parts_of = error_determinant(page, FEEDBACK) @ of_error
+    of_error = OBSERVER.error_determinant(page) if of_rest is None else of_rest.apply("det")
+    parts_of = FEEDBACK.error_determinant(page) @ of_error
     product = page.term(formula_of_factored(design.loop.loop_polynomial))
     page.equal(relation(determinant, parts_of, product), say="feedforward_polynomial")
 

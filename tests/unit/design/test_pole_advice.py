@@ -305,7 +305,7 @@ def factors(*found: Any) -> Factored:
 
 def test_mirrored_poles_meet_the_identity_and_are_rejected_all_the_same() -> None:
     result, v = advice("(s + 2)/(s^2 + s + 1)", radius=3), Scalar.symbol("s")
-    assert replace(result, answer={**result.answer, "polynomial": factors(v + 2, v + 3)})
+    replace(result, answer={**result.answer, "polynomial": factors(v + 2, v + 3)})
     mirrored = {"rest": factors(v - 3), "polynomial": factors(v + 2, v - 3)}
     with pytest.raises(CertificateRejected):
         replace(result, answer={**result.answer, **mirrored})
@@ -324,7 +324,7 @@ def test_a_faster_oscillation_is_rejected() -> None:
         pair = factors((v + 2) ** 2 + omega**2)
         told = {"omega_d": omega, "rest": pair, "polynomial": pair}
         if omega == Scalar.of(2):
-            assert replace(result, answer={**result.answer, **told})  # slower, and so within the overshoot too
+            replace(result, answer={**result.answer, **told})  # slower, and so within the overshoot too
             continue
         with pytest.raises(CertificateRejected):
             replace(result, answer={**result.answer, **told})
