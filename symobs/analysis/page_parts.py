@@ -1,4 +1,4 @@
-"""TODO symobs/analysis/page_parts.py."""
+"""Parts shared by the pages of analysis and design: the given data, cases, factored forms and stability."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO symobs/cli/common.py."""
+"""Options, exit codes and reports shared by the commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO symobs/design/gain/page_style.py."""
+"""Choice of the derivation for a gain: canonical form for small plants, else a general formula."""
 
 from __future__ import annotations
 

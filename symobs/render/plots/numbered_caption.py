@@ -1,4 +1,4 @@
-"""TODO symobs/render/plots/numbered_caption.py."""
+"""Captions of plots with numbered curves."""
 
 from __future__ import annotations
 
