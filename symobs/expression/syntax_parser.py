@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.errors import InputError
-    from symobs.expression.source import Source
-    from symobs.expression.tokenizer import Token
+    from symobs.expression.source import Source, Token
 
 _BINDING = {"ADD": 1, "sign": 2, "MULTIPLY": 3, "inner sign": 4, "POWER": 5, "APPLY": 6}
 _OPERAND_STARTS = ("VALUE", "FUNCTION", "_OPEN", "LEFT")

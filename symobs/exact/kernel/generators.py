@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import gcd, isqrt, lcm
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, cast, overload
 
 from flint import fmpz
 
@@ -81,7 +81,7 @@ _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, 
 
 def known(name: str) -> Function | None:
     """Return the function a generator's name stands for, None for a plain symbol."""
-    return name.function if isinstance(name, Generator) else None
+    return cast("Function", name.function) if isinstance(name, Generator) else None
 
 
 def generator(kind: str, argument: Scalar) -> Scalar:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.errors import WrongKind
+from symobs.exact.kernel.canonical_text import scalar_text
 from symobs.exact.kernel.field import RATIONALS, Field
 from symobs.exact.kernel.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
 from symobs.exact.kernel.univariate import by_powers
@@ -247,8 +248,6 @@ class Scalar:
             yield int(coefficient), tuple((name, int(power)) for name, power in pairs if power)
 
     def __str__(self) -> str:
-        from symobs.exact.kernel.canonical_text import scalar_text  # noqa: PLC0415 - printing stands on scalars, not the reverse
-
         return scalar_text(self)
 
     def __repr__(self) -> str:
