@@ -18,7 +18,7 @@ from symobs.problem import read
 
 if TYPE_CHECKING:
     from symobs.audit import Audited
-    from symobs.cli.outcome import Tell
+    from symobs.cli.time_and_memory import Progress
 
 
 @click.command("audit")
@@ -38,7 +38,7 @@ def audit_command(
     check_target(target)
     chosen = tuple(dict.fromkeys(files))
 
-    def work(tell: Tell) -> Outcome:
+    def work(tell: Progress) -> Outcome:
         found = _audited(chosen, tell)
         wrong = any(each.wrong for each in found.values())
         return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
@@ -46,7 +46,7 @@ def audit_command(
     _run(work, timeout, memory, _place(chosen[0]) if len(chosen) == 1 else "")
 
 
-def _audited(files: tuple[str, ...], tell: Tell) -> dict[str, Audited]:
+def _audited(files: tuple[str, ...], tell: Progress) -> dict[str, Audited]:
     """Return what each file's audit found; the errors of all files are raised together."""
     found: dict[str, Audited] = {}
     errors: list[SymobsError] = []

@@ -30,7 +30,8 @@ from symobs.cli.output import write, write_all
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 
 if TYPE_CHECKING:
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 _MOST_LINES = 100
 #: Commands in modules of their own, imported when they are called, and what each does.
@@ -154,7 +155,7 @@ def solve(
     convention = convention_of(convention_name)
     page = page_of(detail, templates, chosen)
 
-    def work(tell: Tell) -> Outcome:
+    def work(tell: Progress) -> Outcome:
         found = validate(parse(_read(file), file), task_name, Path(file).parent)
         tell = _progress(found, tell)
         return solved(found, chosen, target, plot, convention, tell, some=task_name is not None, **page)

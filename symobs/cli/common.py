@@ -16,7 +16,8 @@ from symobs.errors import InputError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
@@ -25,7 +26,7 @@ EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 
 
-def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
+def _run(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
     """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
@@ -45,7 +46,7 @@ def _say(text: str) -> None:
         click.echo(text, err=True)
 
 
-def _progress(found: Any, tell: Tell) -> Tell:
+def _progress(found: Any, tell: Progress) -> Progress:
     """Return `tell`, which on a terminal shows the task being run where there are several."""
     if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
         return tell

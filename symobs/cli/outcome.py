@@ -13,8 +13,7 @@ from symobs.errors import OutOfBudget, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now.
-    Tell = Callable[[object], None]
+    from symobs.cli.time_and_memory import Progress
 
 #: Exit codes of the contract.
 EXIT_NO, EXIT_UNDECIDED = 4, 5
@@ -73,7 +72,7 @@ def solved(
     target: str | None,
     plot: str | None,
     convention: Any,
-    tell: Tell,
+    tell: Progress,
     *,
     some: bool = False,
     **page: Any,
@@ -114,7 +113,7 @@ def solved(
     return Outcome(tuple(outputs), (*unmet, *messages), code)
 
 
-def bounded(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
+def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
     """Return what the work leaves behind, or what was left of it when its budget was used up."""
     from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 

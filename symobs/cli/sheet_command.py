@@ -27,7 +27,7 @@ from symobs.result import format_named, formats, tasks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.cli.outcome import Tell
+    from symobs.cli.time_and_memory import Progress
     from symobs.result import Document
 
 _LONGEST_TITLE = 300
@@ -160,7 +160,7 @@ def _empty(number: int, file: str) -> Entry:
     return Entry(number, file, Path(file).stem if file != "-" else "")
 
 
-def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Progress) -> tuple[Entry, int, list[str]]:
     """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
     entry = _empty(number, file)
     try:
@@ -169,7 +169,7 @@ def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Tell) -> tu
         return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Progress) -> tuple[Entry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])

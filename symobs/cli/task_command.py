@@ -16,7 +16,8 @@ from symobs.problem import OPEN, validate
 from symobs.specification import KINDS
 
 if TYPE_CHECKING:
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 PLANT_OPTIONS = {
     "A": 'state matrix, "[0 1; 0 -1]"',
@@ -68,7 +69,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     convention = convention_of(options_given["convention_name"])
 
-    def work(tell: Tell) -> Outcome:
+    def work(tell: Progress) -> Outcome:
         return solved(validate(data), chosen, options_given["target"], options_given["plot"], convention, tell, **page)
 
     try:

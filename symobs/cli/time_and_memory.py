@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-    from symobs.cli.outcome import Tell
+    #: Called with the name of the task begun, or with the partial outcome that is kept if the work ends there.
+    Progress = Callable[[object], None]
 
 Value = TypeVar("Value")
 
@@ -49,7 +50,7 @@ class _TimeOver(BaseException):
     """Raised by the alarm in a child: no code may take it for an error of its own."""
 
 
-def within(budget: Budget, work: Callable[[Tell], Value], where: str = "") -> Value:
+def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -> Value:
     """Return what `work` returns, or raise what it raises; raises `OutOfBudget` where it takes more than it may.
 
     `work` is given a function that takes how far it has come: a text says what it is at work on, anything else is what
@@ -86,7 +87,7 @@ def _require_child_processes(budget: Budget) -> None:
 # -- the child --------------------------------------------------------------------------------------------------------
 
 
-def _work(budget: Budget, work: Callable[[Tell], Any], writing: int) -> NoReturn:
+def _work(budget: Budget, work: Callable[[Progress], Any], writing: int) -> NoReturn:
     """Do the work, say on a pipe what came of it, and end this process."""
     code = 1
     try:

@@ -15,7 +15,7 @@ from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.plots.scene import coordinate
 from symobs.render.plots.svg_text import BELOW, DOT, FONTS, Piece, spans, width_of
 from symobs.render.printers.glyphs import Level
-from symobs.render.printers.scalars import spelled
+from symobs.render.printers.scalar_formula import formula_of
 from symobs.render.printers.text_printer import TextBox, TextPrinter, text_box
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def _row(formula: Formula, printer: TextPrinter) -> _Row:
     """Return a formula, as a fraction where it is one."""
     negative, body = without_sign(formula)
     if isinstance(body, Literal) and isinstance(body.value, Scalar):
-        is_written_negative, body = without_sign(spelled(body.value, printer.variable))
+        is_written_negative, body = without_sign(formula_of(body.value, printer.variable))
         negative = negative != is_written_negative
     if isinstance(body, Quotient):
         return _Row(_text(body.numerator, printer), _text(body.denominator, printer), "−" if negative else "")

@@ -15,7 +15,7 @@ from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
 from symobs.render.printers.glyphs import Box, Level
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.scalars import decimal
+from symobs.render.printers.rational_formula import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -28,7 +28,8 @@ from symobs.formula import (
 )
 from symobs.render.printers.glyphs import B, Level
 from symobs.render.printers.printer import factors, shifted, signed_terms
-from symobs.render.printers.scalars import decimal, is_leaf, spelled, spelled_matrix
+from symobs.render.printers.rational_formula import decimal, is_leaf
+from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,9 +132,9 @@ class Breaker(Generic[B]):
             case Derivative(operand) if self.printer.discrete and not isinstance(operand, Letter):
                 return self._written(shifted(operand))
             case Literal(Scalar() as value):
-                return formula if is_leaf(value) else spelled(value, self.printer.variable)
+                return formula if is_leaf(value) else formula_of(value, self.printer.variable)
             case Literal(Matrix() as table):
-                return spelled_matrix(table, self.printer.variable)
+                return formula_of_matrix(table, self.printer.variable)
         return formula
 
     def _operand(self, formula: Formula, level: Level, room: float) -> list[Piece[B]]:

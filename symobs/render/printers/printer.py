@@ -1,7 +1,7 @@
 """The printer: one walk over a formula with its precedences; a format supplies the glyphs.
 
 A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
-`A - L C` is printed as its author wrote it; only exact values are spelled out (`scalars.spelled`).
+`A - L C` is printed as its author wrote it; only exact values are spelled out (`formula_of`).
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ from symobs.formula import (
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
 from symobs.render.printers.glyphs import B, Glyphs, Level
-from symobs.render.printers.scalars import is_leaf, spelled, spelled_matrix
+from symobs.render.printers.rational_formula import is_leaf
+from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -137,7 +138,7 @@ class Printer(Glyphs[B]):
             case Literal(Scalar() as value):
                 return self.scalar(value)
             case Literal(Matrix() as value):
-                written = spelled_matrix(value, self.variable)
+                written = formula_of_matrix(value, self.variable)
                 return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
             case Decimals(Scalar() as value):
                 return self.decimals(value)
@@ -176,7 +177,7 @@ class Printer(Glyphs[B]):
             if function is not None:
                 box = self.function_of_time(function)
             else:
-                box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+                box = self.leaf(value) if is_leaf(value) else self.typeset(formula_of(value, self.variable))
             self.known[value] = box
         return box
 
@@ -195,13 +196,13 @@ class Printer(Glyphs[B]):
         if isinstance(function, RealRoot):
             return self.named(rf"{function.number.truncated()}\ldots")
         if isinstance(function, RootSum):
-            q, below = (self.typeset(spelled(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
+            q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
             return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
         argument = self.scalar(function.argument)
         if function.kind == "sqrt":
             return self.root(argument)
-        is_plain = argument.level >= Level.PRODUCT and not isinstance(spelled(function.argument, ""), Quotient)
+        is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
         return replace(box, level=Level.POWER)
 
@@ -339,7 +340,7 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
         case Negative(operand):
             return [(True, operand)]
         case Literal(Scalar() as value) if not is_leaf(value):
-            written = spelled(value, variable)
+            written = formula_of(value, variable)
             return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
         case Product((first, *rest)):
             ((negative, body),) = signed_terms(first, variable, flat=False)
@@ -357,10 +358,10 @@ def factors(formula: Formula, variable: str) -> list[Formula]:
         case Product(parts):
             return [factor for part in parts for factor in factors(part, variable)]
         case Literal(Scalar() as value) if not is_leaf(value):
-            written = spelled(value, variable)
+            written = formula_of(value, variable)
             return factors(written, variable) if isinstance(written, Product) else [formula]
         case Literal(Matrix() as table):
-            opened = spelled_matrix(table, variable)
+            opened = formula_of_matrix(table, variable)
             return list(opened.factors) if isinstance(opened, Product) else [formula]
         case _:
             return [formula]

@@ -44,7 +44,7 @@ from symobs.render.printers.mathml.mathml_elements import (
     text,
 )
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.scalars import decimal
+from symobs.render.printers.rational_formula import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
