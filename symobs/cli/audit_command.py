@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.audit import REPORTS, audit, report
-from symobs.cli.common import EXIT_NO, _place, _read, _run, _say
+from symobs.cli.common import EXIT_NO, place_of, read_file, run_work, write_message
 from symobs.cli.options import LIMITS, options
 from symobs.cli.outcome import Outcome
 from symobs.cli.output import check_target
@@ -43,7 +43,7 @@ def audit_command(
         wrong = any(each.wrong for each in found.values())
         return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
 
-    _run(work, timeout, memory, _place(chosen[0]) if len(chosen) == 1 else "")
+    run_work(work, timeout, memory, place_of(chosen[0]) if len(chosen) == 1 else "")
 
 
 def _audited(files: tuple[str, ...], tell: Progress) -> dict[str, Audited]:
@@ -53,11 +53,11 @@ def _audited(files: tuple[str, ...], tell: Progress) -> dict[str, Audited]:
     several = len(files) > 1
     shows = several and sys.stderr is not None and sys.stderr.isatty()
     for number, file in enumerate(files, start=1):
-        tell(_place(file) if several else None)
+        tell(place_of(file) if several else None)
         if shows:
-            _say(f"{number}/{len(files)} {file} …")
+            write_message(f"{number}/{len(files)} {file} …")
         try:
-            found[file] = audit(read(_read(file), file, Path(file).parent))
+            found[file] = audit(read(read_file(file), file, Path(file).parent))
         except SymobsError as raised:
             all_of_it = raised.errors if isinstance(raised, ProblemErrors) else (raised,)
             errors += all_of_it

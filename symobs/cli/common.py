@@ -26,7 +26,7 @@ EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 
 
-def _run(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
+def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
     """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
@@ -36,30 +36,30 @@ def _run(work: Callable[[Progress], Outcome], timeout: float | None, memory: flo
         outcome = bounded(work, timeout, memory, where)
     write_all(outcome.outputs)
     for line in outcome.messages:
-        _say(line)
+        write_message(line)
     sys.exit(outcome.code)
 
 
-def _say(text: str) -> None:
+def write_message(text: str) -> None:
     """Write to standard error; where nobody can read it, the exit code says enough."""
     with suppress(OSError):
         click.echo(text, err=True)
 
 
-def _progress(found: Any, tell: Progress) -> Progress:
+def progress_on_terminal(found: Any, tell: Progress) -> Progress:
     """Return `tell`, which on a terminal shows the task being run where there are several."""
     if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
         return tell
 
     def shown(reached: object) -> None:
         if isinstance(reached, str):
-            _say(f"{reached} …")
+            write_message(f"{reached} …")
         tell(reached)
 
     return shown
 
 
-def _format_of(format_name: str | None, target: str | None) -> str:
+def chosen_format(format_name: str | None, target: str | None) -> str:
     """Return the format asked for, or the one the target's suffix names, or LaTeX."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
@@ -76,17 +76,17 @@ def _format_of(format_name: str | None, target: str | None) -> str:
     return str(format_named(format_name or "latex").name)
 
 
-def _place(file: str) -> str:
+def place_of(file: str) -> str:
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return shown(file, 200) if file != "-" else "standard input"
 
 
-def _read(file: str) -> str:
+def read_file(file: str) -> str:
     """Return the text of a file or of standard input, bounded in size."""
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
-    where = _place(file)
+    where = place_of(file)
     try:
         if file == "-":
             raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symobs._dataclass import dataclass
-from symobs.cli.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, _format_of, _place, _read, _say
+from symobs.cli.common import (
+    EXIT_BUG,
+    EXIT_NO,
+    EXIT_UNDECIDED,
+    NOT_ENOUGH_MEMORY,
+    chosen_format,
+    place_of,
+    read_file,
+    write_message,
+)
 from symobs.cli.options import LIMITS, options
 from symobs.cli.outcome import convention_of, page_of
 from symobs.cli.output import check_target, write
@@ -95,13 +104,13 @@ def sheet(
     progress = _Progress(len(texts))
     for number, (file, text) in enumerate(texts, 1):
         progress.show(number, Path(file).stem)
-        name = _place(file)
+        name = place_of(file)
         entry, code, messages = _bounded_entry(number, file, text, wanted)
         entries.append(entry)
         codes.add(code)
         progress.clear()
         for message in messages:
-            _say(message if message.startswith(f"{name}, ") else f"{name}: {message}")
+            write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
     whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
     progress.clear()
@@ -114,7 +123,7 @@ def sheet(
 
 def _sheet_format(name: str | None, target: str | None) -> Any:
     """Return the format; raises `UsageError` for one that has no sheets."""
-    found = format_named(_format_of(name, target))
+    found = format_named(chosen_format(name, target))
     if not hasattr(found, "sheet"):
         having = ", ".join(sorted(each.name for each in formats().values() if hasattr(each, "sheet")))
         raise UsageError(f"the format {found.name} is for one problem", where="--format", repair=f"use one of {having}")
@@ -131,7 +140,7 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     errors: list[SymobsError] = []
     for file in files:
         try:
-            texts.append((file, _read(file)))
+            texts.append((file, read_file(file)))
         except InputError as error:
             errors.append(error)
     if errors:
