@@ -38,22 +38,22 @@ def audit_command(
     check_target(target)
     chosen = tuple(dict.fromkeys(files))
 
-    def work(tell: Progress) -> Outcome:
-        found = _audited(chosen, tell)
+    def work(report_progress: Progress) -> Outcome:
+        found = _audited(chosen, report_progress)
         wrong = any(each.wrong for each in found.values())
         return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
 
     run_work(work, timeout, memory, place_of(chosen[0]) if len(chosen) == 1 else "")
 
 
-def _audited(files: tuple[str, ...], tell: Progress) -> dict[str, Audited]:
+def _audited(files: tuple[str, ...], report_progress: Progress) -> dict[str, Audited]:
     """Return what each file's audit found; the errors of all files are raised together."""
     found: dict[str, Audited] = {}
     errors: list[SymobsError] = []
     several = len(files) > 1
     shows = several and sys.stderr is not None and sys.stderr.isatty()
     for number, file in enumerate(files, start=1):
-        tell(place_of(file) if several else None)
+        report_progress(place_of(file) if several else None)
         if shows:
             write_message(f"{number}/{len(files)} {file} …")
         try:

@@ -155,10 +155,12 @@ def solve(
     convention = convention_of(convention_name)
     page = page_of(detail, templates, chosen)
 
-    def work(tell: Progress) -> Outcome:
+    def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)
-        tell = progress_on_terminal(found, tell)
-        return solved(found, chosen, target, plot, convention, tell, some=task_name is not None, **page)
+        report_progress = progress_on_terminal(found, report_progress)
+        return solved(
+            found, chosen, target, plot, convention, report_progress, only_some_tasks=task_name is not None, **page
+        )
 
     run_work(work, timeout, memory, place_of(file))
 

@@ -27,7 +27,7 @@ NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less
 
 
 def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
-    """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
+    """Do the work within its time and memory, write its outputs and messages, and exit with its code."""
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
     else:
@@ -41,26 +41,26 @@ def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory:
 
 
 def write_message(text: str) -> None:
-    """Write to standard error; where nobody can read it, the exit code says enough."""
+    """Write a message to standard error; a closed stream is no error."""
     with suppress(OSError):
         click.echo(text, err=True)
 
 
-def progress_on_terminal(found: Any, tell: Progress) -> Progress:
-    """Return `tell`, which on a terminal shows the task being run where there are several."""
+def progress_on_terminal(found: Any, report_progress: Progress) -> Progress:
+    """Return a progress report that also writes the name of the task begun, if standard error is a terminal."""
     if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
-        return tell
+        return report_progress
 
     def shown(reached: object) -> None:
         if isinstance(reached, str):
             write_message(f"{reached} …")
-        tell(reached)
+        report_progress(reached)
 
     return shown
 
 
 def chosen_format(format_name: str | None, target: str | None) -> str:
-    """Return the format asked for, or the one the target's suffix names, or LaTeX."""
+    """Return the output format: that of --format, else that of the suffix of the target, else LaTeX."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
     from symobs.result import format_named  # noqa: PLC0415
@@ -77,6 +77,7 @@ def chosen_format(format_name: str | None, target: str | None) -> str:
 
 
 def place_of(file: str) -> str:
+    """Return the name of a file for messages."""
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return shown(file, 200) if file != "-" else "standard input"

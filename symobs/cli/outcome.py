@@ -72,15 +72,15 @@ def solved(
     target: str | None,
     plot: str | None,
     convention: Any,
-    tell: Progress,
+    report_progress: Progress,
     *,
-    some: bool = False,
+    only_some_tasks: bool = False,
     **page: Any,
 ) -> Outcome:
     """Solve a problem and return its document, its picture, and what the contract says of them.
 
-    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
-    is put into the document.  `tell` is told which task begins, and what is to be left behind where the work is ended.
+    With `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the
+    document.  `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
@@ -90,17 +90,17 @@ def solved(
 
         names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
         undecided = given_up(found.title, names, method, found.plant.symbols.signs, convention or found.convention)
-        tell(Outcome(((undecided, target),), (), EXIT_UNDECIDED))
-    results = found.solve(tell)
+        report_progress(Outcome(((undecided, target),), (), EXIT_UNDECIDED))
+    results = found.solve(report_progress)
     viewed = found.viewed(results)
-    expect = applicable(viewed, found.expect) if some else found.expect
+    expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
-    tell("the page")
+    report_progress("the page")
     outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
     if plot is not None:
         from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
 
-        tell("the picture")
+        report_progress("the picture")
         try:
             outputs.append((picture_file(results, plot), plot))
         except UsageError as error:  # there is none: the result stands all the same

@@ -159,7 +159,7 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
 
     try:
         budget = Budget(wanted.timeout, wanted.memory)
-        return within(budget, lambda tell: _entry(number, file, text, wanted, tell))
+        return within(budget, lambda report_progress: _entry(number, file, text, wanted, report_progress))
     except OutOfBudget as error:
         left: Any = error.facts["left"] or _empty(number, file)
         return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
@@ -169,16 +169,18 @@ def _empty(number: int, file: str) -> Entry:
     return Entry(number, file, Path(file).stem if file != "-" else "")
 
 
-def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Progress) -> tuple[Entry, int, list[str]]:
+def _entry(
+    number: int, file: str, text: str, wanted: _Wanted, report_progress: Progress
+) -> tuple[Entry, int, list[str]]:
     """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
     entry = _empty(number, file)
     try:
-        return _worked_out(entry, text, wanted, tell)
+        return _worked_out(entry, text, wanted, report_progress)
     except Exception as error:  # noqa: BLE001 - whatever fails here, the other problems are not lost
         return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Progress) -> tuple[Entry, int, list[str]]:
+def _worked_out(entry: Entry, text: str, wanted: _Wanted, report_progress: Progress) -> tuple[Entry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
@@ -186,7 +188,7 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Progress) -> tup
         problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
             entry = replace(entry, question=_part(question_of(problem), wanted))
-        tell(entry)
+        report_progress(entry)
         results = problem.solve()
         if wanted.solutions:
             entry = replace(entry, solution=_part(problem.document(results), wanted))

@@ -69,8 +69,10 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     convention = convention_of(options_given["convention_name"])
 
-    def work(tell: Progress) -> Outcome:
-        return solved(validate(data), chosen, options_given["target"], options_given["plot"], convention, tell, **page)
+    def work(report_progress: Progress) -> Outcome:
+        return solved(
+            validate(data), chosen, options_given["target"], options_given["plot"], convention, report_progress, **page
+        )
 
     try:
         run_work(work, options_given["timeout"], options_given["memory"], task.name)

@@ -93,13 +93,13 @@ def _work(budget: Budget, work: Callable[[Progress], Any], writing: int) -> NoRe
     try:
         with open(writing, "wb", buffering=0) as stream:
 
-            def tell(reached: object) -> None:
+            def report_progress(reached: object) -> None:
                 _say(stream, "reached", reached)
 
             try:
                 listeners.append(lambda group: _say(stream, "group", group))
                 _set_up(budget)
-                kind, outcome = "value", work(tell)
+                kind, outcome = "value", work(report_progress)
             except SymobsError as error:
                 kind, outcome = "error", error
             except Exception as error:  # noqa: BLE001 - whatever it is, it is handed to the parent
