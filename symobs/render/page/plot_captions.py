@@ -61,6 +61,7 @@ def _equation(name: str, value: Scalar) -> Relation:
 
 
 def caption_sentence(key: str, **slots: Formula | Fact) -> Sentence:
+    """Return the sentence of a caption, its slots filled."""
     return Sentence(f"picture_{key}", tuple(slots.items()))
 
 
