@@ -88,7 +88,7 @@ class PoleMap:
 
 
 @dataclass(frozen=True)
-class Course:
+class Response:
     """One component of a signal over time; it is `row` times the state that the picture starts from.
 
     `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
@@ -111,13 +111,13 @@ class TimeResponse:
 
     states: tuple[str, ...]
     starts: tuple[tuple[Fraction, ...], ...]
-    courses: tuple[Course, ...]
+    courses: tuple[Response, ...]
     window: tuple[Interval, Interval]
     parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
     discrete: bool = False
 
-    def points(self, course: Course) -> list[Place]:
+    def points(self, course: Response) -> list[Place]:
         """Return the places in the plane of one of the courses."""
         begin, end = self.window[0]
         step = (end - begin) / (len(course.heights) - 1)

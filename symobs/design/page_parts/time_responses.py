@@ -8,7 +8,7 @@ from operator import mul
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix
-from symobs.figures.plot import Course, TimeResponse
+from symobs.figures.plot import Response, TimeResponse
 from symobs.formula import Letter
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def _plot(
     except ArithmeticError:
         return
     made = tuple(
-        Course(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
+        Response(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
         for name, table, dashed in signals
         for index, row in enumerate(_rows(table), 1)
     )
@@ -99,7 +99,7 @@ def _plot_samples(
     ]
     parts = lcm(*(height.denominator for _, _, _, heights, _ in found for height in heights))
     made = tuple(
-        Course(name, index, row, tuple(int(height * parts) for height in heights), dashed)
+        Response(name, index, row, tuple(int(height * parts) for height in heights), dashed)
         for name, index, row, heights, dashed in found
     )
     window = _window(Fraction(len(states_there) - 1), made, parts)
@@ -110,7 +110,7 @@ def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], 
     return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
 
 
-def _window(end: Fraction, courses: Sequence[Course], parts: int) -> tuple[Interval, Interval]:
+def _window(end: Fraction, courses: Sequence[Response], parts: int) -> tuple[Interval, Interval]:
     """Return a window with a little room above and below."""
     low, high = min(min(course.heights) for course in courses), max(max(course.heights) for course in courses)
     edge = Fraction(high - low, 20)

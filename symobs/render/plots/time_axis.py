@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.formula import Letter
 
 if TYPE_CHECKING:
-    from symobs.figures.plot import Course, TimeResponse
+    from symobs.figures.plot import Response, TimeResponse
     from symobs.formula import Formula
 
 #: Height of the frame, in points.
@@ -16,17 +16,17 @@ HEIGHT = 90.0
 CHARACTERS = "*o+x#@"
 
 
-def name_of(course: Course) -> Formula:
+def name_of(course: Response) -> Formula:
     """Return what a course is called: the letter of its signal, with the number of its component."""
     return Letter(f"{course.signal}[{course.component}" if course.component else course.signal)
 
 
-def style_of(course: Course) -> str:
+def style_of(course: Response) -> str:
     """Return the style of its line."""
     return "estimate" if course.dashed else "path"
 
 
-def sign_of(course: Course) -> str:
+def sign_of(course: Response) -> str:
     """Return the sign of its values in discrete time: a ring for an estimate."""
     return "ring" if course.dashed else "dot"
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import Course, Interval, TimeResponse
+    from symobs.figures.plot import Interval, Response, TimeResponse
 
 Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.
@@ -37,7 +37,7 @@ def _all_untrue(picture: TimeResponse, matrix: Rows) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _untrue(
-    course: Course, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
+    course: Response, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
 ) -> tuple[str, ...]:
     """Return the points of one course: pictures that differ in another course have the same."""
     (begin, end), (bottom, top) = window

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import Derivation, Section, Sentence
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.figures.plot import Course, Curve, Mark, PoleMap
+from symobs.figures.plot import Curve, Mark, PoleMap, Response
 from symobs.formula import (
     Apply,
     Block,
@@ -166,7 +166,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, (Curve, Mark, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
-    elif isinstance(item, Course):
+    elif isinstance(item, Response):
         yield from _of_heights(item)
         for change in _of_parts(replace(item, heights=())):
             yield replace(change, value=replace(change.value, heights=item.heights))
@@ -206,7 +206,7 @@ def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
 
 
-def _of_heights(course: Course) -> Iterator[Change]:
+def _of_heights(course: Response) -> Iterator[Change]:
     """Yield a course with one height changed by the least there is, which none may see, and by what can be seen."""
     heights = course.heights
     step = max(2, max(map(abs, heights)) // 20)
