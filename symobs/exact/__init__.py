@@ -5,7 +5,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.decimals import is_rounding, places, rounded, written
-from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
 from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero
@@ -42,7 +42,7 @@ __all__ = [
     "RATIONALS",
     "VARIABLES",
     "Complex",
-    "Extension",
+    "AlgebraicExtension",
     "Factored",
     "Field",
     "Ideal",

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.kernel.field import EIGENVALUE
 from symobs.exact.kernel.generators import ONE, ZERO, square_root
@@ -104,7 +104,7 @@ class RootMode:
     @property
     def rates(self) -> Matrix:
         """D with φ′ = D φ: φⱼ′ = φⱼ₊₁, and the last one by q(λ) = 0."""
-        return companion(Extension(self.polynomial, EIGENVALUE).coefficients[1:])
+        return companion(AlgebraicExtension(self.polynomial, EIGENVALUE).coefficients[1:])
 
     @property
     def start(self) -> tuple[Scalar, ...]:
