@@ -40,44 +40,44 @@ class Key(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Quasi:
+class Quasipolynomial:
     """Σ coefficient · function; no coefficient is 0."""
 
     terms: Mapping[Key, Scalar]
 
     @staticmethod
-    def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasi:
+    def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasipolynomial:
         """Return the sum of terms, those of one function collected."""
         total: dict[Key, Scalar] = {}
         for key, coefficient in terms:
             total[key] = total[key] + coefficient if key in total else coefficient
         tidied = {key: tidy(coefficient) for key, coefficient in total.items()}
-        return Quasi({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
+        return Quasipolynomial({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
 
     @staticmethod
-    def constant(value: Scalar) -> Quasi:
+    def constant(value: Scalar) -> Quasipolynomial:
         """Return a constant."""
-        return Quasi.of([(Key(0, ZERO, "", ZERO), value)])
+        return Quasipolynomial.of([(Key(0, ZERO, "", ZERO), value)])
 
-    def __add__(self, other: Quasi) -> Quasi:
-        return Quasi.of([*self.terms.items(), *other.terms.items()])
+    def __add__(self, other: Quasipolynomial) -> Quasipolynomial:
+        return Quasipolynomial.of([*self.terms.items(), *other.terms.items()])
 
-    def __neg__(self) -> Quasi:
-        return Quasi({key: -coefficient for key, coefficient in self.terms.items()})
+    def __neg__(self) -> Quasipolynomial:
+        return Quasipolynomial({key: -coefficient for key, coefficient in self.terms.items()})
 
-    def __sub__(self, other: Quasi) -> Quasi:
+    def __sub__(self, other: Quasipolynomial) -> Quasipolynomial:
         return self + (-other)
 
-    def scaled(self, factor: Scalar) -> Quasi:
+    def scaled(self, factor: Scalar) -> Quasipolynomial:
         """Return the sum times a constant."""
-        return Quasi.of([(key, coefficient * factor) for key, coefficient in self.terms.items()])
+        return Quasipolynomial.of([(key, coefficient * factor) for key, coefficient in self.terms.items()])
 
-    def __mul__(self, other: Quasi) -> Quasi:
+    def __mul__(self, other: Quasipolynomial) -> Quasipolynomial:
         found: list[tuple[Key, Scalar]] = []
         for a, left in self.terms.items():
             for b, right in other.terms.items():
                 found += _times(a, b, left * right)
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
     @property
     def is_zero(self) -> bool:
@@ -93,7 +93,7 @@ class Quasi:
                 total = total + coefficient
         return tidy(total)
 
-    def derivative(self) -> Quasi:
+    def derivative(self) -> Quasipolynomial:
         """Return d/dt."""
         found: list[tuple[Key, Scalar]] = []
         for key, c in self.terms.items():
@@ -103,23 +103,23 @@ class Quasi:
             if key.wave:
                 other = "sin" if key.wave == "cos" else "cos"
                 found.append((key._replace(wave=other), c * key.frequency * (-1 if key.wave == "cos" else 1)))
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
-    def integral(self) -> Quasi:
+    def integral(self) -> Quasipolynomial:
         """Return the integral from 0 to t, by parts; where a rate depends on parameters it must not vanish."""
         found: list[tuple[Key, Scalar]] = []
         for key, coefficient in self.terms.items():
             found += _primitive(key, coefficient)
-        whole = Quasi.of(found)
-        return whole - Quasi.constant(whole.at_zero)
+        whole = Quasipolynomial.of(found)
+        return whole - Quasipolynomial.constant(whole.at_zero)
 
-    def reversed(self) -> Quasi:
+    def reversed(self) -> Quasipolynomial:
         """Return the function of −t."""
         found = []
         for key, c in self.terms.items():
             sign = (-1) ** key.power * (-1 if key.wave == "sin" else 1)
             found.append((key._replace(rate=-key.rate), c * sign))
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
     def value_at(self, time: Scalar) -> Scalar:
         """Return the scalar whose generators are functions of `time`, conjugate exponentials as cosh and sinh."""
@@ -201,9 +201,9 @@ def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
 # -- from scalars ----------------------------------------------------------------------------------------------------
 
 
-def quasi_of(value: Scalar, time: str = "t") -> Quasi:
+def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
     """Return a scalar in functions of time as a sum; raises ValueError for what is none, such as exp(t²) or 1/t."""
-    below = Quasi.constant(ONE)
+    below = Quasipolynomial.constant(ONE)
     for name, power in _monomial_below(value, time):
         below = below * _power(_inverse(name, time), power)
     rest = _polynomial(value.numerator, time) * below
@@ -231,7 +231,7 @@ def _moves(name: str, time: str) -> bool:
     return name == time or (found is not None and not derivative(found.argument, time).is_zero)
 
 
-def _inverse(name: str, time: str) -> Quasi:
+def _inverse(name: str, time: str) -> Quasipolynomial:
     found = known(name)
     if found is None or found.kind != "exp":
         message = f"1/{name} is not a sum of exponentials, sines and cosines times powers of {time}"
@@ -239,28 +239,28 @@ def _inverse(name: str, time: str) -> Quasi:
     return quasi_of(function("exp", -found.argument), time)
 
 
-def _polynomial(value: Scalar, time: str) -> Quasi:
-    total = Quasi.constant(ZERO)
+def _polynomial(value: Scalar, time: str) -> Quasipolynomial:
+    total = Quasipolynomial.constant(ZERO)
     for coefficient, powers in value.terms():
-        term = Quasi.constant(Scalar.of(coefficient))
+        term = Quasipolynomial.constant(Scalar.of(coefficient))
         for name, power in powers:
             term = term * _power(_generator(name, time), power)
         total = total + term
     return total
 
 
-def _power(base: Quasi, exponent: int) -> Quasi:
-    value = Quasi.constant(ONE)
+def _power(base: Quasipolynomial, exponent: int) -> Quasipolynomial:
+    value = Quasipolynomial.constant(ONE)
     for _ in range(exponent):
         value = value * base
     return value
 
 
-def _generator(name: str, time: str) -> Quasi:
+def _generator(name: str, time: str) -> Quasipolynomial:
     if name == time:
-        return Quasi({Key(1, ZERO, "", ZERO): ONE})
+        return Quasipolynomial({Key(1, ZERO, "", ZERO): ONE})
     if not _moves(name, time):
-        return Quasi.constant(Scalar.symbol(name))
+        return Quasipolynomial.constant(Scalar.symbol(name))
     found = known(name)
     assert found is not None  # noqa: S101 - only functions move
     speed = derivative(found.argument, time)
@@ -268,12 +268,12 @@ def _generator(name: str, time: str) -> Quasi:
         message = f"{name} is not a function of a multiple of {time}"
         raise ValueError(message)
     if found.kind == "exp":
-        return Quasi({Key(0, speed, "", ZERO): ONE})
+        return Quasipolynomial({Key(0, speed, "", ZERO): ONE})
     if found.kind in {"cos", "sin"}:
-        return Quasi({Key(0, ZERO, found.kind, speed): ONE})
+        return Quasipolynomial({Key(0, ZERO, found.kind, speed): ONE})
     sign = 1 if found.kind == "cosh" else -1
     half = Scalar.of(_HALF)
-    return Quasi.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
+    return Quasipolynomial.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
 
 
 def _depends(value: Scalar, time: str) -> bool:
@@ -282,7 +282,7 @@ def _depends(value: Scalar, time: str) -> bool:
 
 # -- tables ----------------------------------------------------------------------------------------------------------
 
-Table = tuple[tuple[Quasi, ...], ...]
+Table = tuple[tuple[Quasipolynomial, ...], ...]
 
 
 def table_of(matrix: Matrix, time: str = "t") -> Table:
@@ -296,8 +296,8 @@ def product(left: Table, right: Table) -> Table:
     return tuple(tuple(_dot(row, column) for column in columns) for row in left)
 
 
-def _dot(row: Iterable[Quasi], column: Iterable[Quasi]) -> Quasi:
-    total = Quasi({})
+def _dot(row: Iterable[Quasipolynomial], column: Iterable[Quasipolynomial]) -> Quasipolynomial:
+    total = Quasipolynomial({})
     for a, b in zip(row, column, strict=True):
         total = total + a * b
     return total
@@ -313,11 +313,11 @@ def integral(table: Table) -> Table:
     return tuple(tuple(entry.integral() for entry in row) for row in table)
 
 
-def determinant(table: Table) -> Quasi:
+def determinant(table: Table) -> Quasipolynomial:
     """Return the determinant, by the first row."""
     if len(table) == 1:
         return table[0][0]
-    total = Quasi({})
+    total = Quasipolynomial({})
     for j, entry in enumerate(table[0]):
         if not entry.is_zero:
             rest = tuple(row[:j] + row[j + 1 :] for row in table[1:])
