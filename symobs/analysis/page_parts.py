@@ -10,7 +10,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, places, root_of_pole
-from symobs.formula import Decimals, Exactly, Roots, Together
+from symobs.formula import Decimals, HoldsExactlyWhere, Roots, Together
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -231,4 +231,4 @@ def say_stability(page: Page, about: Term) -> None:
     else:
         inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
         where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", about), where))
+        page.conclude(f"stable_if_{time}", where=HoldsExactlyWhere(predicate("stable", about), where))

@@ -30,9 +30,9 @@ from symobs.formula import (
     Decimals,
     Derivative,
     Environment,
-    Exactly,
     Fact,
     Formula,
+    HoldsExactlyWhere,
     Identity,
     Letter,
     Literal,
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Together, Shown, Names)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int

@@ -42,9 +42,9 @@ from symobs.formula import (
     Derivative,
     Environment,
     Exact,
-    Exactly,
     Fact,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
     Names,
@@ -233,7 +233,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Together, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -290,7 +290,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if not are_roots(fact.values, polynomial, environment):
             reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
-    if isinstance(fact, Exactly):
+    if isinstance(fact, HoldsExactlyWhere):
         _about_letters(fact.property.subject, environment)
         found = evaluate(fact.property.subject, environment, Exact(environment))
         (value,) = subjects(fact.property.name, found, environment.variable)

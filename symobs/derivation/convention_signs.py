@@ -32,8 +32,8 @@ from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Exact,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
     Names,
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be: S4 calls both H.
 _ANSATZ = {"L", "H_x"}
-_FACTS = (Sentence, Predicate, Roots, Exactly, Together)
+_FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Together)
 
 
 def translated(derivation: Derivation, convention: Convention) -> Derivation:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
-    from symobs.formula import Exactly, Fact, Formula, Relation, Together
+    from symobs.formula import Fact, Formula, HoldsExactlyWhere, Relation, Together
     from symobs.stability.criteria.routh_table import RouthTable
 
 
@@ -118,7 +118,7 @@ class Tabulate:
 class Where:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
-    fact: Exactly
+    fact: HoldsExactlyWhere
     sentence: Sentence | None = None
     answer: bool = False
 

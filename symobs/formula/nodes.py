@@ -197,7 +197,7 @@ class Roots:
 
 
 @dataclass(frozen=True)
-class Exactly:
+class HoldsExactlyWhere:
     """A property of a value holds exactly where these inequalities do; shown as their list."""
 
     property: Predicate
@@ -226,7 +226,7 @@ class Names:
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown | Names
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Together | Shown | Names
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.

@@ -26,7 +26,7 @@ from symobs.derivation import Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE
-from symobs.formula import Exactly, Together
+from symobs.formula import HoldsExactlyWhere, Together
 from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
@@ -117,10 +117,10 @@ def _where(page: Page, result: HiddenStability, about: Term) -> None:
     solved = [as_inequality(condition.expression, signs) for condition in conditions]
     where = tuple(relation(left, operator + "=" * weak, right) for left, operator, right in solved)
     if weak:
-        page.conclude("marginal_if", where=Exactly(predicate("marginal", about), where))
+        page.conclude("marginal_if", where=HoldsExactlyWhere(predicate("marginal", about), where))
         page.conclude(f"exactly_there_{result.task}")
         return
-    page.conclude(f"stable_if_{_time(page)}", where=Exactly(predicate("stable", about), where))
+    page.conclude(f"stable_if_{_time(page)}", where=HoldsExactlyWhere(predicate("stable", about), where))
     page.conclude(f"exactly_there_{result.task}" if result.meaning == "asymptotic" else "boundary_undecided")
 
 

@@ -20,7 +20,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import (
-    Exactly,
+    HoldsExactlyWhere,
     Letter,
     Names,
     Negative,
@@ -112,7 +112,7 @@ def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
                 yield from members
             case Predicate(subject=subject) | Roots(polynomial=subject):
                 yield subject
-            case Exactly(property=Predicate(subject=subject), where=where):
+            case HoldsExactlyWhere(property=Predicate(subject=subject), where=where):
                 yield from (subject, *_in_facts(where))
             case Together(relations=relations):
                 yield from _in_facts(relations)
@@ -120,7 +120,7 @@ def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
 
 def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
-        if isinstance(value, Relation | Predicate | Roots | Exactly | Together):
+        if isinstance(value, Relation | Predicate | Roots | HoldsExactlyWhere | Together):
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value

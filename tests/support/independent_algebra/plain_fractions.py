@@ -41,7 +41,7 @@ from symobs.formula import (
     Block,
     Decimals,
     Derivative,
-    Exactly,
+    HoldsExactlyWhere,
     Identity,
     Integral,
     Letter,
@@ -539,7 +539,7 @@ class World:
             raise ZeroDivisionError(point)
         return regions.is_stable(coefficients, discrete=self.is_discrete)
 
-    def region(self, fact: Exactly) -> Iterator[tuple[str, Any]]:
+    def region(self, fact: HoldsExactlyWhere) -> Iterator[tuple[str, Any]]:
         """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
         about = fact.property.subject
         wrong = 0
@@ -604,7 +604,7 @@ class World:
                 case Roots(polynomial, values):
                     yield "condition", single(self.value(polynomial))
                     yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
-                case Exactly(about, where):
+                case HoldsExactlyWhere(about, where):
                     yield f"property {about.name}", single(self.value(about.subject))
                     if about.name == "stable" and self.polynomial_of(about.subject) is not None:
                         yield from self.region(fact)

@@ -27,7 +27,7 @@ from symobs.formula import (
     Block,
     Decimals,
     Derivative,
-    Exactly,
+    HoldsExactlyWhere,
     Identity,
     Integral,
     Letter,
@@ -66,7 +66,7 @@ def facts_in(item: object) -> Iterator[Fact | Tabulate]:
     if isinstance(item, Tabulate):
         yield item
         yield from facts_in(item.sentence)
-    elif isinstance(item, (Relation, Predicate, Roots, Exactly, Shown)):
+    elif isinstance(item, (Relation, Predicate, Roots, HoldsExactlyWhere, Shown)):
         yield item
     elif isinstance(item, (tuple, list)):
         for part in item:
@@ -242,7 +242,7 @@ class Reader:
         if sentence is None:
             return
         for name, slot in sentence.slots:
-            if isinstance(slot, (Relation, Together, Predicate, Roots, Exactly)):
+            if isinstance(slot, (Relation, Together, Predicate, Roots, HoldsExactlyWhere)):
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
@@ -355,7 +355,7 @@ class Reader:
                 parts = [sympy.Poly(part, self.symbol) for part in (above, below)]
                 whole = parts[1] if parts[1].degree() > 0 else parts[0]
                 assert is_zero(product - whole.as_expr() / whole.LC()), fact
-            case Exactly(Predicate("stable", subject), where):
+            case HoldsExactlyWhere(Predicate("stable", subject), where):
                 self.exactly(subject, where)
             case Predicate(name, subject):
                 self.predicate(name, subject)

@@ -26,8 +26,8 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Apply,
     Derivative,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Identity,
     Letter,
     Literal,
@@ -102,7 +102,7 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Solve(said(strange, 1), said(A, 1)),
         Conclude(None, (Predicate("stable", strange),)),
         Conclude(None, (Roots(strange, ()),)),
-        Conclude(None, (Exactly(Predicate("stable", strange), ()),)),
+        Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
         Conclude(None, (Together((one, said(strange, 1))),)),
         Conclude(slot(strange)),
         Note(slot(Shown(strange, literal(1)))),

@@ -32,8 +32,8 @@ from symobs.errors import DerivationRejected, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Environment,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
     Names,
@@ -406,14 +406,14 @@ MADE_OF: list[Any] = [
     Conclude(None, (ENTRY,)),
     Plot(None, literal(l1)),  # type: ignore[arg-type]
     Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
-    Where(Exactly(Predicate("stable", P), (ENTRY,))),
+    Where(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
     Survey(literal(l1), ("l1",)),
     Case(ENTRY, (), ()),
     Diagram("loop", (("P", literal(l1)),)),
     Shown(P, literal(l1)),
     Predicate("stable", literal(l1)),
     Roots(literal(l1), ()),
-    Exactly(Predicate("stable", literal(l1)), ()),
+    HoldsExactlyWhere(Predicate("stable", literal(l1)), ()),
     Together((ENTRY,)),
     Sum((A, Product((A, literal(l1))))),
 ]

@@ -31,7 +31,7 @@ from symobs.exact.kernel.generators import square_root
 from symobs.formula import (
     Apply,
     Environment,
-    Exactly,
+    HoldsExactlyWhere,
     Letter,
     Literal,
     Names,
@@ -149,7 +149,7 @@ def test_every_slot_of_every_sentence_is_read() -> None:
         Shown(literal(1), literal(2)),
         Predicate("stable", chi),
         Roots(chi, ()),
-        Exactly(Predicate("stable", chi), ()),
+        HoldsExactlyWhere(Predicate("stable", chi), ()),
         Names(("q",)),
         Letter("absent"),
         Literal(Scalar.of(2)),
@@ -304,8 +304,8 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
     start = replace(START, values={"chi": s**2 + h * s + k, "phi": s + 1})
     stable = Predicate("stable", chi)
     where = (said(h, ">", 0), said(k, ">", 0))
-    checked(Where(Exactly(stable, where)), start=start)
-    checked(Conclude(None, (Exactly(stable, where),)), start=start)
+    checked(Where(HoldsExactlyWhere(stable, where)), start=start)
+    checked(Conclude(None, (HoldsExactlyWhere(stable, where),)), start=start)
     for other in (
         where[:1],
         where[1:],
@@ -314,12 +314,16 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
         (said(h, "<", 0), where[1]),
         (said(h, ">=", 0), where[1]),
     ):
-        refused(Where(Exactly(stable, other)), start=start)
-        refused(Conclude(None, (Exactly(stable, other),)), start=start)
-        refused(Note(slot(Exactly(stable, other))), start=start)
-    refused(Where(Exactly(Predicate("stable", Literal(s**2 + h * s + k)), where)), start=start, match="no letter's")
-    refused(Where(Exactly(stable, where), slot(two)), start=start)
-    refused(Where(Exactly(stable, (*where, said(phi, "=", s + 1)))), start=start)
+        refused(Where(HoldsExactlyWhere(stable, other)), start=start)
+        refused(Conclude(None, (HoldsExactlyWhere(stable, other),)), start=start)
+        refused(Note(slot(HoldsExactlyWhere(stable, other))), start=start)
+    refused(
+        Where(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
+        start=start,
+        match="no letter's",
+    )
+    refused(Where(HoldsExactlyWhere(stable, where), slot(two)), start=start)
+    refused(Where(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
 
 
 def test_a_region_is_that_of_its_letter() -> None:
