@@ -10,7 +10,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, places, root_of_pole
-from symobs.formula import Decimals, HoldsExactlyWhere, Roots, Together
+from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -108,7 +108,7 @@ def _say_decimals(page: Page) -> None:
     entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if places(entry)]
     sizes = dict.fromkeys(-entry if entry.fraction() < 0 else entry for entry in entries)
     if plant.is_in_decimals and 0 < len(sizes) <= _DECIMALS:
-        page.remark("exact_decimals", numbers=Together(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
+        page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
 def _hold_to_letters(page: Page) -> None:
@@ -146,7 +146,7 @@ def state_signs(page: Page) -> None:
     facts = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}
     declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
     if declared:
-        page.conclude("declared", signs=Together(tuple(declared)))
+        page.conclude("declared", signs=Conjunction(tuple(declared)))
 
 
 def is_narrow(*matrices: Matrix) -> bool:
@@ -162,13 +162,13 @@ def determinant_form(page: Page, value: Scalar) -> Term:
     return page.term(formula_of_factored(Factored(unit, factors)))
 
 
-def conditions_of(case: Case) -> Relation | Together:
+def conditions_of(case: Case) -> Relation | Conjunction:
     """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
     relations = tuple(as_written(condition) for condition in case.when)
-    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
+    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Conjunction(relations)
 
 
-def stratum_of(case: Case) -> Relation | Together:
+def stratum_of(case: Case) -> Relation | Conjunction:
     """Return what a case says of the parameters: a single equation as p = 0."""
     return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
 

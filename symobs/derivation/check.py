@@ -39,6 +39,7 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
     Apply,
+    Conjunction,
     Derivative,
     Environment,
     Exact,
@@ -54,7 +55,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Signal,
-    Together,
     children,
     evaluate,
     letters,
@@ -114,7 +114,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
     match step:
         case Given(relations, sentence):
             said = [slot for _, slot in sentence.slots] if sentence else []
-            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Together) else (slot,))}
+            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Conjunction) else (slot,))}
             for relation in relations:
                 if relation.operators == ("!=",) and (not sentence or relation in stated):
                     environment = _assume(relation, environment)
@@ -233,7 +233,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Together, Shown, Names)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, Names)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -273,7 +273,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, Names):
         _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
         return
-    if isinstance(fact, Together):
+    if isinstance(fact, Conjunction):
         for part in fact.relations:
             _fact(part, environment, discrete)
         return

@@ -31,6 +31,7 @@ from symobs.derivation.steps import (
 from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
+    Conjunction,
     Exact,
     Formula,
     HoldsExactlyWhere,
@@ -42,7 +43,6 @@ from symobs.formula import (
     Relation,
     Roots,
     Shown,
-    Together,
     Transpose,
     Turned,
     children,
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be: S4 calls both H.
 _ANSATZ = {"L", "H_x"}
-_FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Together)
+_FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)
 
 
 def translated(derivation: Derivation, convention: Convention) -> Derivation:
@@ -137,7 +137,7 @@ def _in_signs(item: Any, turned: Turned) -> Any:
 
 def _label_in_signs(label: Label, turned: Turned) -> Label:
     """Return what labels a box or a wire, a gain with its sign."""
-    found: Label = _in_signs(label, turned) if isinstance(label, Together) else turned.whole(label)
+    found: Label = _in_signs(label, turned) if isinstance(label, Conjunction) else turned.whole(label)
     return found
 
 

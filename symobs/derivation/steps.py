@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
-    from symobs.formula import Fact, Formula, HoldsExactlyWhere, Relation, Together
+    from symobs.formula import Conjunction, Fact, Formula, HoldsExactlyWhere, Relation
     from symobs.stability.criteria.routh_table import RouthTable
 
 
@@ -155,7 +155,7 @@ class Case:
     letters in `anew` have no meaning there until they are introduced again.
     """
 
-    when: Relation | Together
+    when: Relation | Conjunction
     substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None

@@ -205,7 +205,7 @@ class HoldsExactlyWhere:
 
 
 @dataclass(frozen=True)
-class Together:
+class Conjunction:
     """Several relations that hold at once; shown as their list."""
 
     relations: tuple[Relation, ...]
@@ -226,7 +226,7 @@ class Names:
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Together | Shown | Names
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | Names
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.

@@ -26,7 +26,7 @@ from symobs.derivation import Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE
-from symobs.formula import HoldsExactlyWhere, Together
+from symobs.formula import Conjunction, HoldsExactlyWhere
 from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
@@ -146,8 +146,8 @@ def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> Non
     apart = [as_written(condition) for condition in result.grows_where]
     if verify(grows, page.environment)[0]:
         page.steps.append(words)
-    elif apart and verify(grows, on_stratum(Together(tuple(apart)), {}, page.environment))[0]:
-        page.steps.append(CaseStep(Together(tuple(apart)), (), (words,)))
+    elif apart and verify(grows, on_stratum(Conjunction(tuple(apart)), {}, page.environment))[0]:
+        page.steps.append(CaseStep(Conjunction(tuple(apart)), (), (words,)))
     else:
         page.remark("lyapunov_undecided")
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
-from symobs.formula import Derivative, Letter, Literal, Negative, Power, Quotient, Together
+from symobs.formula import Conjunction, Derivative, Letter, Literal, Negative, Power, Quotient
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -163,7 +163,7 @@ class _Arranging:
         at_ends = {key(node) for node in self.figure.place if self.is_end(node)}
         for node in self.figure.place:
             label = self.labels.get(key(node))
-            if is_box(node) or label is None or isinstance(label, Together) or self.is_end(node):
+            if is_box(node) or label is None or isinstance(label, Conjunction) or self.is_end(node):
                 continue
             into, out = self.figure.into(node), self.figure.out_of(node)
             if is_integrator(node) and self.metrics.rates and len(into) == 1 and self.ends_across(into[0]):

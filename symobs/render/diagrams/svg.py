@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import without_sign
-from symobs.formula import Literal, Quotient, Relation, Together
+from symobs.formula import Conjunction, Literal, Quotient, Relation
 from symobs.phrases import PHRASES
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.plots.scene import coordinate
@@ -103,7 +103,7 @@ def _letters(printer: TextPrinter) -> TextPrinter:
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:
-    if isinstance(label, Together):
+    if isinstance(label, Conjunction):
         return [_Row(_text(relation, printer)) for relation in label.relations]
     return [_row(label, printer)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, inf
 from typing import TYPE_CHECKING
 
-from symobs.formula import Together
+from symobs.formula import Conjunction
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.printers.text_printer import text_width
 
@@ -43,7 +43,7 @@ def sketch(drawing: Drawing, printer: TextPrinter, width: int) -> str:
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[str]:
-    if isinstance(label, Together):
+    if isinstance(label, Conjunction):
         return [printer.inline(relation) for relation in label.relations]
     return [printer.inline(label)]
 

@@ -27,7 +27,7 @@ from symobs.derivation import (
     Tabulate,
     Where,
 )
-from symobs.formula import Together
+from symobs.formula import Conjunction
 from symobs.notation.theorems import THEOREMS
 from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
 from symobs.render.page.blocks import (
@@ -316,13 +316,13 @@ class _Page:
         for part in step.parts:
             self.blocks.append(Display(part))
 
-    def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
+    def tell_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
         inner = _Page(self.convention, given=self.given, numbered=False, numbers=self.theorems)
         inner.say(sentence)
         inner.tell(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
-        for place, relation in enumerate(when.relations if isinstance(when, Together) else (when,)):
+        for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
             label += [", ", relation] if place else [relation]
         self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation import Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
-from symobs.formula import Apply, At, Letter, Literal, Relation, Together
+from symobs.formula import Apply, At, Conjunction, Letter, Literal, Relation
 from symobs.render.page.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if picture.drawn_for:
         values = tuple(_equation(name, value) for name, value in picture.drawn_for)
-        sentences.append(caption_sentence("drawn_for", values=Together(values)))
+        sentences.append(caption_sentence("drawn_for", values=Conjunction(values)))
     words: list[Inline] = []
     for sentence in sentences:
         words += [" ", *filled(sentence)] if words else filled(sentence)
@@ -84,7 +84,7 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
                 yield caption_sentence("half_plane", where=Relation((part("Re"), edge), ("<",)))
         case TimeResponse(states=states, starts=starts):
             begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
-            yield caption_sentence("response", start=Together(begun))
+            yield caption_sentence("response", start=Conjunction(begun))
             if any(course.dashed for course in picture.courses):
                 yield caption_sentence("estimates")
             if picture.discrete:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from symobs.convention import STANDARD, Convention
 from symobs.exact import Scalar
 from symobs.formula import (
+    Conjunction,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -24,7 +25,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
     Turned,
 )
@@ -100,7 +100,7 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             for place, name in enumerate(names):
                 between = "" if not place else " and " if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
-        case HoldsExactlyWhere(where=where) | Together(relations=where):
+        case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
             for place, relation in enumerate(where):
                 yield from (", ", relation) if place else (relation,)
         case _:

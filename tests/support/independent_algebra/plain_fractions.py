@@ -39,6 +39,7 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Conjunction,
     Decimals,
     Derivative,
     HoldsExactlyWhere,
@@ -56,7 +57,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
 )
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
@@ -401,7 +401,7 @@ class World:
                 case Diagram(figure, labels):
                     signs = {wire.gain for wire in figure_of(figure).wires}
                     for name, label in labels:
-                        if isinstance(label, Together):
+                        if isinstance(label, Conjunction):
                             yield from self.facts((label,))
                         elif name in signs:  # whatever it is, where a gain behind it is 0
                             yield f"label {name}", self.arriving(figure, dict(labels)) or self.value(label)
@@ -420,7 +420,7 @@ class World:
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
                 case Case(when, substitution, inside):
                     stratum = self.copy()
-                    relations = when.relations if isinstance(when, Together) else (when,)
+                    relations = when.relations if isinstance(when, Conjunction) else (when,)
                     if not substitution:
                         stratum.move_to([_equation(relation) for relation in relations if relation.operators == ("=",)])
                     stratum.meanings |= dict(substitution)
@@ -440,7 +440,7 @@ class World:
     def arriving(self, name: str, labels: Mapping[str, Any]) -> dict[str, Any]:
         """Return by which matrices signals reach the integrators of a diagram; nothing where boxes are whole systems."""
         figure = figure_of(name).without_missing(labels)
-        if figure.response or any(isinstance(label, Together) for label in labels.values()):
+        if figure.response or any(isinstance(label, Conjunction) for label in labels.values()):
             return {}
 
         def leaving(node: str) -> Any:
@@ -594,7 +594,7 @@ class World:
                             operator,
                             content if operator in {"=", "!=="} else Compared(content, members[index : index + 2]),
                         )
-                case Together(relations):
+                case Conjunction(relations):
                     yield from self.facts(relations)
                 case Shown(formula, value):
                     yield from self.facts((Relation((formula, value), ("=",)),))

@@ -25,6 +25,7 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Conjunction,
     Decimals,
     Derivative,
     HoldsExactlyWhere,
@@ -42,7 +43,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
 )
 from tests.support.independent_algebra.routh_by_hand import is_so, rows_of
@@ -196,7 +196,7 @@ class Reader:
                     self.fact(fact)
             case Diagram(_, labels):
                 for name, label in labels:
-                    if isinstance(label, Together):
+                    if isinstance(label, Conjunction):
                         self.fact(label)
                     elif step.name in {"loop", "unity_loop"} and name in {"P", "F"}:
                         drawn = label.operand if isinstance(label, Negative) else label
@@ -242,14 +242,14 @@ class Reader:
         if sentence is None:
             return
         for name, slot in sentence.slots:
-            if isinstance(slot, (Relation, Together, Predicate, Roots, HoldsExactlyWhere)):
+            if isinstance(slot, (Relation, Conjunction, Predicate, Roots, HoldsExactlyWhere)):
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
             elif not isinstance(slot, (str, Names)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
-    def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
+    def case(self, when: Relation | Conjunction, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
         """Read on with the parameters replaced; letters that have no value there are forgotten."""
         if not substitution and isinstance(when, Relation) and when.operators == ("=",):
             self.at_eigenvalues(when, steps)
@@ -266,7 +266,7 @@ class Reader:
             moved = value.subs(replaced)
             if not moved.has(sympy.zoo, sympy.nan, sympy.oo):
                 self.letters[name] = moved
-        for relation in when.relations if isinstance(when, Together) else (when,):
+        for relation in when.relations if isinstance(when, Conjunction) else (when,):
             if relation.operators == ("!=",):
                 assert not is_zero(scalar(self.value(relation.members[0])) - scalar(self.value(relation.members[1])))
                 self.tally.compared += 1
@@ -344,7 +344,7 @@ class Reader:
                     assert self.holds(left, operator, right), fact
                 self.tally.compared += len(operators)
                 return
-            case Together(relations):
+            case Conjunction(relations):
                 for relation in relations:
                     self.fact(relation)
                 return

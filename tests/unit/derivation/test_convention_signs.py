@@ -31,6 +31,7 @@ from symobs.derivation.convention_signs import set_apart
 from symobs.errors import DerivationRejected, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
+    Conjunction,
     Environment,
     Formula,
     HoldsExactlyWhere,
@@ -43,7 +44,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
     Turned,
 )
@@ -135,8 +135,8 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
         (Sum((A, Negative(Product((L, C))))), Sum((A, Product((L, C))))),
         ((LAW, (LEFT,)), (TURNED_LAW, (TURNED_LEFT,))),
         (
-            Diagram("observer", (("L", L), ("C", C), ("P", Together((LAW,))))),
-            Diagram("observer", (("L", Negative(L)), ("C", C), ("P", Together((TURNED_LAW,))))),
+            Diagram("observer", (("L", L), ("C", C), ("P", Conjunction((LAW,))))),
+            Diagram("observer", (("L", Negative(L)), ("C", C), ("P", Conjunction((TURNED_LAW,))))),
         ),
     ],
 )
@@ -414,7 +414,7 @@ MADE_OF: list[Any] = [
     Predicate("stable", literal(l1)),
     Roots(literal(l1), ()),
     HoldsExactlyWhere(Predicate("stable", literal(l1)), ()),
-    Together((ENTRY,)),
+    Conjunction((ENTRY,)),
     Sum((A, Product((A, literal(l1))))),
 ]
 

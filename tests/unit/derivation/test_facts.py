@@ -12,6 +12,7 @@ from symobs.derivation.wording_check import OF_STABLE_LOOP
 from symobs.exact import Matrix, Root, Scalar, roots_of
 from symobs.formula import (
     Apply,
+    Conjunction,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -26,7 +27,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
 )
 from symobs.phrases import ASSERTS, PHRASES
@@ -68,7 +68,7 @@ UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
     ("fact", "false"),
     [
         (said(Apply("det", A), 2), said(Apply("det", A), 3)),
-        (Together((said(1, 1), said(a, ">", 0))), Together((said(a, ">", 0), said(c, ">", 0)))),
+        (Conjunction((said(1, 1), said(a, ">", 0))), Conjunction((said(a, ">", 0), said(c, ">", 0)))),
         (Shown(Apply("det", A), literal(2)), Shown(Apply("det", A), literal(-2))),
         (Predicate("stable", Letter("chi")), Predicate("unstable", Letter("chi"))),
         (Predicate("stable", Power(Letter("chi"), -1)), Predicate("unstable", Power(Letter("chi"), -1))),
