@@ -37,11 +37,11 @@ from symobs.formula import (
     Identity,
     Letter,
     Literal,
-    Names,
     Predicate,
     Relation,
     Roots,
     Shown,
+    SymbolList,
 )
 from symobs.formula.plain_text import plain_relation
 from symobs.formula.term import Term
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, Names)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int

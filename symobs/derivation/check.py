@@ -48,13 +48,13 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Relation,
     Roots,
     Shown,
     Signal,
+    SymbolList,
     children,
     evaluate,
     letters,
@@ -233,7 +233,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, Names)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -270,7 +270,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if verify(fact, environment)[0] == "":
             reject(plain_relation(fact, environment.variable))
         return
-    if isinstance(fact, Names):
+    if isinstance(fact, SymbolList):
         _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
         return
     if isinstance(fact, Conjunction):

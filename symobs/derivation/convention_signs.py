@@ -37,12 +37,12 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Predicate,
     Product,
     Relation,
     Roots,
     Shown,
+    SymbolList,
     Transpose,
     Turned,
     children,
@@ -186,8 +186,8 @@ def _substituted(item: Any, meant: Mapping[str, Scalar]) -> Any:
     """Return steps with symbols replaced; what introduces one by its meaning introduces the new one."""
     if isinstance(item, Literal):
         return Literal(item.value.substitute({k: v for k, v in meant.items() if k in item.value.names}))
-    if isinstance(item, Names):
-        return Names(tuple(name for part in item.names for name in meant.get(part, Scalar.symbol(part)).names))
+    if isinstance(item, SymbolList):
+        return SymbolList(tuple(name for part in item.names for name in meant.get(part, Scalar.symbol(part)).names))
     if isinstance(item, Formula):
         changed = with_children(item, tuple(_substituted(part, meant) for part in children(item)))
         return _without_minus(changed) if changed != item else item

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
-from symobs.formula import Literal, Names, Relation
+from symobs.formula import Literal, Relation, SymbolList
 from symobs.phrases.english.stability.regions import counted, in_words, root_in_words
 from symobs.stability.criteria.critical_polynomials import Boundary, Critical
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
@@ -75,7 +75,7 @@ def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]
 def _of_everything(region: LineRegion | PlaneRegion, names: tuple[str, ...]) -> Iterator[Sentence]:
     """Yield that no value is left out, where it is so."""
     if all(sample.stable for sample in region.samples(())) and is_region(region, ()):
-        yield Sentence("region_everywhere", (("names", Names(names)),))
+        yield Sentence("region_everywhere", (("names", SymbolList(names)),))
 
 
 def _of_line(region: LineRegion) -> Iterator[Sentence]:

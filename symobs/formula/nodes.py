@@ -220,13 +220,13 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Names:
+class SymbolList:
     """Some parameters, which a sentence speaks of; it claims nothing of them."""
 
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | Names
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | SymbolList
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.

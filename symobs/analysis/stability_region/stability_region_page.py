@@ -13,7 +13,7 @@ from symobs.derivation import Conclude, Step, Survey, Where
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
-from symobs.formula import HoldsExactlyWhere, Literal, Names, Power, Product, Quotient, Sum
+from symobs.formula import HoldsExactlyWhere, Literal, Power, Product, Quotient, Sum, SymbolList
 from symobs.result import page_of
 from symobs.stability.criteria.stability import hurwitz_matrix
 from symobs.stability.plots.region_plot import picture_of_line
@@ -96,8 +96,8 @@ def _sought(page: Page, result: StabilityRegion) -> None:
         page.remark("sought_margin", names=names, limit=-boundary.margin)
 
 
-def _listed(result: StabilityRegion) -> Names:
-    return Names(result.question.parameters)
+def _listed(result: StabilityRegion) -> SymbolList:
+    return SymbolList(result.question.parameters)
 
 
 def _moved(page: Page, result: StabilityRegion, chi: str) -> str:

@@ -23,7 +23,6 @@ from symobs.formula import (
     Conjunction,
     HoldsExactlyWhere,
     Letter,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -31,6 +30,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
+    SymbolList,
     Turned,
     letters,
 )
@@ -124,5 +124,5 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value
-        elif not isinstance(value, str | Names):
+        elif not isinstance(value, str | SymbolList):
             yield value

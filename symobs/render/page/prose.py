@@ -17,7 +17,6 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -25,6 +24,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
+    SymbolList,
     Transpose,
     Turned,
 )
@@ -96,7 +96,7 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             yield subject
         case Shown(value=value):
             yield value
-        case Names(names):
+        case SymbolList(names):
             for place, name in enumerate(names):
                 between = "" if not place else " and " if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))

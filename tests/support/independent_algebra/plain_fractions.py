@@ -47,7 +47,6 @@ from symobs.formula import (
     Integral,
     Letter,
     Literal,
-    Names,
     Negative,
     Power,
     Predicate,
@@ -57,6 +56,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
+    SymbolList,
     Transpose,
 )
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
@@ -612,7 +612,7 @@ class World:
                     yield "region", [(relation.operators, single(self.difference(relation))) for relation in where]
                 case str():
                     yield "word", fact
-                case Names(names):
+                case SymbolList(names):
                     yield "word", names
                 case _:
                     yield "shown", self.value(fact)

@@ -33,7 +33,6 @@ from symobs.formula import (
     Integral,
     Letter,
     Literal,
-    Names,
     Negative,
     Power,
     Predicate,
@@ -43,6 +42,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
+    SymbolList,
     Transpose,
 )
 from tests.support.independent_algebra.routh_by_hand import is_so, rows_of
@@ -246,7 +246,7 @@ class Reader:
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
-            elif not isinstance(slot, (str, Names)):
+            elif not isinstance(slot, (str, SymbolList)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
     def case(self, when: Relation | Conjunction, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:

@@ -37,13 +37,13 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
     Roots,
     Shown,
     Sum,
+    SymbolList,
     Transpose,
     Turned,
 )
@@ -369,7 +369,7 @@ def test_symbols_are_replaced_wherever_they_stand() -> None:
         return convention_signs._substituted(item, meant)
 
     assert replaced(Literal(l1 + a)) == Literal(a - m1)
-    assert replaced(Names(("l1", "l2", "a"))) == Names(("m1", "m2", "a"))
+    assert replaced(SymbolList(("l1", "l2", "a"))) == SymbolList(("m1", "m2", "a"))
     assert replaced(Sum((Literal(l1), A))) == Sum((Literal(-m1), A))
     assert replaced((said(P, l2), "l1", l1)) == (said(P, m2), "l1", l1)
     define = Define(said(l1, 5, a, ">", "="), plain_words("test_slot", it=Literal(l2)))

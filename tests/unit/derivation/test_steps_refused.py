@@ -35,7 +35,6 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -44,6 +43,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
+    SymbolList,
 )
 from symobs.stability.criteria.routh_table import routh_table
 from tests.support.problems.steps import (
@@ -150,7 +150,7 @@ def test_every_slot_of_every_sentence_is_read() -> None:
         Predicate("stable", chi),
         Roots(chi, ()),
         HoldsExactlyWhere(Predicate("stable", chi), ()),
-        Names(("q",)),
+        SymbolList(("q",)),
         Letter("absent"),
         Literal(Scalar.of(2)),
         Sum((chi, Literal(Scalar.of(2)))),
@@ -166,7 +166,7 @@ def test_every_slot_of_every_sentence_is_read() -> None:
             Note(slot(lie)),
             Section(slot(lie), ()),
         ):
-            if isinstance(lie, Names):
+            if isinstance(lie, SymbolList):
                 checked(step, start=start)
             else:
                 refused(step, start=start)
@@ -192,9 +192,9 @@ def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
             Define(replace(relation, members=(F, *relation.members), operators=("=", *relation.operators))),
             match=">= 0",
         )
-    refused(Note(slot(Names(("a", str(square_root(c)))))), match=">= 0")
-    refused(Note(slot(Names((str(square_root(c)), "a")))), match=">= 0")
-    checked(Note(slot(Names(("a", str(square_root(a)))))))
+    refused(Note(slot(SymbolList(("a", str(square_root(c)))))), match=">= 0")
+    refused(Note(slot(SymbolList((str(square_root(c)), "a")))), match=">= 0")
+    checked(Note(slot(SymbolList(("a", str(square_root(a)))))))
     real = Product((literal(0), *(Literal(square_root(k * a)) for k in range(1, 9) if k != 4)))
     checked(Equal((said(real, 0),)))
     refused(Equal((said(Product((real, Literal(square_root(c)))), 0),)), match=">= 0")
@@ -202,7 +202,7 @@ def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
 
 def test_a_sentence_may_name_a_value_only_where_it_claims_nothing_of_it() -> None:
     limit = Literal(Scalar.of(-2))
-    checked(Note(Sentence("sought_margin", (("names", Names(("h",))), ("limit", limit)))))
+    checked(Note(Sentence("sought_margin", (("names", SymbolList(("h",))), ("limit", limit)))))
     refused(Note(slot(limit)), match="a value in a sentence without what it is the value of")
     refused(Note(slot(Negative(Literal(a)))), match="a value in a sentence")
     checked(A_IS, Note(slot(A)))
@@ -223,7 +223,7 @@ def test_a_sentence_rests_on_its_facts() -> None:
 
 # -- what a boundary is moved by ----------------------------------------------------------------------------------------
 
-NAMES = ("names", Names(("h",)))
+NAMES = ("names", SymbolList(("h",)))
 
 
 def moving(key: str, by: Scalar, value: Scalar, *, at: Scalar) -> Define:
@@ -403,7 +403,7 @@ def test_a_root_is_of_what_is_not_negative() -> None:
 
 
 def test_names_are_established_and_nothing_more() -> None:
-    checked(Note(slot(Names(("a", "c")))))
+    checked(Note(slot(SymbolList(("a", "c")))))
 
 
 # -- what is introduced -------------------------------------------------------------------------------------------------
