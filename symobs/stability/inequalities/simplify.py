@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
-from symobs.stability.inequalities.factors import State, cleared, in_parts, split_products
+from symobs.stability.inequalities.factors import InequalitySystem, cleared, in_parts, split_products
 from symobs.stability.inequalities.proof import (
     ZERO,
     Asked,
@@ -84,7 +84,7 @@ def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = 
     """
     given, asked_of = (tuple(dict.fromkeys(map(cleared, values))) for values in (beside, raw))
     polynomials = tuple(dict.fromkeys((*asked_of, *given)))
-    state = State(polynomials)
+    state = InequalitySystem(polynomials)
     for value in polynomials:
         if sign_of(value, signs) in _DOWN:
             return _nowhere(polynomials, (contradiction(value),))
@@ -126,8 +126,8 @@ def nonempty_or_not(
 
 
 def _without_implied(
-    state: State, signs: Signs, given: Sequence[Scalar], resources: Resources
-) -> tuple[State, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
+    state: InequalitySystem, signs: Signs, given: Sequence[Scalar], resources: Resources
+) -> tuple[InequalitySystem, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
     """Drop what the others imply, the longest first; return the points which show that the rest is needed too."""
     witnesses, dropped = list[tuple[Scalar, Point]](), list[tuple[Scalar, str]]()
     open_ = (value for value in state.current if value not in given)
