@@ -48,7 +48,7 @@ class InequalitySystem:
         return tuple(other for other in self.current if other != value)
 
 
-def in_parts(state: InequalitySystem, value: Scalar, signs: Mapping[str, str]) -> InequalitySystem:
+def split_into_factors(state: InequalitySystem, value: Scalar, signs: Mapping[str, str]) -> InequalitySystem:
     """Replace a value by what of it is open: a product of odd powers, squares, and factors that are never negative."""
     if sign_of(value, signs) == "positive":
         return state.replaced(value, (), (by_signs(value),))

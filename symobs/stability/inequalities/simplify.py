@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
-from symobs.stability.inequalities.factors import InequalitySystem, cleared, in_parts, split_products
+from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import (
     ZERO,
     Asked,
@@ -89,7 +89,7 @@ def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = 
         if sign_of(value, signs) in _DOWN:
             return _nowhere(polynomials, (contradiction(value),))
         if value not in given:
-            state = in_parts(state, value, signs)
+            state = split_into_factors(state, value, signs)
     resources = Resources() if ask else Resources(0)
     point, impossible = nonempty_or_not(state.current, signs, resources)
     if impossible is not None:
