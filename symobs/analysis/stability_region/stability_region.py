@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import Picture, PoleMap
     from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.inequalities.proof import Equivalence
     from symobs.stability.inequalities.simplify import Simplified
     from symobs.stability.regions.description import Part
@@ -67,7 +67,7 @@ class StabilityRegion(Result):
         return cls(question.plant, method_name, answer, question)
 
     @property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """Where roots can cross the boundary."""
         return self.question.critical
 

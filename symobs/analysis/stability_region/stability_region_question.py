@@ -10,7 +10,7 @@ from symobs.conditions import sign_of
 from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Scalar
 from symobs.specification import read_gain, read_names
-from symobs.stability.criteria.critical_polynomials import Boundary, Critical
+from symobs.stability.criteria.critical_polynomials import Boundary, CriticalPolynomials
 from symobs.system import StateSpace, read_scalar
 
 if TYPE_CHECKING:
@@ -56,9 +56,9 @@ class Question:
         }
 
     @cached_property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """Where roots can cross the boundary."""
-        return Critical(self.polynomial, self.boundary, self.plant.symbols.signs)
+        return CriticalPolynomials(self.polynomial, self.boundary, self.plant.symbols.signs)
 
     @property
     def symbols(self) -> tuple[str, ...]:

@@ -57,7 +57,7 @@ class Boundary:
 
 
 @dataclass(frozen=True)
-class Critical:
+class CriticalPolynomials:
     """The polynomial a₀ wⁿ + … + aₙ without denominators, and what may vanish where stability changes."""
 
     polynomial: Scalar

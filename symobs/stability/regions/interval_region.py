@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.exact import RealNumber, Scalar
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Piece:
 class LineRegion:
     """All values of one parameter at which the polynomial is stable."""
 
-    critical: Critical
+    critical: CriticalPolynomials
     name: str
 
     @cached_property

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact.cad.decomposition import Slab
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.regions.description import Edge, Part
     from symobs.stability.regions.interval_region import LineRegion
     from symobs.stability.regions.short_list import Bound
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _POINTS = 3
 
 
-def are_critical(critical: Critical) -> bool:
+def are_critical(critical: CriticalPolynomials) -> bool:
     """Tell whether the coefficients are those of the moved polynomial, and the critical factors all there.
 
     At random points: (w − 1)ⁿ χ((w + 1)/(w − 1)) = Σ aₖ wⁿ⁻ᵏ in discrete time, else χ itself; a₀, aₙ and the determinant of the
@@ -66,7 +66,7 @@ def _is_product(value: Scalar, factors: Sequence[Scalar]) -> bool:
     return value.is_constant
 
 
-def _ratio(critical: Critical, a: Sequence[Fraction], point: Mapping[str, Fraction], w: Scalar) -> Scalar:
+def _ratio(critical: CriticalPolynomials, a: Sequence[Fraction], point: Mapping[str, Fraction], w: Scalar) -> Scalar:
     """Return Σ aₖ wⁿ⁻ᵏ divided by the polynomial at the number that w stands for, times (w − 1)ⁿ in discrete time."""
     boundary, value = critical.boundary, Scalar.of(0)
     for coefficient in a:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 
 class Bound(NamedTuple):
@@ -47,7 +47,7 @@ class Region(Protocol):
     """What the two kinds of region have in common."""
 
     @property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """The critical polynomials."""
 
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
@@ -110,7 +110,7 @@ def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[
     return found
 
 
-def _candidates(critical: Critical, samples: Sequence[Sample]) -> list[Bound]:
+def _candidates(critical: CriticalPolynomials, samples: Sequence[Sample]) -> list[Bound]:
     """Return the conditions' factors of one sign on the region, and what is left of each condition, simple ones first."""
     found: dict[Bound, None] = {}
     for condition in critical.conditions:
