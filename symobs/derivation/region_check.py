@@ -10,7 +10,7 @@ from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
 from symobs.formula import Literal, Relation, SymbolList
 from symobs.phrases.english.stability.regions import counted, in_words, root_in_words
-from symobs.stability.criteria.critical_polynomials import Boundary, CriticalPolynomials
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.solved_bounds import box
 from symobs.stability.regions.description import are_whole, between, parts, relations_of
@@ -141,7 +141,7 @@ def _region_of(
     discrete: bool,  # noqa: FBT001 - what is cached is called by position
     names: tuple[str, ...],
 ) -> LineRegion | PlaneRegion | None:
-    critical = CriticalPolynomials(polynomial, Boundary(variable, discrete), dict(signs))
+    critical = CriticalPolynomials(polynomial, StabilityBoundary(variable, discrete), dict(signs))
     if names and (variable in names or not set(critical.parameters) <= set(names)):
         return None
     return region_in(critical, names or critical.parameters)
