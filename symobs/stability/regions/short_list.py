@@ -43,7 +43,7 @@ class Sample:
     stable: bool
 
 
-class Region(Protocol):
+class ExactRegion(Protocol):
     """What the two kinds of region have in common."""
 
     @property
@@ -61,7 +61,7 @@ class Region(Protocol):
 
 
 @lru_cache(maxsize=256)
-def short_list(region: Region) -> tuple[Bound, ...]:
+def short_list(region: ExactRegion) -> tuple[Bound, ...]:
     """Return the inequalities; none where everything is stable.  The region must not be empty."""
     samples = region.samples(())
     bounds = [Bound(factor, "!=") for factor in region.surrounded()]
@@ -83,7 +83,7 @@ def short_list(region: Region) -> tuple[Bound, ...]:
     return _without_the_superfluous(bounds, samples, region.through_holes())
 
 
-def is_exact(region: Region, bounds: Sequence[Bound]) -> bool:
+def is_exact(region: ExactRegion, bounds: Sequence[Bound]) -> bool:
     """Tell whether these inequalities hold exactly on the region."""
     factors = irreducible(bound.polynomial for bound in bounds)
     # these do not vanish anywhere in the region; of others a curve or a point inside might be left out by a list
