@@ -17,7 +17,7 @@ from symobs.stability.regions.description import are_whole, between, parts, rela
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.region_check import are_parts, is_region
 from symobs.stability.regions.region_for import region_in
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -159,7 +159,9 @@ def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, s
     names = {name for value, _ in where for name in value.names}
     if not names <= set(region.critical.parameters):
         return False
-    return is_region(region, tuple(Bound(value.numerator * value.denominator, operator) for value, operator in where))
+    return is_region(
+        region, tuple(RegionInequality(value.numerator * value.denominator, operator) for value, operator in where)
+    )
 
 
 def _declared(region: LineRegion) -> list[tuple[Scalar, str]]:

@@ -36,7 +36,7 @@ from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 from symobs.stability.regions.region_check import are_parts, is_region
 from symobs.stability.regions.region_for import region_in
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.short_list import RegionInequality, short_list
 from symobs.system import StateSpace, Symbols
 
 if TYPE_CHECKING:
@@ -98,12 +98,12 @@ class StabilityRegion(Result):
         if isinstance(region, PlaneRegion) and self.parts:
             yield Statement("the bounds over each interval", lambda: "exact" if are_parts(region, self.parts) else "")
 
-    def _says(self, bounds: Sequence[Bound] | None) -> str:
+    def _says(self, bounds: Sequence[RegionInequality] | None) -> str:
         if bounds is None:
             return "stable nowhere"
         return f"stable exactly where {' and '.join(self.stable_if)}" if bounds else "stable everywhere"
 
-    def _is_proved(self, bounds: Sequence[Bound] | None) -> bool:
+    def _is_proved(self, bounds: Sequence[RegionInequality] | None) -> bool:
         """Tell whether the proof leads from the conditions of the criterion to these inequalities and back."""
         said = [Scalar.of(0)] if bounds is None else [positive_of(bound) for bound in bounds]
         chi, question = self.question.polynomial, self.question
@@ -236,7 +236,7 @@ class StabilityRegion(Result):
         return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
 
 
-def _bounds_of(question: Question) -> tuple[tuple[Bound, ...] | None, Equivalence | None]:
+def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
     """Return inequalities that hold exactly on the region, None where it is empty, and the proof where it is no region."""
     region = region_of(question)
     if region is not None:
@@ -252,13 +252,13 @@ def conditions_of(question: Question) -> Simplified:
     return stable_where(question.polynomial, question.plant.variable, question.plant.symbols.signs, **question.limits)
 
 
-def bound_of(positive: Scalar) -> Bound:
+def bound_of(positive: Scalar) -> RegionInequality:
     """Return a value > 0, a square as its root ≠ 0."""
     root = root_of_square(positive)
-    return Bound(positive) if root is None else Bound(root, "!=")
+    return RegionInequality(positive) if root is None else RegionInequality(root, "!=")
 
 
-def positive_of(bound: Bound) -> Scalar:
+def positive_of(bound: RegionInequality) -> Scalar:
     """Return what an inequality says is positive."""
     return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 

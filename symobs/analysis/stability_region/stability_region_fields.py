@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from symobs.stability.regions.description import Edge, Part
     from symobs.stability.regions.interval_region import Piece
     from symobs.stability.regions.plane_region import PlaneRegion
-    from symobs.stability.regions.short_list import Bound
+    from symobs.stability.regions.short_list import RegionInequality
 
 DIGITS = 6
 
 
 def stable_if(
-    bounds: Sequence[Bound] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
+    bounds: Sequence[RegionInequality] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
 ) -> list[str]:
     """Return the inequalities as texts; of a single interval its ends."""
     if bounds is None:
@@ -35,7 +35,7 @@ def stable_if(
     return [" ".join(map(str, solved(bound, signs, parameters))) for bound in bounds]
 
 
-def solved(bound: Bound, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
+def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
     """Return an inequality solved for a parameter where its coefficient has a certain sign."""
     if bound.operator == "!=":
         left, operator, right = as_inequality(bound.polynomial, signs, parameters)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.regions.description import Edge, Part
     from symobs.stability.regions.interval_region import LineRegion
-    from symobs.stability.regions.short_list import Bound
+    from symobs.stability.regions.short_list import RegionInequality
 
 _POINTS = 3
 
@@ -78,7 +78,7 @@ def _ratio(critical: CriticalPolynomials, a: Sequence[Fraction], point: Mapping[
 
 
 @lru_cache(maxsize=256)
-def is_region(region: LineRegion | PlaneRegion, bounds: tuple[Bound, ...] | None) -> bool:
+def is_region(region: LineRegion | PlaneRegion, bounds: tuple[RegionInequality, ...] | None) -> bool:
     """Tell whether a region is what it says, and these inequalities hold exactly on it (None: it is empty)."""
     critical = region.critical
     if critical.never:

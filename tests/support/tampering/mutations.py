@@ -31,7 +31,7 @@ from symobs.formula import (
 )
 from symobs.phrases import slots_of
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
-from symobs.stability.regions.short_list import Bound
+from symobs.stability.regions.short_list import RegionInequality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,7 +130,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, Fraction):
         yield Change("+1", "number", item + 1)
         yield Change("*(-1)-1", "number", -item - 1)
-    elif isinstance(item, Bound):
+    elif isinstance(item, RegionInequality):
         yield Change(".operator", "structure", item._replace(operator="!=" if item.operator == ">" else ">"))
         for change in changes(item.polynomial):
             yield change.within(".polynomial", item._replace(polynomial=change.value))

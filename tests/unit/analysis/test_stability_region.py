@@ -19,7 +19,7 @@ from symobs.stability.regions import region_check
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion, plane_region
 from symobs.stability.regions.region_check import is_region
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -97,15 +97,15 @@ def quadratic() -> PlaneRegion:
 @pytest.mark.parametrize(
     "more",
     [
-        Bound(h2 - h1, "!="),
-        Bound((h2 - h1) ** 2),
-        Bound((h1 - 1) ** 2 + (h2 - 1) ** 2),
-        Bound(h1 - 1),
-        Bound(-h1),
-        Bound(h1 + h2 + 1, "!="),
+        RegionInequality(h2 - h1, "!="),
+        RegionInequality((h2 - h1) ** 2),
+        RegionInequality((h1 - 1) ** 2 + (h2 - 1) ** 2),
+        RegionInequality(h1 - 1),
+        RegionInequality(-h1),
+        RegionInequality(h1 + h2 + 1, "!="),
     ],
 )
-def test_a_list_cannot_cut_a_curve_or_a_point_out_of_a_region(more: Bound) -> None:
+def test_a_list_cannot_cut_a_curve_or_a_point_out_of_a_region(more: RegionInequality) -> None:
     found = quadratic()
     bounds = short_list(found)
     assert is_region(found, bounds)
