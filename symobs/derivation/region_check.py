@@ -16,7 +16,7 @@ from symobs.stability.inequalities.solved_bounds import box
 from symobs.stability.regions.description import are_whole, between, parts, relations_of
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import region_in
+from symobs.stability.regions.region_for import exact_region
 from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _region_of(
     critical = CriticalPolynomials(polynomial, StabilityBoundary(variable, discrete), dict(signs))
     if names and (variable in names or not set(critical.parameters) <= set(names)):
         return None
-    return region_in(critical, names or critical.parameters)
+    return exact_region(critical, names or critical.parameters)
 
 
 def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, str], ...]) -> bool:

@@ -35,7 +35,7 @@ from symobs.stability.regions.description import parts
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import region_in
+from symobs.stability.regions.region_for import exact_region
 from symobs.stability.regions.short_list import RegionInequality, short_list
 from symobs.system import StateSpace, Symbols
 
@@ -265,7 +265,7 @@ def positive_of(bound: RegionInequality) -> Scalar:
 
 def region_of(question: Question) -> LineRegion | PlaneRegion | None:
     """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
-    return None if question.symbols else region_in(question.critical, question.parameters)
+    return None if question.symbols else exact_region(question.critical, question.parameters)
 
 
 @method("stability_region/routh", source="E. J. Routh, 1877; the plane divided after G. E. Collins, 1975")

@@ -9,7 +9,7 @@ from symobs.exact import Scalar
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 from symobs.stability.plots.region_plot import equation_of, oriented, picture_of_line, picture_of_plane
 from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.region_for import region_in
+from symobs.stability.regions.region_for import exact_region
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -53,7 +53,7 @@ def _drawn(critical: CriticalPolynomials, parameters: Sequence[str], values: dic
     if there.never or there.parameters != tuple(sorted(parameters)):
         return None
     drawn_for = tuple(values.items())
-    region = region_in(there, tuple(parameters))
+    region = exact_region(there, tuple(parameters))
     if region is None or region.empty:
         return None
     if isinstance(region, LineRegion):

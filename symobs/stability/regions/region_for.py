@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @lru_cache(maxsize=64)
-def region_in(critical: CriticalPolynomials, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
+def exact_region(critical: CriticalPolynomials, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
     """Return the exact region in one or two parameters, None in more or where the plane is too much to divide.
 
     A parameter that may be 0 and not beyond has a boundary that belongs to it, which open cells do not see.
