@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.inequalities.proof import Equivalence
     from symobs.stability.inequalities.simplify import Simplified
-    from symobs.stability.regions.description import Part
+    from symobs.stability.regions.description import CylindricalPart
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,7 +77,7 @@ class StabilityRegion(Result):
         return region_of(self.question)
 
     @cached_property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[CylindricalPart, ...]:
         """The region of two parameters as bounds of one over intervals of the other."""
         return parts(self.region) if isinstance(self.region, PlaneRegion) and not self.empty else ()
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from symobs.analysis.stability_region.stability_region_question import Question
     from symobs.exact import RealNumber
     from symobs.stability.inequalities.simplify import Simplified
-    from symobs.stability.regions.description import Edge, Part
+    from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.interval_region import Piece
     from symobs.stability.regions.plane_region import PlaneRegion
     from symobs.stability.regions.short_list import RegionInequality
@@ -130,7 +130,7 @@ def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
     return listed
 
 
-def components_of(region: PlaneRegion, parts: Sequence[Part]) -> list[dict[str, Any]]:
+def components_of(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> list[dict[str, Any]]:
     """Return every connected component: bounded or not, a point of it, and bounds of y over intervals of x."""
     x, y = region.names
     listed = []

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from symobs.exact.cad.decomposition import Slab
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
-    from symobs.stability.regions.description import Edge, Part
+    from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.interval_region import LineRegion
     from symobs.stability.regions.short_list import RegionInequality
 
@@ -104,7 +104,7 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
     )
 
 
-def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
+def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
     """Tell whether parts are all stable cells, each once, and every bound in closed form is the branch it stands for.
 
     A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
@@ -123,7 +123,7 @@ def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
     return all(_is_part(region, part, number) for part in parts for number in part.cells)
 
 
-def _is_part(region: PlaneRegion, part: Part, number: int) -> bool:
+def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
     cell = region.cells[number]
     slab, below, above = region.bounds(cell)
     ends = (region.cells[part.cells[0]], region.cells[part.cells[-1]])
