@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symobs.exact import RealNumber
     from symobs.stability.inequalities.simplify import Simplified
     from symobs.stability.regions.description import CylindricalPart, Edge
-    from symobs.stability.regions.interval_region import Piece
+    from symobs.stability.regions.interval_region import IntervalPiece
     from symobs.stability.regions.plane_region import PlaneRegion
     from symobs.stability.regions.short_list import RegionInequality
 
@@ -60,7 +60,7 @@ def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
     return {name: str(value) for name, value in (point or {}).items()}
 
 
-def ends_of(piece: Piece, name: str, signs: Mapping[str, str]) -> list[str]:
+def ends_of(piece: IntervalPiece, name: str, signs: Mapping[str, str]) -> list[str]:
     """Return name > low and name < high, without what the declared sign says already."""
     found = []
     if piece.low is not None and not (
