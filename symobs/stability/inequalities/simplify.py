@@ -15,8 +15,8 @@ from symobs.exact import Scalar
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import (
     ZERO,
-    Asked,
     Equivalence,
+    ProvedByZ3,
     Step,
     contradiction,
     from_contradiction,
@@ -117,7 +117,7 @@ def nonempty_or_not(
         return None, steps
     answer, model = point_by_z3(positive, signs, resources=resources)
     if answer == "no":
-        return None, (Asked(ZERO, tuple(positive)),)
+        return None, (ProvedByZ3(ZERO, tuple(positive)),)
     good = bool(model) and respects(model, signs) and holds_at(positive, model)
     return (dict(model) if good else None), None
 
@@ -139,7 +139,7 @@ def _without_implied(
             point, steps = _asked(value, others, signs, resources)
         if steps is not None:
             state = state.replaced(value, (), steps)
-            dropped.append((value, "z3" if any(isinstance(step, Asked) for step in steps) else "products"))
+            dropped.append((value, "z3" if any(isinstance(step, ProvedByZ3) for step in steps) else "products"))
         elif point is not None:
             witnesses.append((value, point))
     return state, tuple(witnesses), tuple(dropped)
@@ -172,6 +172,6 @@ def _asked(
     """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
     answer, model = point_by_z3(others, signs, not_above=value, resources=resources)
     if answer == "no":
-        return None, (Asked(value, tuple(others)),)
+        return None, (ProvedByZ3(value, tuple(others)),)
     fails = bool(model) and respects(model, signs) and holds_at(others, model) and value_at(value, model) <= 0
     return (dict(model) if fails else None), None
