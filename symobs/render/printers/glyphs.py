@@ -25,14 +25,14 @@ class Level(IntEnum):
 
 
 @dataclass(frozen=True)
-class Box:
+class GlyphBox:
     """A printed part; formats add what is written."""
 
     width: float
     level: Level
 
 
-B = TypeVar("B", bound=Box)
+B = TypeVar("B", bound=GlyphBox)
 
 
 class Glyphs(ABC, Generic[B]):

@@ -10,7 +10,7 @@ from symobs._dataclass import dataclass
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import Box, Level
+from symobs.render.printers.glyphs import GlyphBox, Level
 from symobs.render.printers.printer import Printer
 from symobs.render.printers.rational_formula import decimal
 
@@ -27,7 +27,7 @@ _BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
 
 
 @dataclass(frozen=True)
-class TextBox(Box):
+class TextBox(GlyphBox):
     """Lines of equal width; `baseline` is the one that stands on the line of its neighbours."""
 
     lines: tuple[str, ...]
