@@ -8,7 +8,7 @@ from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs._dataclass import dataclass
-from symobs.render.plots.scene import Box, Text, segment_in
+from symobs.render.plots.scene import Rectangle, Text, segment_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -33,9 +33,9 @@ Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 class Surroundings:
     """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
 
-    frame: Box
+    frame: Rectangle
     lines: Lines
-    taken: tuple[Box, ...]
+    taken: tuple[Rectangle, ...]
     pale: Lines
     shades: Lines
 
@@ -82,7 +82,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         right, top = left + width, bottom + height
         if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
-        box = Box(left, bottom, right, top)
+        box = Rectangle(left, bottom, right, top)
         if any(box.meets(other) for other in taken) or _is_crossed(box.grown(_CLEAR), pieces):
             continue
         value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
@@ -127,7 +127,7 @@ def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float,
         yield min(xs), min(ys), max(xs), max(ys), points
 
 
-def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
+def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
     """Whether one of the pieces of lines meets a box."""
     left, bottom, right, top = box.left, box.bottom, box.right, box.top
     for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
@@ -137,7 +137,7 @@ def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Seq
     return False
 
 
-def _crosses(line: Sequence[Point], box: Box) -> bool:
+def _crosses(line: Sequence[Point], box: Rectangle) -> bool:
     """Whether a line meets a box."""
     return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
@@ -147,7 +147,7 @@ def _places(line: Sequence[Point]) -> list[Point]:
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
-def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
+def _distance(box: Rectangle, places: Iterable[Point], enough: float) -> float:
     """Return how far places keep from a box, up to _FAR; no further is looked once that is not more than enough."""
     left, right, bottom, top = box.left, box.right, box.bottom, box.top
     nearest = _FAR
@@ -162,7 +162,7 @@ def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
     return nearest
 
 
-def _apart(box: Box, other: Box) -> float:
+def _apart(box: Rectangle, other: Rectangle) -> float:
     return hypot(
         max(box.left - other.right, 0.0, other.left - box.right),
         max(box.bottom - other.top, 0.0, other.bottom - box.top),

@@ -15,7 +15,7 @@ from symobs.render.plots import time_axis
 from symobs.render.plots.curve_labels import Surroundings, labelled, walk
 from symobs.render.plots.scene import (
     RADIUS,
-    Box,
+    Rectangle,
     Scene,
     Sign,
     Stroke,
@@ -71,8 +71,8 @@ class _Frame:
     height: float
 
     @property
-    def box(self) -> Box:
-        return Box(0.0, 0.0, self.width, self.height)
+    def box(self) -> Rectangle:
+        return Rectangle(0.0, 0.0, self.width, self.height)
 
     def at(self, x: float | Fraction, y: float | Fraction) -> Point:
         """Return the point on paper of a place in the plane."""
@@ -118,7 +118,7 @@ def _region(picture: RegionPicture, measure: Measure) -> Scene:
     return Scene(frame.box, whole, shades, (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
 
 
-def _between(line: tuple[Point, Point], boxes: Iterable[Box]) -> list[tuple[Point, Point]]:
+def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tuple[Point, Point]]:
     """Return what is left of a line that goes right or up outside boxes."""
     pieces = [line]
     for box in boxes:
@@ -139,9 +139,9 @@ def _frame_of(window: tuple[Interval, Interval]) -> _Frame:
     return _Frame(horizontal, vertical, width, width / ratio)
 
 
-def _box(sign: Sign) -> Box:
+def _box(sign: Sign) -> Rectangle:
     x, y = sign.place
-    return Box(x, y, x, y).grown(RADIUS.get(sign.kind, 0.0) + 1.0)
+    return Rectangle(x, y, x, y).grown(RADIUS.get(sign.kind, 0.0) + 1.0)
 
 
 # -- axes -------------------------------------------------------------------------------------------------------------
@@ -263,7 +263,7 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
         strokes += [Stroke(run, "path") for run in runs]
         signs += [arrow for run in runs for arrow in _arrows(run)]
         ends = ((kind, frame.at(*place)) for kind, place in (("cross", path[0]), ("ring", path[-1])))
-        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Box(*place, *place))]
+        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Rectangle(*place, *place))]
     whole = whole_of(strokes, texts, measure)
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
 

@@ -14,7 +14,7 @@ from symobs.render.page.plot_captions import caption
 from symobs.render.plots.caption_rows import ABOVE, NARROWEST, ROW, rows_of, spaced, words_of
 from symobs.render.plots.numbered_caption import below
 from symobs.render.plots.plot_layout import scene_of
-from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Box, Sign, arrow_head, coordinate
+from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Rectangle, Sign, arrow_head, coordinate
 from symobs.render.plots.svg_text import FONTS, Piece, spans, width_of
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def svg_file(picture: Picture, printer: TextPrinter) -> str:
     lines = _caption_rows(words, scene.whole, printer)
     box = scene.whole
     right = max([box.right, *(box.left + 3 + _width(line) for line in lines)])
-    whole = Box(box.left, box.bottom - ABOVE - ROW * len(lines), right, box.top)
+    whole = Rectangle(box.left, box.bottom - ABOVE - ROW * len(lines), right, box.top)
     under = [
         _written((box.left + 3, box.bottom - ABOVE - ROW * (place + 0.5)), "start", line)
         for place, line in enumerate(lines)
@@ -85,7 +85,7 @@ def _mathematics(content: Formula | Relation, printer: TextPrinter) -> Piece:
 # -- elements ---------------------------------------------------------------------------------------------------------
 
 
-def _element(whole: Box, parts: Iterable[str], title: str, style: str) -> str:
+def _element(whole: Rectangle, parts: Iterable[str], title: str, style: str) -> str:
     width, height = whole.right - whole.left, whole.top - whole.bottom
     box = " ".join(map(coordinate, (whole.left, -whole.top, width, height)))
     size = f'width="{coordinate(_PIXELS * width)}" height="{coordinate(_PIXELS * height)}"'
@@ -163,7 +163,7 @@ def _width(pieces: Iterable[Piece]) -> float:
     return width_of(pieces, FONT_SIZE)
 
 
-def _caption_rows(words: Inlines, whole: Box, printer: TextPrinter) -> list[list[Piece]]:
+def _caption_rows(words: Inlines, whole: Rectangle, printer: TextPrinter) -> list[list[Piece]]:
     """Return the caption in rows as wide as the picture, or a little wider."""
     room = max(whole.right - whole.left, NARROWEST)
     space = Piece(" ", False)  # noqa: FBT003
