@@ -8,7 +8,7 @@ from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs._dataclass import dataclass
-from symobs.render.plots.scene import Rectangle, Text, segment_in
+from symobs.render.plots.scene import Rectangle, TextLabel, segment_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -40,12 +40,14 @@ class Surroundings:
     shades: Lines
 
 
-def labelled(curves: Mapping[Name, Lines], around: Surroundings, measure: Measure) -> tuple[list[Text], list[Name]]:
+def labelled(
+    curves: Mapping[Name, Lines], around: Surroundings, measure: Measure
+) -> tuple[list[TextLabel], list[Name]]:
     """Return the equations beside their curves, and those that found no place: these stand there as numbers.
 
     The longest is placed first, and numbers last.  A number may stand over a sample if need be, or over anything.
     """
-    written: list[Text] = []
+    written: list[TextLabel] = []
     left: list[Name] = []
     for equation in sorted(curves, key=lambda equation: -measure(equation)[0]):
         text = _best(equation, curves[equation], _beside(around, written, measure), measure)
@@ -62,13 +64,13 @@ def labelled(curves: Mapping[Name, Lines], around: Surroundings, measure: Measur
     return written, numbered
 
 
-def _beside(around: Surroundings, written: Sequence[Text], measure: Measure) -> Surroundings:
+def _beside(around: Surroundings, written: Sequence[TextLabel], measure: Measure) -> Surroundings:
     """Return surroundings in which some texts have their places."""
     boxes = (text.box(measure(text.content)).grown(_CLEAR) for text in written)
     return replace(around, taken=(*around.taken, *boxes))
 
 
-def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> Text | None:
+def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> TextLabel | None:
     """Return a label where it is farthest from everything that is not its own."""
     (width, height), taken = measure(content), around.taken
     own = set(lines)
@@ -92,7 +94,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         value += _distance(box, others, worth - value)
         if value > worth:
             best, worth = (x, y), value
-    return None if best is None else Text(content, best)
+    return None if best is None else TextLabel(content, best)
 
 
 def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, float]]:

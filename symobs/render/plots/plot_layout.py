@@ -19,7 +19,7 @@ from symobs.render.plots.scene import (
     Scene,
     Sign,
     Stroke,
-    Text,
+    TextLabel,
     chained,
     clipped,
     clipped_area,
@@ -147,20 +147,20 @@ def _box(sign: Sign) -> Rectangle:
 # -- axes -------------------------------------------------------------------------------------------------------------
 
 
-def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[Text]]:
+def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[TextLabel]]:
     """Return axes on the left and below, with ticks and names."""
     width, height = frame.width, frame.height
     strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
-    texts = [Text(names[0], (width + _BEYOND + _LETTER, 0), "west")]
-    texts += [Text(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
+    texts = [TextLabel(names[0], (width + _BEYOND + _LETTER, 0), "west")]
+    texts += [TextLabel(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
     for value, label in ticks(*frame.horizontal):
         x, _ = frame.at(value, 0)
         strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
-        texts.append(Text(label, (x, -_TICK - 3), "north"))
+        texts.append(TextLabel(label, (x, -_TICK - 3), "north"))
     for value, label in ticks(*frame.vertical, _fitting(height, measure)):
         _, y = frame.at(0, value)
         strokes.append(Stroke(((0, y), (-_TICK, y)), "tick"))
-        texts.append(Text(label, (-_TICK - 2, y), "east"))
+        texts.append(TextLabel(label, (-_TICK - 2, y), "east"))
     return strokes, texts
 
 
@@ -206,11 +206,11 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
         ends |= {at(found.place): _label(found, measure) for found in (begin, end) if found is not None}
     signs = [Sign(_SIGNS[kind], (at(place), 7.0)) for place, kind in picture.marks if kind != "excluded"]
     signs += [Sign("ring", (x, 0)) for x in {*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")}]
-    texts = [Text(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
+    texts = [TextLabel(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
     strokes += [Stroke((text.place, (text.place[0], 0)), "zero") for text in texts[1:] if text.place[1] < -3 * _TICK]
     covered = [text.box(measure(text.content)) for text in texts]
     for value, number in ticks(low, high):
-        text = Text(number, (at(value), -_TICK - 2), "north")
+        text = TextLabel(number, (at(value), -_TICK - 2), "north")
         box = text.box(measure(number))
         if all(abs(at(value) - x) > RADIUS["ring"] for x in ends):
             strokes.append(Stroke(((at(value), 1.5), (at(value), -1.5)), "tick"))
@@ -228,7 +228,7 @@ def _label(end: End, measure: Measure) -> Content:
     return exact if measure(exact)[0] <= _LONGEST_END * _LINE else f"≈{float(end.place):.4g}"
 
 
-def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
+def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[TextLabel]:
     """Yield the labels of ends below the line, each on the first row where it is clear of the others."""
     rows: list[float] = []
     row_height = measure("0")[1] + 2.0
@@ -236,7 +236,7 @@ def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
         width, height = measure(content)
         row = next((row for row, right in enumerate(rows) if right + _LETTER <= x - width / 2), len(rows))
         rows[row:] = [x + width / 2] if row == len(rows) or row == len(rows) - 1 else [x + width / 2, *rows[row + 1 :]]
-        yield Text(content, (x, -_TICK - 2 - row * max(row_height, height)), "north")
+        yield TextLabel(content, (x, -_TICK - 2 - row * max(row_height, height)), "north")
 
 
 # -- poles ------------------------------------------------------------------------------------------------------------

@@ -60,7 +60,7 @@ class Rectangle:
 
 
 @dataclass(frozen=True)
-class Text:
+class TextLabel:
     """Something written: the `anchor` of its box (center, north, south, east or west) lies at `place`."""
 
     content: Content
@@ -124,7 +124,7 @@ class Scene:
     shades: tuple[tuple[Point, ...], ...]
     strokes: tuple[Stroke, ...]
     signs: tuple[Sign, ...]
-    texts: tuple[Text, ...]
+    texts: tuple[TextLabel, ...]
     numbered: tuple[Formula | Relation, ...] = ()
 
 
@@ -141,7 +141,7 @@ def arrow_head(sign: Sign) -> tuple[Point, Point, Point]:
     return (x, y), (x - ux - 0.38 * uy, y - uy + 0.38 * ux), (x - ux + 0.38 * uy, y - uy - 0.38 * ux)
 
 
-def whole_of(strokes: Iterable[Stroke], texts: Iterable[Text], measure: Measure, margin: float = 3.0) -> Rectangle:
+def whole_of(strokes: Iterable[Stroke], texts: Iterable[TextLabel], measure: Measure, margin: float = 3.0) -> Rectangle:
     """Return the rectangle that everything fits into."""
     corners = [point for stroke in strokes for point in stroke.points]
     for text in texts:
