@@ -50,7 +50,7 @@ class Metrics:
 
 
 @dataclass(frozen=True)
-class Box:
+class DiagramBox:
     """A box with its label in the middle."""
 
     centre: Point
@@ -89,7 +89,7 @@ class Arrangement:
     """A block diagram, settled."""
 
     size: Point
-    boxes: tuple[Box, ...]
+    boxes: tuple[DiagramBox, ...]
     junctions: tuple[Point, ...]
     branches: tuple[Point, ...]
     lines: tuple[Line, ...]
@@ -255,7 +255,7 @@ class _Arranging:
         plain = [node for node in nodes if not self.is_drawn(node)]
         return Arrangement(
             size=(self.ends[0], self.ends[1]),
-            boxes=tuple(Box(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
+            boxes=tuple(DiagramBox(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
             junctions=tuple(self.at(node) for node in nodes if self.figure.is_junction(node)),
             branches=tuple(self.at(node) for node in plain if len(self.figure.out_of(node)) > 1),
             lines=tuple(Line(self.corners(wire), self.is_drawn(wire.end)) for wire in self.figure.wires),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.block_diagram import Label
     from symobs.formula import Formula
-    from symobs.render.diagrams.diagram_layout import Box, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, Line, Mark, Point, SignMark
     from symobs.render.page.blocks import Drawing
 
 #: Units of an em, pixels of a unit.
@@ -149,7 +149,7 @@ def _drawn(arrangement: Arrangement, printer: TextPrinter) -> Iterator[str]:
         yield _sign(sign)
 
 
-def _rectangle(box: Box) -> str:
+def _rectangle(box: DiagramBox) -> str:
     (x, y), (width, height) = box.centre, box.size
     corner = f'x="{_length(x - width / 2)}" y="{_length(y - height / 2)}"'
     return f'<rect {corner} width="{_length(width)}" height="{_length(height)}"/>'

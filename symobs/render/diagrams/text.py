@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.render.diagrams.diagram_layout import Box, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, Line, Mark, Point, SignMark
     from symobs.render.page.blocks import Drawing
     from symobs.render.printers.text_printer import TextPrinter
 
@@ -110,7 +110,7 @@ class _Canvas:
             if index == last and line.is_arrow:
                 self.cells[cells[-1]] = _HEADS[step]
 
-    def draw_box(self, box: Box) -> None:
+    def draw_box(self, box: DiagramBox) -> None:
         """Draw a box with its lines in the middle."""
         (x, y), (width, height) = box.centre, box.size
         left, right = floor(x - width / 2), floor(x + width / 2) - 1
