@@ -67,7 +67,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Mark:
+class DiagramMark:
     """Something written: in the middle of `place`, `above` it or to its `right`."""
 
     label: Label
@@ -93,7 +93,7 @@ class Arrangement:
     junctions: tuple[Point, ...]
     branches: tuple[Point, ...]
     lines: tuple[Line, ...]
-    marks: tuple[Mark, ...]
+    marks: tuple[DiagramMark, ...]
     signs: tuple[SignMark, ...]
 
 
@@ -260,7 +260,7 @@ class _Arranging:
             branches=tuple(self.at(node) for node in plain if len(self.figure.out_of(node)) > 1),
             lines=tuple(Line(self.corners(wire), self.is_drawn(wire.end)) for wire in self.figure.wires),
             marks=(
-                *(Mark(_given(self.shown(node)), self.at(node)) for node in ends),
+                *(DiagramMark(_given(self.shown(node)), self.at(node)) for node in ends),
                 *(self.mark(wire, label, begins) for wire, (label, begins) in self.over.items()),
             ),
             signs=tuple(self.signs()),
@@ -270,11 +270,11 @@ class _Arranging:
         """Whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
         return self.shown(node) is not None or self.figure.is_junction(node)
 
-    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> Mark:  # noqa: FBT001
+    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> DiagramMark:  # noqa: FBT001
         """Return what is written over a wire, in the middle of its first or last stretch."""
         points = self.corners(wire)
         (x0, y0), (x1, y1) = points[:2] if at_beginning else points[-2:]
-        return Mark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
+        return DiagramMark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
 
     def signs(self) -> Iterator[SignMark]:
         """Yield the signs at the junctions."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.block_diagram import Label
     from symobs.formula import Formula
-    from symobs.render.diagrams.diagram_layout import DiagramBox, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, DiagramMark, Line, Point, SignMark
     from symobs.render.page.blocks import Drawing
 
 #: Units of an em, pixels of a unit.
@@ -191,7 +191,7 @@ def _written_row(row: _Row, centre: Point, anchor: str) -> Iterator[str]:
         yield _written(row.lead, (x - half - _width(row.lead) / 2, y))
 
 
-def _mark(mark: Mark, printer: TextPrinter) -> Iterator[str]:
+def _mark(mark: DiagramMark, printer: TextPrinter) -> Iterator[str]:
     x, y = mark.place
     if mark.side == "right":
         return _label(mark.label, (x + 0.4, y), printer, "start")

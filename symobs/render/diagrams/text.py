@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.render.diagrams.diagram_layout import DiagramBox, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, DiagramMark, Line, Point, SignMark
     from symobs.render.page.blocks import Drawing
     from symobs.render.printers.text_printer import TextPrinter
 
@@ -138,7 +138,7 @@ class _Canvas:
             else:
                 self.cells[column - 1, row] += character
 
-    def write_mark(self, mark: Mark) -> None:
+    def write_mark(self, mark: DiagramMark) -> None:
         """Write a signal at its wire."""
         column, row = _cell(mark.place)
         if mark.side == "right":

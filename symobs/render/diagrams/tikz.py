@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.render.diagrams.diagram_layout import Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramMark, Point, SignMark
     from symobs.render.page.blocks import Drawing
     from symobs.render.printers.latex_printer import LatexPrinter
 
@@ -68,7 +68,7 @@ def _mathematics(label: Label, printer: LatexPrinter) -> str:
     return rf"$\begin{{gathered}}{rows}\end{{gathered}}$"
 
 
-def _mark(mark: Mark, printer: LatexPrinter) -> str:
+def _mark(mark: DiagramMark, printer: LatexPrinter) -> str:
     side = {"above": "[above=0.25em]", "right": "[right=0.35em]"}.get(mark.side, "")
     return rf"\node{side} at {_place(mark.place)} {{${printer.unbroken(mark.label)}$}};"  # type: ignore[arg-type]
 
