@@ -26,7 +26,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Mark:
+class MarkedPoint:
     """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
     place: Place
@@ -44,7 +44,7 @@ class RegionPicture:
     window: tuple[Interval, Interval]
     areas: tuple[tuple[Place, ...], ...]
     curves: tuple[Curve, ...]
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[MarkedPoint, ...] = ()
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 

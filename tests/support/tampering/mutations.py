@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import Derivation, Section, Sentence
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.figures.plot import Curve, Mark, PoleMap, Response
+from symobs.figures.plot import Curve, MarkedPoint, PoleMap, Response
 from symobs.formula import (
     Apply,
     Block,
@@ -163,7 +163,7 @@ def changes(item: Any) -> Iterator[Change]:
             rows = (*item.rows[:index], *item.rows[index + 1 :])
             yield Change(f".rows[{index}] left out", "structure", replace(item, rows=rows))
         yield from _of_parts(item)
-    elif isinstance(item, (Curve, Mark, PoleMap)):
+    elif isinstance(item, (Curve, MarkedPoint, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
     elif isinstance(item, Response):
@@ -195,11 +195,11 @@ def _of_counts(sentence: Sentence) -> Iterator[Change]:
                     yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
 
 
-def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
+def _of_drawn(item: Curve | MarkedPoint | PoleMap) -> Iterator[Change]:
     """Yield what is drawn with another meaning: no boundary, another kind of point, the other kind of time."""
     if isinstance(item, Curve):
         yield Change(".boundary", "structure", replace(item, boundary=not item.boundary))
-    elif isinstance(item, Mark):
+    elif isinstance(item, MarkedPoint):
         kinds = {"stable", "unstable", "excluded"} - {item.kind}
         yield from (Change(f".kind {kind}", "structure", replace(item, kind=kind)) for kind in sorted(kinds))
     else:

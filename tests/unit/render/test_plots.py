@@ -15,7 +15,7 @@ import pytest
 
 from symobs.derivation import Derivation, Plot
 from symobs.errors import UsageError
-from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter, Relation, Roots
 from symobs.phrases import PHRASES
 from symobs.render.formats.latex import LatexArticle, LatexFragment
@@ -351,5 +351,5 @@ def test_marks_and_ends_may_be_anything_that_is_allowed() -> None:
         ((Fraction(1, 2), "excluded"),),
     )
     assert "$" in tikz_file(chi_line, LatexPrinter())
-    region = replace(hand.hyperbola(), marks=(Mark((Fraction(3), Fraction(3)), "excluded"),))
+    region = replace(hand.hyperbola(), marks=(MarkedPoint((Fraction(3), Fraction(3)), "excluded"),))
     assert "circle[radius=2.3]" in tikz_file(region, LatexPrinter())

@@ -19,7 +19,7 @@ from symobs.derivation.figures.root_locus_check import faults_of_poles
 from symobs.derivation.figures.time_response_check import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
 from symobs.exact import Matrix, Scalar
-from symobs.figures.plot import End, LinePicture, Mark, PoleMap, RegionPicture, Response, TimeResponse
+from symobs.figures.plot import End, LinePicture, MarkedPoint, PoleMap, RegionPicture, Response, TimeResponse
 from symobs.formula import Environment, Letter, Literal, Product
 from tests.support.problems.steps import said
 from tests.support.regions import drawn_by_hand as hand
@@ -130,7 +130,9 @@ def test_all_is_shaded_or_nothing() -> None:
     ],
 )
 def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> None:
-    picture = RegionPicture(("h1", "h2"), WINDOW, (WHOLE,) if shaded else (), (), (Mark(at("1/3", "1/5"), kind),))
+    picture = RegionPicture(
+        ("h1", "h2"), WINDOW, (WHOLE,) if shaded else (), (), (MarkedPoint(at("1/3", "1/5"), kind),)
+    )
     assert (f"(1/3, 1/5) is {kind}" not in told(picture, s + 1)) == expected
     unstable = replace(picture, areas=())
     assert (f"(1/3, 1/5) is {kind}" not in told(unstable, s - 1)) == (kind in {"unstable", "excluded"})
