@@ -13,7 +13,7 @@ from symobs.formula import Conjunction, Literal, Quotient, Relation
 from symobs.phrases import PHRASES
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.plots.scene import coordinate
-from symobs.render.plots.svg_text import BELOW, DOT, FONTS, Piece, spans, width_of
+from symobs.render.plots.svg_text import BELOW, DOT, FONTS, TextRun, spans, width_of
 from symobs.render.printers.glyphs import Level
 from symobs.render.printers.scalar_formula import formula_of
 from symobs.render.printers.text_printer import TextBox, TextPrinter, text_box
@@ -126,7 +126,7 @@ def _text(item: Formula | Relation, printer: TextPrinter) -> str:
 
 
 def _width(text: str) -> float:
-    return width_of([Piece(text, is_math=True)], 1.0)
+    return width_of([TextRun(text, is_math=True)], 1.0)
 
 
 # -- elements ---------------------------------------------------------------------------------------------------------
@@ -206,7 +206,7 @@ def _sign(sign: SignMark) -> str:
 
 def _written(text: str, centre: Point, anchor: str = "middle", size: float = 1.0) -> str:
     """A line of text with its middle at a height."""
-    inside = spans([Piece(text, is_math=True)], size * _EM)
+    inside = spans([TextRun(text, is_math=True)], size * _EM)
     place = f'x="{_length(centre[0])}" y="{_length(centre[1] + 0.32 * size)}"'
     font = f' font-size="{_length(size)}"' if size != 1 else ""
     return f'<text {place} text-anchor="{anchor}" fill="currentColor" stroke="none"{font}>{inside}</text>'
