@@ -30,7 +30,7 @@ from symobs.expression.source import shown
 from symobs.phrases import PHRASES
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
-from symobs.render.page.sheet import Entry, Sheet
+from symobs.render.page.sheet import Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def sheet(
     texts = _texts(files)
     if timeout is not None or memory is not None:
         tasks()  # what all problems need is imported once, not in the process of each
-    entries: list[Entry] = []
+    entries: list[SheetEntry] = []
     codes: set[int] = set()
     progress = _Progress(len(texts))
     for number, (file, text) in enumerate(texts, 1):
@@ -151,7 +151,7 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
 # -- one problem ------------------------------------------------------------------------------------------------------
 
 
-def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
     """Return what `_entry` does, and where that takes more than it may, as much as there was by then."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, file, text, wanted, lambda _: None)
@@ -165,13 +165,13 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
         return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
 
 
-def _empty(number: int, file: str) -> Entry:
-    return Entry(number, file, Path(file).stem if file != "-" else "")
+def _empty(number: int, file: str) -> SheetEntry:
+    return SheetEntry(number, file, Path(file).stem if file != "-" else "")
 
 
 def _entry(
     number: int, file: str, text: str, wanted: _Wanted, report_progress: Progress
-) -> tuple[Entry, int, list[str]]:
+) -> tuple[SheetEntry, int, list[str]]:
     """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
     entry = _empty(number, file)
     try:
@@ -180,7 +180,9 @@ def _entry(
         return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: Entry, text: str, wanted: _Wanted, report_progress: Progress) -> tuple[Entry, int, list[str]]:
+def _worked_out(
+    entry: SheetEntry, text: str, wanted: _Wanted, report_progress: Progress
+) -> tuple[SheetEntry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
@@ -213,7 +215,7 @@ def _part(document: Document, wanted: _Wanted) -> Any:
     return wanted.format.part(told)
 
 
-def _failed(entry: Entry, error: Exception, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
     """Return the entry of a problem that failed; one that has used up its memory is told of where that is bounded."""
     if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
         raise error
