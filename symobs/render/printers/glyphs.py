@@ -35,7 +35,7 @@ class GlyphBox:
 B = TypeVar("B", bound=GlyphBox)
 
 
-class Glyphs(ABC, Generic[B]):
+class FormulaWriter(ABC, Generic[B]):
     """The glyphs of one format; boxes go in, a box comes out."""
 
     #: Whether a broken fraction is always (a)/(b), never 1/b before (a).

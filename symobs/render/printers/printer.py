@@ -36,7 +36,7 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
-from symobs.render.printers.glyphs import B, Glyphs, Level
+from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf
 from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
@@ -78,7 +78,7 @@ def _with_index(latex: str, index: str) -> str:
     return f"{stem}_{{{own.strip('{}')},{index}}}" if below else f"{stem}_{index}"
 
 
-class Printer(Glyphs[B]):
+class Printer(FormulaWriter[B]):
     """Formula → mathematics of one format."""
 
     def __init__(
