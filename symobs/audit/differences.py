@@ -13,7 +13,7 @@ from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, writ
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exact.algebraic.rounded_decimals import Decimal
+    from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 
 _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
@@ -38,7 +38,7 @@ def as_matrix(value: Scalar | Matrix) -> Matrix:
     return value if isinstance(value, Matrix) else Matrix.of([[value]])
 
 
-def single(printed: Scalar) -> Decimal | None:
+def single(printed: Scalar) -> PrintedDecimal | None:
     """Return the decimal that a printed value is, with its sign; None for any other value."""
     decimals = decimals_in(printed)
     if len(decimals) != 1:

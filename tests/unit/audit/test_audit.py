@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from symobs.audit import audit, report
 from symobs.audit.equations.grammar import read_relation
 from symobs.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
-from symobs.exact.algebraic.rounded_decimals import Decimal
+from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 from symobs.expression.syntax_tree import every
 from symobs.problem import read
 from tests.support.problems.printed import finding, findings, problem
@@ -183,9 +183,11 @@ def test_exactly_the_entry_that_is_spoiled_is_reported(data: st.DataObject) -> N
 )
 @settings(deadline=None, max_examples=60)
 def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int, power: int) -> None:
-    shifted = decimal.Context(prec=60).divide(decimal.Decimal(value.numerator), decimal.Decimal(value.denominator))
+    shifted = decimal.Context(prec=60).divide(
+        decimal.PrintedDecimal(value.numerator), decimal.PrintedDecimal(value.denominator)
+    )
     shifted = shifted.scaleb(-power)
-    unit = decimal.Decimal(1).scaleb(-places)
+    unit = decimal.PrintedDecimal(1).scaleb(-places)
     context = decimal.Context(prec=60)
     rounded = shifted.quantize(unit, decimal.ROUND_HALF_EVEN, context)
     truncated = shifted.quantize(unit, decimal.ROUND_DOWN, context)
@@ -194,7 +196,7 @@ def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int,
     if truncated != rounded and abs(shifted - truncated) * 2 != unit:  # of a half either neighbour will do
         (found,) = findings(f"[7 ({value})] = [7 {truncated:f}{dot}e{power}]")
         assert found.reason.endswith("truncated, not rounded")
-        assert decimal.Decimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
+        assert decimal.PrintedDecimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
 
 
 def test_both_neighbours_of_a_half_are_rounded() -> None:
@@ -205,7 +207,7 @@ def test_both_neighbours_of_a_half_are_rounded() -> None:
 @pytest.mark.parametrize("text", ["12", "1.", ".5", "0.50e-3", "3e2"])
 def test_a_decimal_is_a_number_with_a_point_or_a_power(text: str) -> None:
     ((node,),) = [read_relation(text, "")]
-    assert (Decimal.of(node.text) is not None) == any(sign in text for sign in ".e")
+    assert (PrintedDecimal.of(node.text) is not None) == any(sign in text for sign in ".e")
 
 
 # -- whatever is printed -----------------------------------------------------------------------------------------------
