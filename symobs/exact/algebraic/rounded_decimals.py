@@ -109,9 +109,9 @@ def rounds_to(printed: Scalar, exact: Scalar) -> bool:
     alike = {name: Scalar.symbol(name.partition("@")[0] + "@") for name in decimals}
     merged = {str(alike[name]): each for name, each in decimals.items()}
     equations = _equations(printed - exact, decimals)
-    return _Box(decimals).holds_solution(equations) or (
+    return _DecimalBox(decimals).holds_solution(equations) or (
         len(merged) < len(decimals)
-        and _Box(merged).holds_solution([equation.substitute(alike) for equation in equations])
+        and _DecimalBox(merged).holds_solution([equation.substitute(alike) for equation in equations])
     )
 
 
@@ -139,7 +139,7 @@ def _equations(difference: Scalar, decimals: Mapping[str, PrintedDecimal]) -> li
     return [equation for equation in coefficients_over(difference, numbers) if not equation.is_zero]
 
 
-class _Box:
+class _DecimalBox:
     """What decimals may stand for, and what equations say of them: `meanings` holds those that are solved for."""
 
     def __init__(self, decimals: Mapping[str, PrintedDecimal]) -> None:
