@@ -17,7 +17,7 @@ from symobs.audit.equations.reading import Gap, Reading, Where, exceptions, text
 from symobs.audit.equations.signals import signals
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
-from symobs.audit.printed_entries import Statement, parted
+from symobs.audit.printed_entries import PrintedEntry, parted
 from symobs.audit.slips import found_slip
 from symobs.conditions import vanishing_factors
 from symobs.errors import BudgetExceeded, CertificateRejected, UnknownName
@@ -72,7 +72,7 @@ class Desk:
         """The file's own symbols and their signs; they shadow every other meaning of a letter."""
         return self.problem.plant.symbols.signs
 
-    def read(self, entry: Statement) -> Iterator[tuple[str, Verdict]]:
+    def read(self, entry: PrintedEntry) -> Iterator[tuple[str, Verdict]]:
         """Yield the equations of an entry that are not plainly true."""
         self.environments, self.gaps, self.where = {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.audit.equation_auditor import Desk
-from symobs.audit.printed_entries import Statement, statements
+from symobs.audit.printed_entries import PrintedEntry, statements
 from symobs.audit.slips import Patience
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
@@ -71,7 +71,7 @@ def audit(problem: Problem) -> Audited:
     return Audited(problem.title, len(entries), tuple(found), tuple(notes))
 
 
-def _read(entry: Statement, desk: Desk) -> list[Finding]:
+def _read(entry: PrintedEntry, desk: Desk) -> list[Finding]:
     """Return what is wrong with one entry."""
     if entry.expect:
         lines = mismatches([Viewed(result, desk.convention) for result in desk.results], entry.expect)

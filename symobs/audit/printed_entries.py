@@ -23,7 +23,7 @@ _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 
 @dataclass(frozen=True)
-class Statement:
+class PrintedEntry:
     """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
 
     place: str
@@ -38,7 +38,7 @@ class Statement:
 
 def statements(
     entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
-) -> list[Statement]:
+) -> list[PrintedEntry]:
     """Return the entries of a file, which can be read; raises `ProblemErrors` with every one that cannot be.
 
     `signs` are those of the file's own symbols, of which conditions speak.
@@ -54,7 +54,7 @@ def statements(
     return found
 
 
-def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> Statement:
+def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> PrintedEntry:
     name = entry.get("convention", convention.name)
     known = {**conventions(), convention.name: convention} if name != convention.name else {name: convention}
     if name not in known:
@@ -66,7 +66,7 @@ def _statement(entry: Mapping[str, Any], place: str, convention: Convention, sig
         repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
         raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
     where, erratum = entry.get("where", ""), entry.get("erratum", "")
-    return Statement(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
+    return PrintedEntry(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
 
 
 def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, Where]:
