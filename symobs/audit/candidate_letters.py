@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Letters:
+class CandidateLetters:
     """The letters of an environment: no names of `fields` of an answer, nothing kept for ourselves.
 
     Where the sizes `fit` as printed, only letters of the same size may have been meant.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.audit import differences
-from symobs.audit.candidate_letters import Letters
+from symobs.audit.candidate_letters import CandidateLetters
 from symobs.audit.equations.evaluation import as_printed, holds, is_rounded, value_of
 from symobs.audit.equations.grammar import read_relation
 from symobs.audit.equations.letter_values import INSTANTS, values
@@ -250,7 +250,7 @@ class Desk:
     def _slip(self, left: Node, right: Node, environment: Environment, *, fit: bool = True) -> tuple[str, str] | None:
         fields = {name for result in self.results for name in result.fields if name[0].islower()}
         matrices = {f"{result.task}_matrix" for result in self.results}
-        alphabet = Letters(environment, frozenset(fields | matrices), fit=fit)
+        alphabet = CandidateLetters(environment, frozenset(fields | matrices), fit=fit)
         found = found_slip(left, right, self.patience.asks(self.true), alphabet)
         return None if found is None else (f"{found[0]} = {found[1]}", found[2])
 
