@@ -13,7 +13,7 @@ from symobs.audit.equations.evaluation import as_printed, holds, is_rounded, val
 from symobs.audit.equations.grammar import read_relation
 from symobs.audit.equations.letter_values import INSTANTS, values
 from symobs.audit.equations.matrix_functions import Misfit, Unknown
-from symobs.audit.equations.reading import Gap, Reading, Where, exceptions, text
+from symobs.audit.equations.reading import EquationConditions, Gap, Reading, exceptions, text
 from symobs.audit.equations.signals import signals
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
@@ -60,7 +60,7 @@ class Desk:
     notes: dict[str, None] = field(default_factory=dict)
     values: Mapping[str, Scalar | Matrix] = field(init=False)
     let: Mapping[str, Node] = field(init=False, default_factory=dict)
-    where: Where = field(init=False, default_factory=Where)
+    where: EquationConditions = field(init=False, default_factory=EquationConditions)
     environments: dict[object, Environment] = field(init=False, default_factory=dict)
     gaps: list[Gap] = field(init=False, default_factory=list)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.audit.equations.grammar import FUNCTIONS, read_relation
-from symobs.audit.equations.reading import Where
+from symobs.audit.equations.reading import EquationConditions
 from symobs.convention import Convention, conventions
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
@@ -31,7 +31,7 @@ class PrintedEntry:
     erratum: str
     convention: Convention
     relation: str = ""
-    condition: Where = field(default_factory=Where)
+    condition: EquationConditions = field(default_factory=EquationConditions)
     let: Mapping[str, str] = field(default_factory=dict)
     expect: Mapping[str, Any] = field(default_factory=dict)
 
@@ -69,10 +69,10 @@ def _statement(entry: Mapping[str, Any], place: str, convention: Convention, sig
     return PrintedEntry(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
 
 
-def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, Where]:
+def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, EquationConditions]:
     """Return an equation and the conditions that stand behind it: `rank(O) = 2 where c != 0`."""
     equation, found, condition = text.partition(_WHERE)
-    return equation, Where.of(condition, signs, place) if found else Where(signs=signs)
+    return equation, EquationConditions.of(condition, signs, place) if found else EquationConditions(signs=signs)
 
 
 def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:
