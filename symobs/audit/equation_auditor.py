@@ -49,7 +49,7 @@ class Verdict:
 
 
 @dataclass()
-class Desk:
+class EquationAuditor:
     """One convention's letters, and the equations found true so far, whose sides later ones may lack."""
 
     problem: Problem
