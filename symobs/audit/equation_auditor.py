@@ -29,7 +29,7 @@ from symobs.formula.term import Term
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.audit.slips import Patience
+    from symobs.audit.slips import SearchBudget
     from symobs.convention import Convention
     from symobs.problem import Problem
     from symobs.result import Result
@@ -55,7 +55,7 @@ class EquationAuditor:
     problem: Problem
     results: Sequence[Result]
     convention: Convention
-    patience: Patience
+    patience: SearchBudget
     known: list[Node] = field(default_factory=list)
     notes: dict[str, None] = field(default_factory=dict)
     values: Mapping[str, Scalar | Matrix] = field(init=False)

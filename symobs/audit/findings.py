@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.audit.equation_auditor import EquationAuditor
 from symobs.audit.printed_entries import PrintedEntry, statements
-from symobs.audit.slips import Patience
+from symobs.audit.slips import SearchBudget
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
 from symobs.result.in_convention import Viewed
@@ -56,7 +56,7 @@ def audit(problem: Problem) -> Audited:
     found: list[Finding] = []
     errors: list[SymobsError] = []
     desks: dict[str, EquationAuditor] = {}
-    patience = Patience()
+    patience = SearchBudget()
     for entry in entries:
         name = entry.convention.name
         desk = desks[name] = desks.get(name) or EquationAuditor(problem, results, entry.convention, patience)

@@ -51,7 +51,7 @@ class Alphabet(Protocol):
 
 
 @dataclass()
-class Patience:
+class SearchBudget:
     """How much may still be tried for the findings of a file."""
 
     left: int = _MOST_PARTS_OF_A_FILE
