@@ -23,7 +23,7 @@ from tests.support.tools.command_line import ROOT, SERVO, inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [
@@ -268,7 +268,7 @@ def test_what_would_build_too_much_is_refused(relation: str) -> None:
 
 
 def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPatch) -> None:
-    def lie(left: Node, _right: Node, *_: object) -> tuple[Node, Node, str]:
+    def lie(left: SyntaxNode, _right: SyntaxNode, *_: object) -> tuple[SyntaxNode, SyntaxNode, str]:
         return left, left.parts[0], "no reason"
 
     monkeypatch.setattr("symobs.audit.equation_auditor.found_slip", lie)
