@@ -14,7 +14,7 @@ from symobs.system.matrices import Matrices
 from symobs.system.reading import has_decimals, read_matrix, read_scalar
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
-from symobs.system.transfer_function_text import MOST_STATES, Written, read_transfer_function, realise
+from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFunction, read_transfer_function, realise
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -42,7 +42,7 @@ class StateSpace:
         dt: object = 0,
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
-        transfer_function: Written | None = None,
+        transfer_function: WrittenTransferFunction | None = None,
     ) -> None:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
