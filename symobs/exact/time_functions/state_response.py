@@ -50,7 +50,7 @@ def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: i
                 power = power * power
             if all(entry.rad() < _HALF for row in columns for entry in row[:count]):
                 return [[_nearest(entry) for entry in state] for state in islice(zip(*columns, strict=True), count)]
-    raise ArithmeticError("a course with too much to compute")
+    raise ArithmeticError("a response with too much to compute")
 
 
 def _rational(matrix: Matrix) -> fmpq_mat:

@@ -24,7 +24,7 @@ _SEGMENTS = 6
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
 
-#: What is written at a curve: its equation, or what it is the course of.
+#: What is written at a curve: its equation, or what it is the response of.
 Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 

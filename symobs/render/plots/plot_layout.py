@@ -56,7 +56,7 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
         case PoleMap():
             return _poles(picture, measure)
         case TimeResponse():
-            return _courses(picture, measure)
+            return _responses(picture, measure)
         case _:
             assert_never(picture)
 
@@ -268,26 +268,28 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
 
 
-# -- courses ----------------------------------------------------------------------------------------------------------
+# -- responses ----------------------------------------------------------------------------------------------------------
 
 
-def _courses(picture: TimeResponse, measure: Measure) -> Scene:
+def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     """Signals over time, each with its name beside it."""
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
-        tuple(replace(counted, horizontal=(0.0, len(course.heights) - 1.0)).lines(enumerate(course.heights)))
-        for course in picture.courses
+        tuple(replace(counted, horizontal=(0.0, len(response.heights) - 1.0)).lines(enumerate(response.heights)))
+        for response in picture.responses
     ]
     pale = tuple(_zero_lines(frame))
     every = tuple(line for parts in lines for line in parts)
-    names = {time_axis.name_of(course): parts for course, parts in zip(picture.courses, lines, strict=True)}
+    names = {time_axis.name_of(response): parts for response, parts in zip(picture.responses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
     axes, written = _axes(frame, (symbol(time_axis.axis_of(picture)),), measure)
-    styles = ["zero" if picture.discrete else time_axis.style_of(course) for course in picture.courses]
-    sampled = picture.courses if picture.discrete else ()
+    styles = ["zero" if picture.discrete else time_axis.style_of(response) for response in picture.responses]
+    sampled = picture.responses if picture.discrete else ()
     signs = tuple(
-        Sign(time_axis.sign_of(course), frame.at(*place)) for course in sampled for place in picture.points(course)
+        Sign(time_axis.sign_of(response), frame.at(*place))
+        for response in sampled
+        for place in picture.points(response)
     )
     strokes = [Stroke(line, style) for style, parts in zip(styles, lines, strict=True) for line in parts]
     texts = (*written, *labels)

@@ -62,7 +62,7 @@ from symobs.formula import (
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
 from tests.support.independent_algebra import series
 from tests.support.independent_algebra.plain import coefficients_at, multiply, transposed
-from tests.support.independent_algebra.responses import untrue_courses
+from tests.support.independent_algebra.responses import untrue_responses
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -413,8 +413,8 @@ class World:
                     yield from self.facts((fact,))
                 case Survey():
                     yield from self.survey(step)
-                case Plot(TimeResponse() as courses, subject):
-                    yield "=", Fraction(len(untrue_courses(courses, self.value(subject))))
+                case Plot(TimeResponse() as responses, subject):
+                    yield "=", Fraction(len(untrue_responses(responses, self.value(subject))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))

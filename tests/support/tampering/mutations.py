@@ -206,14 +206,14 @@ def _of_drawn(item: Curve | MarkedPoint | PoleMap) -> Iterator[Change]:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
 
 
-def _of_heights(course: Response) -> Iterator[Change]:
-    """Yield a course with one height changed by the least there is, which none may see, and by what can be seen."""
-    heights = course.heights
+def _of_heights(response: Response) -> Iterator[Change]:
+    """Yield a response with one height changed by the least there is, which none may see, and by what can be seen."""
+    heights = response.heights
     step = max(2, max(map(abs, heights)) // 20)
     for index, height in enumerate(heights):
         for by in (1, -step if height >= 0 else step):
             changed = (*heights[:index], height + by, *heights[index + 1 :])
-            yield Change(f".heights[{index}]{by:+}", "number", replace(course, heights=changed))
+            yield Change(f".heights[{index}]{by:+}", "number", replace(response, heights=changed))
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:
