@@ -25,7 +25,7 @@ from symobs.derivation.steps import (
 )
 from symobs.errors import SymobsWarning
 from symobs.exact import Matrix, Scalar, rounded
-from symobs.exact.kernel.generators import identities, known, roots_in
+from symobs.exact.kernel.generators import function_named, identities, roots_in
 from symobs.formula import (
     Conjunction,
     Decimals,
@@ -125,7 +125,7 @@ def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
     found: dict[str, None] = {}
     for value in values:
         for name in sorted(value.names):
-            function = known(name)
+            function = function_named(name)
             inner = roots_in(function.argument) if function and function.kind != "sqrt" else ()
             roots = [function] if function and function.kind == "sqrt" else inner
             found |= {root.name: None for root in roots if root.argument.numerator.size > 2}

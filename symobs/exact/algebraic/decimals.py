@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.enclosure import near, sign_of_number
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.exact.kernel.matrix import Matrix
 from symobs.exact.kernel.scalar import Scalar
 
@@ -75,7 +75,7 @@ def _number(value: Scalar) -> Fraction | None:
     """Return a rational number, or one that a real root without a closed form is nearly."""
     if value.is_constant:
         return value.fraction()
-    counted = any(f.kind == "CRootOf" for name in value.names if (f := known(name)) is not None)
+    counted = any(f.kind == "CRootOf" for name in value.names if (f := function_named(name)) is not None)
     return near(value) if counted else None
 
 

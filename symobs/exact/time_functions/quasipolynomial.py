@@ -15,7 +15,7 @@ from symobs.exact.kernel.generators import (
     ZERO,
     derivative,
     function,
-    known,
+    function_named,
     leads_with_minus,
     roots_in,
     tidy,
@@ -194,7 +194,9 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
     """Return (the part without square roots, the rest)."""
-    plain = rate.substitute({name: ZERO for name in rate.names if (f := known(name)) is not None and f.kind == "sqrt"})
+    plain = rate.substitute(
+        {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
+    )
     return plain, rate - plain
 
 
@@ -227,12 +229,12 @@ def _monomial_below(value: Scalar, time: str) -> list[tuple[str, int]]:
 
 
 def _moves(name: str, time: str) -> bool:
-    found = known(name)
+    found = function_named(name)
     return name == time or (found is not None and not derivative(found.argument, time).is_zero)
 
 
 def _inverse(name: str, time: str) -> Quasipolynomial:
-    found = known(name)
+    found = function_named(name)
     if found is None or found.kind != "exp":
         message = f"1/{name} is not a sum of exponentials, sines and cosines times powers of {time}"
         raise ValueError(message)
@@ -261,7 +263,7 @@ def _generator(name: str, time: str) -> Quasipolynomial:
         return Quasipolynomial({Key(1, ZERO, "", ZERO): ONE})
     if not _moves(name, time):
         return Quasipolynomial.constant(Scalar.symbol(name))
-    found = known(name)
+    found = function_named(name)
     assert found is not None  # noqa: S101 - only functions move
     speed = derivative(found.argument, time)
     if found.kind == "RootSum" or speed * Scalar.symbol(time) != found.argument or _depends(speed, time):

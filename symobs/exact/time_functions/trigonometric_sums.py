@@ -7,7 +7,7 @@ where c is a polynomial so is r: its coefficients follow from the highest down.
 
 from __future__ import annotations
 
-from symobs.exact.kernel.generators import ONE, ZERO, derivative, function, identities, known, symbols_in
+from symobs.exact.kernel.generators import ONE, ZERO, derivative, function, function_named, identities, symbols_in
 from symobs.exact.kernel.scalar import Scalar
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial
 
@@ -16,7 +16,7 @@ _WAVES = {"cos", "sin"}
 
 def moves(name: str, by: str) -> bool:
     """Whether a generator is a function of another one."""
-    found = known(name)
+    found = function_named(name)
     return found is not None and found.kind != "sqrt" and by in found.symbols
 
 
@@ -27,7 +27,7 @@ def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
     """
 
     def counts(name: str) -> bool:
-        found = known(name)
+        found = function_named(name)
         return moves(name, by) if by else found is not None and found.kind != "sqrt"
 
     meanings, _ = identities([value])
@@ -35,7 +35,7 @@ def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
     below, lowered = value.denominator, ZERO
     for name in value.denominator.names:
         if counts(name):
-            found, power = known(name), below.degree(name)
+            found, power = function_named(name), below.degree(name)
             below = below / Scalar.symbol(name) ** power
             if found is None or found.kind != "exp" or name in below.names:
                 return None
@@ -44,7 +44,7 @@ def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
     for coefficient, powers in value.numerator.terms():
         constant, exponent, waves = Scalar.of(coefficient) / below, lowered, Quasipolynomial.constant(ONE)
         for name, power in powers:
-            found = known(name)
+            found = function_named(name)
             if found is None or not counts(name):
                 constant = constant * Scalar.symbol(name) ** power
             elif found.kind == "exp":
@@ -69,7 +69,7 @@ def value_of(waves: Quasipolynomial) -> Scalar:
 
 def collected(value: Scalar) -> Scalar:
     """Return a value with one exponential and at most one cosine or sine in each term, where it can be so written."""
-    if not any(known(name) for name in value.names):
+    if not any(function_named(name) for name in value.names):
         return value
     waves = waves_of(value)
     return value if waves is None else value_of(waves)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, written
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -173,7 +173,7 @@ class Printer(FormulaWriter[B]):
         """An exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            function = known(next(iter(value.names))) if is_leaf(value) and value.names else None
+            function = function_named(next(iter(value.names))) if is_leaf(value) and value.names else None
             if function is not None:
                 box = self.function_of_time(function)
             else:

@@ -11,7 +11,7 @@ from math import gcd
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import known, square_root_of
+from symobs.exact.kernel.generators import function_named, square_root_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:
@@ -199,7 +199,7 @@ def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
 
 def _place(power: tuple[str, int]) -> tuple[int, str]:
     """Symbols by the alphabet, roots of numbers before them, the time and other roots behind."""
-    name, root = power[0], known(power[0])
+    name, root = power[0], function_named(power[0])
     if root is not None:
         return (0 if root.argument.is_constant else 2), name
     return (3 if name in {"t", "T"} else 1), name.lower()
@@ -207,7 +207,9 @@ def _place(power: tuple[str, int]) -> tuple[int, str]:
 
 def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, int]]:
     """Write √3 √5 as √15."""
-    roots = {name: f.argument for name, e in powers if e == 1 and (f := known(name)) and f.argument.is_constant}
+    roots = {
+        name: f.argument for name, e in powers if e == 1 and (f := function_named(name)) and f.argument.is_constant
+    }
     if len(roots) < 2:
         return powers
     together = square_root_of(roots.values())
@@ -301,5 +303,5 @@ def size(formula: Formula) -> float:
 
 def _size_of_symbol(value: Scalar) -> float:
     """A symbol, or a function with its argument."""
-    function = known(next(iter(value.names)))
+    function = function_named(next(iter(value.names)))
     return 1.0 if function is None else 1.0 + size(rational_formula(function.argument, ""))

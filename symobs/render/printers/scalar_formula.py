@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import function as function_of
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 from symobs.render.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
 
@@ -28,7 +28,7 @@ _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 
 def moves(name: str) -> bool:
     """Whether a generator is an exponential, a sine or a cosine."""
-    found = known(name)
+    found = function_named(name)
     return found is not None and found.kind not in {"sqrt", "CRootOf"}
 
 
@@ -105,7 +105,7 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
         fading: list[tuple[str, int]] = []
         turning: list[tuple[str, int]] = []
         for name, power in powers:
-            function = known(name)
+            function = function_named(name)
             if not moves(name):
                 rest = rest * Scalar.symbol(name) ** power
             else:
@@ -117,7 +117,7 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
 
 
 def _order(part: tuple[str, int]) -> tuple[int, str]:
-    function = known(part[0])
+    function = function_named(part[0])
     return (_RANK[function.kind] if function is not None else 0, part[0])
 
 
@@ -209,7 +209,7 @@ def _in_front(body: Formula, functions: Sequence[Formula]) -> Formula:
 
 def _power(name: str, exponent: int) -> Formula:
     """A power of a function; e^{x} to a power is one exponential again."""
-    function = known(name)
+    function = function_named(name)
     if function is not None and function.kind == "exp" and exponent != 1:
         return Literal(function_of("exp", function.argument * exponent))
     base = Literal(Scalar.symbol(name))

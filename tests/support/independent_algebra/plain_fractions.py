@@ -31,7 +31,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.kernel.generators import PI, known, symbols_in
+from symobs.exact.kernel.generators import PI, function_named, symbols_in
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.figures.plot import TimeResponse
@@ -231,7 +231,7 @@ class World:
 
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
-        function = known(name)
+        function = function_named(name)
         if regions.is_number(name):
             return regions.number_of(name)
         if isinstance(function, RootSum):
