@@ -9,7 +9,7 @@ from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
-from symobs.exact import Factored, Matrix, Scalar, places, root_of_pole
+from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
@@ -97,7 +97,7 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
 
 def _as_given(page: Page, matrix: Matrix) -> Term:
     """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
-    if page.plant.is_in_decimals and all(places(entry) is not None for entry in matrix.entries):
+    if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
         return page.term(Decimals(matrix))
     return page.value(matrix)
 
@@ -105,7 +105,7 @@ def _as_given(page: Page, matrix: Matrix) -> Term:
 def _say_decimals(page: Page) -> None:
     """Say which fractions the decimals of the data are, where they are few."""
     m, plant = page.plant.matrices, page.plant
-    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if places(entry)]
+    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if decimal_places(entry)]
     sizes = dict.fromkeys(-entry if entry.fraction() < 0 else entry for entry in entries)
     if plant.is_in_decimals and 0 < len(sizes) <= _DECIMALS:
         page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))

@@ -4,7 +4,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 """
 
 from symobs.exact.algebraic.complex import Complex
-from symobs.exact.algebraic.decimals import is_rounding, places, rounded, written
+from symobs.exact.algebraic.decimals import decimal_places, is_rounding, rounded, written
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
@@ -41,8 +41,8 @@ __all__ = [
     "EIGENVALUE",
     "RATIONALS",
     "VARIABLES",
-    "Complex",
     "AlgebraicExtension",
+    "Complex",
     "Factored",
     "Field",
     "Ideal",
@@ -57,6 +57,7 @@ __all__ = [
     "apply_polynomial",
     "companion",
     "controller",
+    "decimal_places",
     "derivative",
     "echelon",
     "exponential_of_integral",
@@ -68,7 +69,6 @@ __all__ = [
     "kernel",
     "matrix_of_numbers",
     "modulo",
-    "places",
     "pole_and_zero_polynomial",
     "product_of",
     "rank",

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from symobs import StateSpace, observer, reduced_order_observer
 from symobs.derivation import Derivation, Equal
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, is_rounding, places, rounded, written
+from symobs.exact import Matrix, Scalar, decimal_places, is_rounding, rounded, written
 from symobs.formula import Decimals, Environment, Letter, Literal, Relation
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
@@ -60,7 +60,7 @@ def test_decimals_are_left_out_where_they_help_nobody() -> None:
     assert rounded(Matrix.row([Scalar.of(Fraction(16, 5)), Scalar.of(-1)])) is None
     assert rounded(Scalar.symbol("omega")) is None
     assert rounded(scalar("200000001/100000000")) is None  # it would read as 2, exactly
-    assert places(scalar("1/3")) is None
+    assert decimal_places(scalar("1/3")) is None
 
 
 def test_numbers_are_written_with_their_point() -> None:

@@ -19,7 +19,7 @@ _MOST_PLACES = 12
 _HARD_TO_READ = 10
 
 
-def places(value: Scalar) -> int | None:
+def decimal_places(value: Scalar) -> int | None:
     """Return how many places after the point a number has, None where it is none or does not end so soon."""
     if not value.is_constant:
         return None
@@ -29,7 +29,7 @@ def places(value: Scalar) -> int | None:
 
 def written(value: Scalar) -> str:
     """Return the digits of a decimal, without its sign: 0.3676, 60.  Raises `ValueError` where it does not end."""
-    count = places(value)
+    count = decimal_places(value)
     if count is None:
         message = f"{value} is not a decimal of at most {_MOST_PLACES} places"
         raise ValueError(message)
@@ -39,7 +39,7 @@ def written(value: Scalar) -> str:
 
 def is_rounding(exact: Scalar, shown: Scalar) -> bool:
     """Tell whether a decimal is off by at most half a unit of its last place; without a point it must be exact."""
-    count = places(shown)
+    count = decimal_places(shown)
     if count is None:
         return False
     if not exact.is_constant:
