@@ -4,7 +4,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 """
 
 from symobs.exact.algebraic.complex import Complex
-from symobs.exact.algebraic.decimals import decimal_places, is_rounding, rounded, written
+from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_rounding, rounded
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
@@ -57,6 +57,7 @@ __all__ = [
     "apply_polynomial",
     "companion",
     "controller",
+    "decimal_digits",
     "decimal_places",
     "derivative",
     "echelon",
@@ -83,5 +84,4 @@ __all__ = [
     "transfer",
     "transfer_matrix",
     "unit_rows",
-    "written",
 ]

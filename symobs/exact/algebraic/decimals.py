@@ -27,7 +27,7 @@ def decimal_places(value: Scalar) -> int | None:
     return next((count for count in range(_MOST_PLACES + 1) if 10**count % below == 0), None)
 
 
-def written(value: Scalar) -> str:
+def decimal_digits(value: Scalar) -> str:
     """Return the digits of a decimal, without its sign: 0.3676, 60.  Raises `ValueError` where it does not end."""
     count = decimal_places(value)
     if count is None:

@@ -10,7 +10,7 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar, written
+from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.kernel.generators import function_named
 from symobs.exact.time_functions.root_sum import RootSum
@@ -183,7 +183,7 @@ class Printer(FormulaWriter[B]):
 
     def decimals(self, value: Scalar) -> B:
         """A number with its digits after the point."""
-        box = self.digits(written(value))
+        box = self.digits(decimal_digits(value))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
 
