@@ -16,7 +16,7 @@ from symobs.errors import WrongKind
 from symobs.exact.kernel.canonical_text import scalar_text
 from symobs.exact.kernel.field import RATIONALS, Field
 from symobs.exact.kernel.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
-from symobs.exact.kernel.univariate import by_powers
+from symobs.exact.kernel.univariate import coefficients_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -276,7 +276,7 @@ class Scalar:
         index = self.field.position.get(variable)
         if index is None or self.degree(variable) <= 0:
             return (self.within(target),)
-        parts = by_powers(self.numerator_part, index, self.field, target)
+        parts = coefficients_in(self.numerator_part, index, self.field, target)
         below = target.lift(self.denominator_part, self.field)
         return tuple(Scalar.reduced(target, part, below) for part in parts)
 
