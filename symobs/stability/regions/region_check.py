@@ -16,7 +16,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import integer_factor
-from symobs.exact.algebraic.root_location import sides
+from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
 from symobs.exact.kernel.generators import substitute, tidy
 from symobs.stability.criteria.critical_polynomials import irreducible
@@ -99,7 +99,7 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
         factors = [integer_factor(f, region.name) for f in (*region.critical.factors, *further)]
         whole = is_line(region.divided(further), factors)
     return whole and all(
-        sample.stable == (sides(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
+        sample.stable == (count_roots_by_half_plane(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
         for sample in region.samples(further)
     )
 
