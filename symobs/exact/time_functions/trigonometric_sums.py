@@ -20,7 +20,7 @@ def moves(name: str, by: str) -> bool:
     return found is not None and found.kind != "sqrt" and by in found.symbols
 
 
-def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
+def to_quasipolynomial(value: Scalar, by: str = "") -> Quasipolynomial | None:
     """Return a value as a sum of functions of the generator `by`, of all generators where none is named.
 
     None where a denominator, or something that is no exponential, cosine or sine, stands in the way.
@@ -71,7 +71,7 @@ def collected(value: Scalar) -> Scalar:
     """Return a value with one exponential and at most one cosine or sine in each term, where it can be so written."""
     if not any(function_named(name) for name in value.names):
         return value
-    waves = waves_of(value)
+    waves = to_quasipolynomial(value)
     return value if waves is None else value_of(waves)
 
 
@@ -80,7 +80,7 @@ def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] |
 
     None where a term has no elementary antiderivative, or is not treated here: exponents and coefficients are polynomials.
     """
-    waves = waves_of(value, name)
+    waves = to_quasipolynomial(value, name)
     if waves is None:
         return None
     groups: dict[tuple[Scalar, Scalar], dict[str, Scalar]] = {}
