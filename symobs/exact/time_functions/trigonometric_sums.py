@@ -14,7 +14,7 @@ from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial
 _WAVES = {"cos", "sin"}
 
 
-def moves(name: str, by: str) -> bool:
+def depends_on_time(name: str, by: str) -> bool:
     """Whether a generator is a function of another one."""
     found = function_named(name)
     return found is not None and found.kind != "sqrt" and by in found.symbols
@@ -28,7 +28,7 @@ def to_quasipolynomial(value: Scalar, by: str = "") -> Quasipolynomial | None:
 
     def counts(name: str) -> bool:
         found = function_named(name)
-        return moves(name, by) if by else found is not None and found.kind != "sqrt"
+        return depends_on_time(name, by) if by else found is not None and found.kind != "sqrt"
 
     meanings, _ = identities([value])
     value = value.substitute(meanings)
