@@ -53,9 +53,9 @@ def _plot(
     if page.plant.is_discrete:
         _plot_samples(page, states, matrix, signals, say)
         return
-    from symobs.exact.time_functions.state_response import rates, response  # noqa: PLC0415 - only pages with responses pay for it
+    from symobs.exact.time_functions.state_response import response, spectral_abscissae  # noqa: PLC0415 - only pages with responses pay for it
 
-    slowest, fastest = rates(value)
+    slowest, fastest = spectral_abscissae(value)
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)

@@ -20,7 +20,7 @@ _BITS = (128, 256, 512, 1024, 2048, 4096)
 _HALF = arb(0.5)
 
 
-def rates(matrix: Matrix) -> tuple[float, float]:
+def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
     """Return the largest and the smallest real part among the eigenvalues of a matrix of numbers, nearly."""
     roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
     real = [float(root.real.mid()) for root, _ in roots]

@@ -15,7 +15,7 @@ import symobs
 from symobs.derivation import Derivation, Plot, Section
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.time_functions.state_response import rates, response
+from symobs.exact.time_functions.state_response import response, spectral_abscissae
 from symobs.figures.plot import TimeResponse
 from symobs.formula import Exact, Literal, evaluate
 from symobs.render.plots.svg import svg, svg_scene
@@ -207,8 +207,8 @@ def test_enclosures_are_rounded_to_the_nearest_part() -> None:
 
 
 def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
-    assert rates(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
-    assert rates(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
+    assert spectral_abscissae(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
+    assert spectral_abscissae(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
 
 
 def test_what_takes_too_many_bits_is_not_drawn() -> None:
