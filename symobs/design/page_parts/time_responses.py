@@ -75,9 +75,9 @@ def _plot_samples(
     page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
 ) -> None:
     """Plot the exact values at 0, 1, 2, …, until they are small, unless that takes too many."""
-    from symobs.exact.time_functions.state_response import radius  # noqa: PLC0415 - only pages with responses pay for it
+    from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - only pages with responses pay for it
 
-    largest, size = radius(matrix.value), matrix.value.shape[0]
+    largest, size = spectral_radius(matrix.value), matrix.value.shape[0]
     last = size + 1 if largest < _DEAD else ceil(_TIMES / -log(largest)) if largest < 1 else _SAMPLES + 1
     if last > _SAMPLES:
         return

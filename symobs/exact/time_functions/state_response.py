@@ -27,7 +27,7 @@ def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
     return max(real), min(real)
 
 
-def radius(matrix: Matrix) -> float:
+def spectral_radius(matrix: Matrix) -> float:
     """Return the largest absolute value among the eigenvalues of a matrix of numbers, nearly."""
     roots: Any = _rational(matrix).charpoly().complex_roots()
     return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
