@@ -53,14 +53,14 @@ def _plot(
     if page.plant.is_discrete:
         _plot_samples(page, states, matrix, signals, say)
         return
-    from symobs.exact.time_functions.state_response import response, spectral_abscissae  # noqa: PLC0415 - only pages with responses pay for it
+    from symobs.exact.time_functions.state_response import spectral_abscissae, state_response  # noqa: PLC0415 - only pages with responses pay for it
 
     slowest, fastest = spectral_abscissae(value)
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)
     try:
-        states_there = response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
+        states_there = state_response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
     except ArithmeticError:
         return
     made = tuple(

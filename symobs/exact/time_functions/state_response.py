@@ -33,7 +33,9 @@ def spectral_radius(matrix: Matrix) -> float:
     return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
 
 
-def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
+def state_response(
+    matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int
+) -> list[list[int]]:
     """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
 
     The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again: an enclosure goes through few products.

@@ -15,7 +15,7 @@ import symobs
 from symobs.derivation import Derivation, Plot, Section
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.time_functions.state_response import response, spectral_abscissae
+from symobs.exact.time_functions.state_response import spectral_abscissae, state_response
 from symobs.figures.plot import TimeResponse
 from symobs.formula import Exact, Literal, evaluate
 from symobs.render.plots.svg import svg, svg_scene
@@ -201,7 +201,7 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 
 def test_enclosures_are_rounded_to_the_nearest_part() -> None:
     spin = Matrix.of([[0, 1], [-1, 0]])
-    found = response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
+    found = state_response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
     assert len(found) == 7
     assert [found[k] for k in (0, 1, 6)] == [[0, 10**9], [479425539, 877582562], [141120008, -989992497]]
 
@@ -213,7 +213,7 @@ def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
 
 def test_what_takes_too_many_bits_is_not_drawn() -> None:
     with pytest.raises(ArithmeticError):
-        response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
+        state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
     steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
     assert plots(symobs.observer(steep, L=[[0], [0]])) == []
 
@@ -221,7 +221,7 @@ def test_what_takes_too_many_bits_is_not_drawn() -> None:
 def test_errors_that_grow_on_the_way_are_not_seen() -> None:
     """A matrix whose powers are far larger than its exponential: (M + I)² = 0 with entries of a thousand."""
     shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
-    found = response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
+    found = state_response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
     for k in (100, 300, 600):
         decay = exp(-k / 100) * 10**6
         assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
@@ -249,7 +249,7 @@ def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     ones, step = (Fraction(1),) * 6, Fraction(1, 100)
     monkeypatch.setattr(writer, "_BITS", (128,))
     monkeypatch.setattr(trusted, "_KEPT", (256,))
-    found = response(loop, ones, step, 801, 10**6)
+    found = state_response(loop, ones, step, 801, 10**6)
     again = trusted._stepped(loop, ones, step, 801)
     with mpmath.workdps(60):
         table = mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in numbers(loop)])
