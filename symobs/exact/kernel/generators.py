@@ -193,7 +193,7 @@ def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
     return frozenset(f for f in found if f.kind == "sqrt") | inner
 
 
-def tidy(value: Scalar) -> Scalar:
+def normal_form(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
         above = _split(value.numerator, root)

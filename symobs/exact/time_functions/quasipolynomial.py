@@ -1,7 +1,7 @@
 """Quasipolynomials: sums of c · tⁿ e^{αt}, c · tⁿ e^{αt} cos βt and c · tⁿ e^{αt} sin βt with constants c, α, β.
 
 These functions are linearly independent, so a sum has one form: two are equal where their coefficients are.  Sums are
-closed under products, derivatives and integrals.  Constants are scalars, with square roots in normal form (`tidy`).
+closed under products, derivatives and integrals.  Constants are scalars, with square roots in normal form (`normal_form`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from symobs.exact.kernel.generators import (
     function,
     function_named,
     leads_with_minus,
+    normal_form,
     roots_in,
-    tidy,
     with_roots,
 )
 from symobs.exact.kernel.matrix import Matrix
@@ -51,7 +51,7 @@ class Quasipolynomial:
         total: dict[Key, Scalar] = {}
         for key, coefficient in terms:
             total[key] = total[key] + coefficient if key in total else coefficient
-        tidied = {key: tidy(coefficient) for key, coefficient in total.items()}
+        tidied = {key: normal_form(coefficient) for key, coefficient in total.items()}
         return Quasipolynomial({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
 
     @staticmethod
@@ -91,7 +91,7 @@ class Quasipolynomial:
         for key, coefficient in self.terms.items():
             if key.power == 0 and key.wave != "sin":
                 total = total + coefficient
-        return tidy(total)
+        return normal_form(total)
 
     def derivative(self) -> Quasipolynomial:
         """Return d/dt."""
@@ -127,7 +127,7 @@ class Quasipolynomial:
         parts = [part for key, c in self.terms.items() for part in (key.rate, key.frequency, c)]
         roots = dict.fromkeys(root for part in parts for root in roots_in(part))
         for key, coefficient in _hyperbolic(self.terms):
-            value = with_roots(tidy(coefficient), roots) * time**key.power * function("exp", key.rate * time)
+            value = with_roots(normal_form(coefficient), roots) * time**key.power * function("exp", key.rate * time)
             total = total + (value * function(key.wave, key.frequency * time) if key.wave else value)
         return total
 
@@ -143,12 +143,12 @@ def _key(power: int, rate: Scalar, wave: str, frequency: Scalar, c: Scalar) -> l
 
 def _times(a: Key, b: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
     """Return a product of two functions: of two waves those of sum and difference."""
-    power, rate = a.power + b.power, tidy(a.rate + b.rate)
+    power, rate = a.power + b.power, normal_form(a.rate + b.rate)
     if not a.wave or not b.wave:
         return [(Key(power, rate, a.wave or b.wave, a.frequency + b.frequency), c)]
     if a.wave == "cos" and b.wave == "sin":
         a, b = b, a
-    both, apart = tidy(a.frequency + b.frequency), tidy(a.frequency - b.frequency)
+    both, apart = normal_form(a.frequency + b.frequency), normal_form(a.frequency - b.frequency)
     half = c * _HALF
     if a.wave == "sin" and b.wave == "sin":
         return [*_key(power, rate, "cos", apart, half), *_key(power, rate, "cos", both, -half)]
@@ -162,13 +162,13 @@ def _primitive(key: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
         return [(key._replace(power=power + 1), c / (power + 1))]
     if not key.wave:
         lower = _primitive(key._replace(power=power - 1), -(c * power) / a) if power else []
-        return [(key, tidy(c / a)), *lower]
-    size = tidy(a * a + b * b)
+        return [(key, normal_form(c / a)), *lower]
+    size = normal_form(a * a + b * b)
     p, q = (c, ZERO) if key.wave == "cos" else (ZERO, c)
     found: list[tuple[Key, Scalar]] = []
     for wave, part in (("cos", (a * p - b * q) / size), ("sin", (b * p + a * q) / size)):
         if not part.is_zero:
-            found.append((key._replace(wave=wave), tidy(part)))
+            found.append((key._replace(wave=wave), normal_form(part)))
             found += _primitive(key._replace(wave=wave, power=power - 1), -part * power) if power else []
     return found
 
@@ -189,7 +189,7 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
         for wave, part in (("cosh", c), ("sinh", -c if turned else c)):
             place = Key(key.power, middle, wave, offset)
             found[place] = found.get(place, ZERO) + part
-    return [(key, c) for key, c in found.items() if not tidy(c).is_zero]
+    return [(key, c) for key, c in found.items() if not normal_form(c).is_zero]
 
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:

@@ -18,7 +18,7 @@ from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import integer_factor
 from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
-from symobs.exact.kernel.generators import substitute, tidy
+from symobs.exact.kernel.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.description import is_regular, meetings_of
 from symobs.stability.regions.plane_region import PlaneRegion
@@ -145,7 +145,7 @@ def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
 def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
     """Tell whether a closed form solves its polynomial, and at the slab's point lies between the samples around it."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
-    left = tidy(edge.polynomial.substitute({names[1]: edge.closed}))
+    left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))
     at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
     low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
     return (

@@ -18,7 +18,7 @@ from symobs import problem
 from symobs.derivation import Case, Section
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative, function, identities, square_root, substitute, tidy
+from symobs.exact.kernel.generators import derivative, function, identities, normal_form, square_root, substitute
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.result.conversions import to_sympy
 from tests.support.paths import ROOT
@@ -493,8 +493,8 @@ def test_generators_know_each_other() -> None:
     assert all(abs(sympy.N(to_sympy(r, {}).subs(numbers), 30)) < 1e-20 for r in relations)
     assert substitute(values[0], {"t": Scalar.of(0)}).is_one
     root = square_root(Scalar.of(12))
-    assert tidy(root * root) == Scalar.of(12)
-    assert tidy(1 / (root + 1)) * 11 == tidy(root - 1)
+    assert normal_form(root * root) == Scalar.of(12)
+    assert normal_form(1 / (root + 1)) * 11 == normal_form(root - 1)
 
 
 # -- lengths -------------------------------------------------------------------------------------------------------------
