@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.audit.equation_auditor import EquationAuditor
-from symobs.audit.printed_entries import PrintedEntry, statements
+from symobs.audit.printed_entries import PrintedEntry, printed_entries
 from symobs.audit.slips import SearchBudget
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
@@ -51,7 +51,7 @@ def audit(problem: Problem) -> Audited:
 
     Raises `ProblemErrors` with every entry that cannot be read.
     """
-    entries = statements(problem.printed, problem.convention, problem.plant.symbols.signs)
+    entries = printed_entries(problem.printed, problem.convention, problem.plant.symbols.signs)
     results = problem.solve()
     found: list[Finding] = []
     errors: list[SymobsError] = []

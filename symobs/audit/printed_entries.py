@@ -36,7 +36,7 @@ class PrintedEntry:
     expect: Mapping[str, Any] = field(default_factory=dict)
 
 
-def statements(
+def printed_entries(
     entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
 ) -> list[PrintedEntry]:
     """Return the entries of a file, which can be read; raises `ProblemErrors` with every one that cannot be.
