@@ -26,7 +26,7 @@ Part = tuple[tuple[str, int], ...]
 _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 
 
-def moves(name: str) -> bool:
+def is_time_function(name: str) -> bool:
     """Whether a generator is an exponential, a sine or a cosine."""
     found = function_named(name)
     return found is not None and found.kind not in {"sqrt", "CRootOf"}
@@ -35,7 +35,7 @@ def moves(name: str) -> bool:
 @lru_cache(maxsize=4096)
 def formula_of(value: Scalar, variable: str) -> Formula:
     """Return the formula of a scalar, collected in the powers of `variable`."""
-    if not is_leaf(value) and any(moves(name) for name in value.names):
+    if not is_leaf(value) and any(is_time_function(name) for name in value.names):
         return _time_function(value)
     return rational_formula(value, variable)
 
@@ -69,7 +69,7 @@ def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
 def _time_function(value: Scalar) -> Formula:
     """Return the formula of a value that contains functions of time."""
     below = value.denominator
-    if any(moves(name) for name in below.names):
+    if any(is_time_function(name) for name in below.names):
         above = value.numerator
         negative = above.terms()[0][0] < 0 and len(above.terms()) == 1
         top = formula_of(-above if negative else above, "")
@@ -106,7 +106,7 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
         turning: list[tuple[str, int]] = []
         for name, power in powers:
             function = function_named(name)
-            if not moves(name):
+            if not is_time_function(name):
                 rest = rest * Scalar.symbol(name) ** power
             else:
                 (fading if function is not None and function.kind == "exp" else turning).append((name, power))
