@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.kernel.generators import PI, known
+from symobs.exact.kernel.generators import PI, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -83,7 +83,7 @@ def _power_sign(sign: str, exponent: int) -> str:
 
 def _sign_of_undeclared(name: str) -> str:
     """Return the sign of a generator that is no parameter: of π, and of the square root of a number."""
-    found = known(name)
+    found = function_named(name)
     if found is None:
         return "positive" if name == PI else "real"
     return "positive" if found.kind == "sqrt" and sign_of_number(found.argument) == "positive" else "real"

@@ -8,7 +8,7 @@ from symobs.analysis.factored_form import factored_form
 from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import predicate, relation
 from symobs.exact import roots_of
-from symobs.formula import Exactly, Roots
+from symobs.formula import HoldsExactlyWhere, Roots
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -52,5 +52,5 @@ def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:
         page.caution(f"lowest_terms_unstable_{time}", predicate("unstable", c), *facts, poles=poles)
     else:
         solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
-        where = Exactly(predicate("stable", c), tuple(relation(*parts) for parts in solved))
+        where = HoldsExactlyWhere(predicate("stable", c), tuple(relation(*parts) for parts in solved))
         page.caution("lowest_terms_where", *facts, poles=poles, where=where)

@@ -1,4 +1,4 @@
-"""TODO symobs/analysis/factored_form.py."""
+"""Rational functions as products of powers of their irreducible factors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO symobs/analysis/page_parts.py."""
+"""Parts shared by the pages of analysis and design: the given data, cases, factored forms and stability."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
-from symobs.exact import Factored, Matrix, Scalar, places, root_of_pole
-from symobs.formula import Decimals, Exactly, Roots, Together
+from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
+from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -97,7 +97,7 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
 
 def _as_given(page: Page, matrix: Matrix) -> Term:
     """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
-    if page.plant.is_in_decimals and all(places(entry) is not None for entry in matrix.entries):
+    if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
         return page.term(Decimals(matrix))
     return page.value(matrix)
 
@@ -105,10 +105,10 @@ def _as_given(page: Page, matrix: Matrix) -> Term:
 def _say_decimals(page: Page) -> None:
     """Say which fractions the decimals of the data are, where they are few."""
     m, plant = page.plant.matrices, page.plant
-    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if places(entry)]
+    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if decimal_places(entry)]
     sizes = dict.fromkeys(-entry if entry.fraction() < 0 else entry for entry in entries)
     if plant.is_in_decimals and 0 < len(sizes) <= _DECIMALS:
-        page.remark("exact_decimals", numbers=Together(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
+        page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
 def _hold_to_letters(page: Page) -> None:
@@ -146,7 +146,7 @@ def state_signs(page: Page) -> None:
     facts = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}
     declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
     if declared:
-        page.conclude("declared", signs=Together(tuple(declared)))
+        page.conclude("declared", signs=Conjunction(tuple(declared)))
 
 
 def is_narrow(*matrices: Matrix) -> bool:
@@ -162,13 +162,13 @@ def determinant_form(page: Page, value: Scalar) -> Term:
     return page.term(formula_of_factored(Factored(unit, factors)))
 
 
-def conditions_of(case: Case) -> Relation | Together:
+def conditions_of(case: Case) -> Relation | Conjunction:
     """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
     relations = tuple(as_written(condition) for condition in case.when)
-    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Together(relations)
+    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Conjunction(relations)
 
 
-def stratum_of(case: Case) -> Relation | Together:
+def stratum_of(case: Case) -> Relation | Conjunction:
     """Return what a case says of the parameters: a single equation as p = 0."""
     return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
 
@@ -231,4 +231,4 @@ def say_stability(page: Page, about: Term) -> None:
     else:
         inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
         where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-        page.conclude(f"stable_if_{time}", where=Exactly(predicate("stable", about), where))
+        page.conclude(f"stable_if_{time}", where=HoldsExactlyWhere(predicate("stable", about), where))

@@ -13,7 +13,7 @@ from symobs.audit.equations.reading import Reading
 from symobs.audit.equations.sizes import Flexible, is_signal, shape
 from symobs.exact import Matrix
 from symobs.exact.algebraic.rounded_decimals import decimals_in
-from symobs.expression.syntax_tree import Node
+from symobs.expression.syntax_tree import SyntaxNode
 
 if TYPE_CHECKING:
     from symobs.formula import Environment
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Letters:
+class CandidateLetters:
     """The letters of an environment: no names of `fields` of an answer, nothing kept for ourselves.
 
     Where the sizes `fit` as printed, only letters of the same size may have been meant.
@@ -47,7 +47,7 @@ class Letters:
         """Whether a letter is a signal."""
         return name in self.environment.signals
 
-    def rounded(self, block: Node) -> str | None:
+    def rounded(self, block: SyntaxNode) -> str | None:
         """Return the letter whose value a bracket of decimals is, rounded."""
         printed = as_printed(block, Reading(self.environment))
         if not isinstance(printed, Matrix) or not decimals_in(printed):
@@ -59,7 +59,7 @@ class Letters:
     def _kind(self, name: str) -> Kind:
         """Return whether a letter is a signal, and its size; numbers and 1x1 matrices are one kind."""
         try:
-            found = value_of(Node("letter", text=name), Reading(self.environment))
+            found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
         except (Misfit, Unknown):
             return None
         if isinstance(found, Flexible):

@@ -13,14 +13,14 @@ from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, writ
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exact.algebraic.rounded_decimals import Decimal
+    from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 
 _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
 
 
 @dataclass(frozen=True)
-class Entry:
+class EntryDifference:
     """One entry of a printed value, and the right one."""
 
     place: str
@@ -38,7 +38,7 @@ def as_matrix(value: Scalar | Matrix) -> Matrix:
     return value if isinstance(value, Matrix) else Matrix.of([[value]])
 
 
-def single(printed: Scalar) -> Decimal | None:
+def single(printed: Scalar) -> PrintedDecimal | None:
     """Return the decimal that a printed value is, with its sign; None for any other value."""
     decimals = decimals_in(printed)
     if len(decimals) != 1:
@@ -48,7 +48,7 @@ def single(printed: Scalar) -> Decimal | None:
     return decimal if printed == generator else -decimal if printed == -generator else None
 
 
-def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[Entry]:
+def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[EntryDifference]:
     """Return the entries in which a printed matrix differs; its decimals are generators and may be rounded."""
     places = [(i, j) for i in range(right.shape[0]) for j in range(right.shape[1])]
     return [
@@ -58,15 +58,15 @@ def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -
     ]
 
 
-def entry(place: str, printed: Scalar, right: Scalar) -> Entry:
+def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
     """Return what is to be said of a wrong value."""
     decimal, plain = single(printed), written_out(printed)
     if decimal is None or not right.is_constant:
-        return Entry(place, text(plain), text(right), slip(plain, right))
+        return EntryDifference(place, text(plain), text(right), slip(plain, right))
     exact = right.fraction()
     sign, size = "-" if decimal.units < 0 else "", -decimal if decimal.units < 0 else decimal
     because = decimal.slip(exact) or slip(plain, right)
-    return Entry(place, f"{sign}{size.rounded(size.units * size.unit)}", decimal.rounded(exact), because)
+    return EntryDifference(place, f"{sign}{size.rounded(size.units * size.unit)}", decimal.rounded(exact), because)
 
 
 def slip(printed: Scalar, right: Scalar) -> str:
@@ -103,7 +103,7 @@ def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
     return f"{factor}; {listed(entries)}" if factor and len(entries) <= _MOST_LISTED else factor or listed(entries)
 
 
-def listed(entries: Sequence[Entry]) -> str:
+def listed(entries: Sequence[EntryDifference]) -> str:
     """Return the wrong entries as one text."""
     more = [f"and {len(entries) - _MOST_LISTED} more entries"] if len(entries) > _MOST_LISTED else []
     return "; ".join([*map(str, entries[:_MOST_LISTED]), *more])

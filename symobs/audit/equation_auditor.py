@@ -8,28 +8,28 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.audit import differences
-from symobs.audit.candidate_letters import Letters
+from symobs.audit.candidate_letters import CandidateLetters
 from symobs.audit.equations.evaluation import as_printed, holds, is_rounded, value_of
 from symobs.audit.equations.grammar import read_relation
 from symobs.audit.equations.letter_values import INSTANTS, values
 from symobs.audit.equations.matrix_functions import Misfit, Unknown
-from symobs.audit.equations.reading import Gap, Reading, Where, exceptions, text
+from symobs.audit.equations.reading import EquationConditions, Gap, Reading, exceptions, text
 from symobs.audit.equations.signals import signals
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
-from symobs.audit.printed_entries import Statement, parted
+from symobs.audit.printed_entries import PrintedEntry, parted
 from symobs.audit.slips import found_slip
 from symobs.conditions import vanishing_factors
 from symobs.errors import BudgetExceeded, CertificateRejected, UnknownName
 from symobs.exact import Matrix, Scalar
-from symobs.expression.syntax_tree import Node, letters_of
+from symobs.expression.syntax_tree import SyntaxNode, letters_of
 from symobs.formula import Environment, Signal
 from symobs.formula.term import Term
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.audit.slips import Patience
+    from symobs.audit.slips import SearchBudget
     from symobs.convention import Convention
     from symobs.problem import Problem
     from symobs.result import Result
@@ -49,18 +49,18 @@ class Verdict:
 
 
 @dataclass()
-class Desk:
+class EquationAuditor:
     """One convention's letters, and the equations found true so far, whose sides later ones may lack."""
 
     problem: Problem
     results: Sequence[Result]
     convention: Convention
-    patience: Patience
-    known: list[Node] = field(default_factory=list)
+    patience: SearchBudget
+    known: list[SyntaxNode] = field(default_factory=list)
     notes: dict[str, None] = field(default_factory=dict)
     values: Mapping[str, Scalar | Matrix] = field(init=False)
-    let: Mapping[str, Node] = field(init=False, default_factory=dict)
-    where: Where = field(init=False, default_factory=Where)
+    let: Mapping[str, SyntaxNode] = field(init=False, default_factory=dict)
+    where: EquationConditions = field(init=False, default_factory=EquationConditions)
     environments: dict[object, Environment] = field(init=False, default_factory=dict)
     gaps: list[Gap] = field(init=False, default_factory=list)
 
@@ -72,7 +72,7 @@ class Desk:
         """The file's own symbols and their signs; they shadow every other meaning of a letter."""
         return self.problem.plant.symbols.signs
 
-    def read(self, entry: Statement) -> Iterator[tuple[str, Verdict]]:
+    def read(self, entry: PrintedEntry) -> Iterator[tuple[str, Verdict]]:
         """Yield the equations of an entry that are not plainly true."""
         self.environments, self.gaps, self.where = {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
@@ -85,7 +85,7 @@ class Desk:
                     verdict = replace(verdict, right=self._confirmed(verdict.right))
                 yield self._under(f"{left} = {right}"), verdict
 
-    def _members(self, equation: str) -> tuple[Node, ...]:
+    def _members(self, equation: str) -> tuple[SyntaxNode, ...]:
         """Return the members of an equation; letters whose value depends on the variable may have an argument."""
         variable = self.problem.plant.variable
         functions = {name for name, value in self.values.items() if variable in value.names}
@@ -121,7 +121,7 @@ class Desk:
 
     # -- one equation -------------------------------------------------------------------------------------------------
 
-    def environment(self, left: Node, right: Node) -> Environment:
+    def environment(self, left: SyntaxNode, right: SyntaxNode) -> Environment:
         """Return what the letters mean in an equation: signals depend on which of them it speaks of."""
         inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
         own = frozenset(self.symbols)
@@ -142,23 +142,23 @@ class Desk:
                 note = f"{name} is the file's own symbol wherever it is printed, not the {name} of the convention "
                 self.notes[note + self.convention.name] = None
 
-    def reading(self, left: Node, right: Node, turned: Sequence[Scalar] = ()) -> Reading:
+    def reading(self, left: SyntaxNode, right: SyntaxNode, turned: Sequence[Scalar] = ()) -> Reading:
         """Return a reading of an equation."""
         reading = Reading(self.environment(left, right), self.where, turned=frozenset(turned))
         reading.gaps += self.gaps
         return reading
 
-    def true(self, left: Node, right: Node) -> bool:
+    def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
         """Tell whether an equation holds in general."""
         return self._true(left, right, self.reading(left, right))
 
-    def _true(self, left: Node, right: Node, reading: Reading) -> bool:
+    def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
             return holds(*spectral(left, right, self.problem.plant.variable), reading)
         except Misfit:
             return False
 
-    def _checked(self, printed_left: Node, printed_right: Node) -> Verdict | None:
+    def _checked(self, printed_left: SyntaxNode, printed_right: SyntaxNode) -> Verdict | None:
         """Return what is right in place of an equation that is not plainly true, None of a true one."""
         reading = self.reading(printed_left, printed_right)
         environment = reading.environment
@@ -184,7 +184,7 @@ class Desk:
             return self._where_it_holds(printed_left, printed_right, reading)
         return Verdict(*found)
 
-    def _where_it_holds(self, left: Node, right: Node, reading: Reading) -> Verdict | None:
+    def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
         """Return what a true equation needs to be true, None where that is nothing."""
         turned = self._turned(left, right, reading)
         if turned is not None:
@@ -198,7 +198,7 @@ class Desk:
             self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
         )
 
-    def _turned(self, left: Node, right: Node, reading: Reading) -> Verdict | None:
+    def _turned(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
         """Return for which signs of what is squared under a root an equation is true, where that is not for all or none."""
         squares = reading.squares[:_MOST_SQUARES]
         choices = list(chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1)))
@@ -210,7 +210,7 @@ class Desk:
             self._under(f"{left} = {right}", *needed), f"a root is not negative: true only where {' and '.join(needed)}"
         )
 
-    def _value(self, node: Node, reading: Reading) -> Printed:
+    def _value(self, node: SyntaxNode, reading: Reading) -> Printed:
         try:
             return value_of(node, reading)
         except Unknown as unknown:
@@ -227,7 +227,7 @@ class Desk:
         )
         return UnknownName(message, repair=repair, name=name)
 
-    def _with_let(self, environment: Environment, name: str, meaning: Node) -> Environment:
+    def _with_let(self, environment: Environment, name: str, meaning: SyntaxNode) -> Environment:
         """Return the environment in which a letter of the entry stands for a value or a signal."""
         reading = Reading(environment, self.where)
         try:
@@ -247,14 +247,16 @@ class Desk:
 
     # -- what is wrong ------------------------------------------------------------------------------------------------
 
-    def _slip(self, left: Node, right: Node, environment: Environment, *, fit: bool = True) -> tuple[str, str] | None:
+    def _slip(
+        self, left: SyntaxNode, right: SyntaxNode, environment: Environment, *, fit: bool = True
+    ) -> tuple[str, str] | None:
         fields = {name for result in self.results for name in result.fields if name[0].islower()}
         matrices = {f"{result.task}_matrix" for result in self.results}
-        alphabet = Letters(environment, frozenset(fields | matrices), fit=fit)
+        alphabet = CandidateLetters(environment, frozenset(fields | matrices), fit=fit)
         found = found_slip(left, right, self.patience.asks(self.true), alphabet)
         return None if found is None else (f"{found[0]} = {found[1]}", found[2])
 
-    def _misfit(self, left: Node, right: Node, message: str, environment: Environment) -> tuple[str, str]:
+    def _misfit(self, left: SyntaxNode, right: SyntaxNode, message: str, environment: Environment) -> tuple[str, str]:
         slip = self._slip(left, right, environment, fit=False)
         if slip is not None:
             return slip[0], f"{message}; {slip[1]}"
@@ -271,7 +273,7 @@ class Desk:
         return "", message
 
     def _values(
-        self, left: Node, right: Node, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
     ) -> tuple[str, str] | None:
         """Return what is wrong with a value, or with a formula for one; None where only rounding parts them."""
         environment = reading.environment
@@ -303,20 +305,22 @@ class Desk:
         value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1].value, Scalar) else (exact, printed)
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
-    def _is_written_out(self, node: Node, environment: Environment) -> bool:
+    def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
         """Whether a side has no letters but the problem's own symbols."""
         plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
         return set(letters_of(node)) <= plain
 
-    def _missing_factor(self, left: Node, right: Node) -> tuple[str, str] | None:
+    def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, str] | None:
         """Return the equation with a factor before its left side that an equation above has as a side."""
         for node in reversed(self.known):
-            if node.kind == "block" and self.true(Node("product", (node, left)), right):
-                fixed = Node("product", (node, left))
+            if node.kind == "block" and self.true(SyntaxNode("product", (node, left)), right):
+                fixed = SyntaxNode("product", (node, left))
                 return f"{fixed} = {right}", f"the factor {node} before {left} is missing"
         return None
 
-    def _signals(self, left: Node, right: Node, pair: tuple[Term, Term], environment: Environment) -> tuple[str, str]:
+    def _signals(
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], environment: Environment
+    ) -> tuple[str, str]:
         exact, printed = (self._coefficients(term) for term in pair)
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
         wrong = {
@@ -354,8 +358,8 @@ class Desk:
 
     def _missing_term(
         self,
-        left: Node,
-        right: Node,
+        left: SyntaxNode,
+        right: SyntaxNode,
         exact: Mapping[str, Matrix],
         printed: Mapping[str, Matrix],
         environment: Environment,
@@ -368,10 +372,10 @@ class Desk:
         offered = self._matrices([*written, *environment.values], environment)
         for letters, most in ((written[:6], _MOST_LETTERS), (offered[:16], 2)):
             for chosen in (each for count in range(1, most + 1) for each in product(letters, repeat=count)):
-                term = Node("product", tuple(Node("letter", text=name) for name in (*chosen, names[0])))
+                term = SyntaxNode("product", tuple(SyntaxNode("letter", text=name) for name in (*chosen, names[0])))
                 terms = right.parts if right.kind == "sum" else (right,)
-                for last in (term, Node("negative", (term,))):
-                    fixed = Node("sum", (*terms, last))
+                for last in (term, SyntaxNode("negative", (term,))):
+                    fixed = SyntaxNode("sum", (*terms, last))
                     if true(left, fixed):
                         return f"{left} = {fixed}", f"the term {last} is missing"
         return None
@@ -380,11 +384,11 @@ class Desk:
         values = environment.values
         return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
 
-    def _has_numbers(self, node: Node) -> bool:
+    def _has_numbers(self, node: SyntaxNode) -> bool:
         return node.kind == "number" or any(map(self._has_numbers, node.parts))
 
 
-def _is_evident(left: Node, exact: Matrix, printed: Matrix, wrong: int) -> bool:
+def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
     """Whether it is the numbers on the right that are wrong: a value of a letter, one entry among several, one number.
 
     A single number says too little to tell which letter was meant instead of another.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.audit.equation_auditor import Desk
-from symobs.audit.printed_entries import Statement, statements
-from symobs.audit.slips import Patience
+from symobs.audit.equation_auditor import EquationAuditor
+from symobs.audit.printed_entries import PrintedEntry, printed_entries
+from symobs.audit.slips import SearchBudget
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
 from symobs.result.in_convention import Viewed
@@ -51,15 +51,15 @@ def audit(problem: Problem) -> Audited:
 
     Raises `ProblemErrors` with every entry that cannot be read.
     """
-    entries = statements(problem.printed, problem.convention, problem.plant.symbols.signs)
+    entries = printed_entries(problem.printed, problem.convention, problem.plant.symbols.signs)
     results = problem.solve()
     found: list[Finding] = []
     errors: list[SymobsError] = []
-    desks: dict[str, Desk] = {}
-    patience = Patience()
+    desks: dict[str, EquationAuditor] = {}
+    patience = SearchBudget()
     for entry in entries:
         name = entry.convention.name
-        desk = desks[name] = desks.get(name) or Desk(problem, results, entry.convention, patience)
+        desk = desks[name] = desks.get(name) or EquationAuditor(problem, results, entry.convention, patience)
         try:
             found += _read(entry, desk)
         except SymobsError as error:
@@ -71,7 +71,7 @@ def audit(problem: Problem) -> Audited:
     return Audited(problem.title, len(entries), tuple(found), tuple(notes))
 
 
-def _read(entry: Statement, desk: Desk) -> list[Finding]:
+def _read(entry: PrintedEntry, desk: EquationAuditor) -> list[Finding]:
     """Return what is wrong with one entry."""
     if entry.expect:
         lines = mismatches([Viewed(result, desk.convention) for result in desk.results], entry.expect)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.audit.equations.grammar import FUNCTIONS, read_relation
-from symobs.audit.equations.reading import Where
+from symobs.audit.equations.reading import EquationConditions
 from symobs.convention import Convention, conventions
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
@@ -23,7 +23,7 @@ _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 
 @dataclass(frozen=True)
-class Statement:
+class PrintedEntry:
     """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
 
     place: str
@@ -31,14 +31,14 @@ class Statement:
     erratum: str
     convention: Convention
     relation: str = ""
-    condition: Where = field(default_factory=Where)
+    condition: EquationConditions = field(default_factory=EquationConditions)
     let: Mapping[str, str] = field(default_factory=dict)
     expect: Mapping[str, Any] = field(default_factory=dict)
 
 
-def statements(
+def printed_entries(
     entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
-) -> list[Statement]:
+) -> list[PrintedEntry]:
     """Return the entries of a file, which can be read; raises `ProblemErrors` with every one that cannot be.
 
     `signs` are those of the file's own symbols, of which conditions speak.
@@ -54,7 +54,7 @@ def statements(
     return found
 
 
-def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> Statement:
+def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> PrintedEntry:
     name = entry.get("convention", convention.name)
     known = {**conventions(), convention.name: convention} if name != convention.name else {name: convention}
     if name not in known:
@@ -66,13 +66,13 @@ def _statement(entry: Mapping[str, Any], place: str, convention: Convention, sig
         repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
         raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
     where, erratum = entry.get("where", ""), entry.get("erratum", "")
-    return Statement(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
+    return PrintedEntry(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
 
 
-def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, Where]:
+def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, EquationConditions]:
     """Return an equation and the conditions that stand behind it: `rank(O) = 2 where c != 0`."""
     equation, found, condition = text.partition(_WHERE)
-    return equation, Where.of(condition, signs, place) if found else Where(signs=signs)
+    return equation, EquationConditions.of(condition, signs, place) if found else EquationConditions(signs=signs)
 
 
 def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
-from symobs.expression.syntax_tree import Node, every, exponent_of, letters_of, with_part
+from symobs.expression.syntax_tree import SyntaxNode, every, exponent_of, letters_of, with_part
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
@@ -23,7 +23,7 @@ _MOST_TRIED = 1_000
 #: changes are tried.
 _MOST_PARTS, _MOST_PARTS_OF_A_FILE = 12_000, 100_000
 _MOST_ROWS = 6
-_MINUS_ONE = Node("negative", (Node("number", text="1", value=Scalar.of(1)),))
+_MINUS_ONE = SyntaxNode("negative", (SyntaxNode("number", text="1", value=Scalar.of(1)),))
 _INDEX = re.compile(r"_?[0-9]+$|_d$")
 _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
@@ -32,7 +32,7 @@ _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 class Slip:
     """A changed side, what was changed, and whether the same letter still stands there."""
 
-    side: Node
+    side: SyntaxNode
     reason: str
     near: bool = True
 
@@ -46,21 +46,21 @@ class Alphabet(Protocol):
     def is_signal(self, name: str) -> bool:
         """Whether a letter is a signal."""
 
-    def rounded(self, block: Node) -> str | None:
+    def rounded(self, block: SyntaxNode) -> str | None:
         """Return the letter whose value a bracket of decimals is, rounded."""
 
 
 @dataclass()
-class Patience:
+class SearchBudget:
     """How much may still be tried for the findings of a file."""
 
     left: int = _MOST_PARTS_OF_A_FILE
 
-    def asks(self, true: Callable[[Node, Node], bool]) -> Callable[[Node, Node], bool]:
+    def asks(self, true: Callable[[SyntaxNode, SyntaxNode], bool]) -> Callable[[SyntaxNode, SyntaxNode], bool]:
         """Return the same question for one finding; it is answered with no when too much has been asked."""
         end = max(0, self.left - _MOST_PARTS)
 
-        def asked(left: Node, right: Node) -> bool:
+        def asked(left: SyntaxNode, right: SyntaxNode) -> bool:
             cost = sum(1 for side in (left, right) for _ in every(side))
             if self.left - cost < end:
                 return False
@@ -71,10 +71,10 @@ class Patience:
 
 
 def found_slip(
-    left: Node, right: Node, true: Callable[[Node, Node], bool], alphabet: Alphabet
-) -> tuple[Node, Node, str] | None:
+    left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
+) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return both sides as they should stand and the reason, None where no single slip explains what is printed."""
-    kinds: list[Callable[[Node], Iterator[Slip]]] = [
+    kinds: list[Callable[[SyntaxNode], Iterator[Slip]]] = [
         lambda side: _digits(side, alphabet),
         _exchanged,
         _whole,
@@ -96,10 +96,10 @@ def found_slip(
 
 
 def _throughout(
-    left: Node, right: Node, true: Callable[[Node, Node], bool], alphabet: Alphabet
-) -> tuple[Node, Node, str] | None:
+    left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
+) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return the equation with one letter in place of another wherever it stands, where only one does."""
-    both = Node("row", (left, right))
+    both = SyntaxNode("row", (left, right))
     twice = [name for name in letters_of(both) if sum(part.text == name for part in every(both)) > 1]
     fitting = []
     for old in twice:
@@ -111,21 +111,24 @@ def _throughout(
     return fitting[0] if len(fitting) == 1 else None  # type: ignore[return-value]
 
 
-def _renamed(node: Node, old: str, new: str) -> Node:
+def _renamed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
     if node.kind == "letter" and node.text == old:
         return replace(node, text=new)
     return replace(node, parts=tuple(_renamed(part, old, new) for part in node.parts))
 
 
 def _decided(
-    left: Node, right: Node, true: Callable[[Node, Node], bool], kind: Callable[[Node], Iterator[Slip]]
-) -> tuple[tuple[Node, Node, str] | None] | None:
+    left: SyntaxNode,
+    right: SyntaxNode,
+    true: Callable[[SyntaxNode, SyntaxNode], bool],
+    kind: Callable[[SyntaxNode], Iterator[Slip]],
+) -> tuple[tuple[SyntaxNode, SyntaxNode, str] | None] | None:
     """Return the one slip of a kind, in a pair; None where the kind has none; a pair of None where it has several."""
     candidates = [
         *((slip, (left, slip.side)) for slip in islice(kind(right), _MOST_TRIED)),
         *((slip, (slip.side, right)) for slip in islice(kind(left), _MOST_TRIED) if left.kind != "letter"),
     ]
-    fitting: dict[str, tuple[Slip, tuple[Node, Node]]] = {}
+    fitting: dict[str, tuple[Slip, tuple[SyntaxNode, SyntaxNode]]] = {}
     for slip, pair in candidates:
         text = f"{pair[0]} = {pair[1]}"
         if text not in fitting and pair[0] != pair[1] and true(*pair):
@@ -139,11 +142,11 @@ def _decided(
     return ((*pair, slip.reason),)
 
 
-def _printed_for(printed: Node | str, right: Node | str) -> str:
+def _printed_for(printed: SyntaxNode | str, right: SyntaxNode | str) -> str:
     return f"{printed} is printed for {right}"
 
 
-def _everywhere(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterator[Slip]:
+def _everywhere(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
     """Yield the tree with one of its parts changed."""
     yield from change(node)
     for i, part in enumerate(node.parts):
@@ -151,10 +154,10 @@ def _everywhere(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterato
             yield replace(slip, side=with_part(node, i, slip.side))
 
 
-def _exchanged(side: Node) -> Iterator[Slip]:
+def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
     """Two entries of a bracket are exchanged."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block":
             return
         cells = [(i, j) for i, row in enumerate(node.parts) for j in range(len(row.parts))]
@@ -169,82 +172,82 @@ def _exchanged(side: Node) -> Iterator[Slip]:
     return _everywhere(side, change)
 
 
-def _whole(side: Node) -> Iterator[Slip]:
+def _whole(side: SyntaxNode) -> Iterator[Slip]:
     """A whole side is printed without its transpose."""
     if side.kind == "call":
-        yield Slip(Node("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
+        yield Slip(SyntaxNode("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
 
 
-def _stacked(side: Node) -> Iterator[Slip]:
+def _stacked(side: SyntaxNode) -> Iterator[Slip]:
     """Blocks stand below instead of beside one another, or the reverse."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
             rows = zip(*(row.parts for row in node.parts), strict=True)
-            turned = Node("block", tuple(Node("row", tuple(row)) for row in rows))
+            turned = SyntaxNode("block", tuple(SyntaxNode("row", tuple(row)) for row in rows))
             yield Slip(turned, _printed_for(node, turned))
 
     return _everywhere(side, change)
 
 
-def _dropped(side: Node) -> Iterator[Slip]:
+def _dropped(side: SyntaxNode) -> Iterator[Slip]:
     """Rows of a stack are too many."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
             return
         for count in range(1, len(node.parts)):
             for gone in combinations(range(len(node.parts)), count):
                 kept = tuple(row for i, row in enumerate(node.parts) if i not in gone)
-                rows = " and ".join(str(Node("block", (node.parts[i],)))[1:-1] for i in gone)
+                rows = " and ".join(str(SyntaxNode("block", (node.parts[i],)))[1:-1] for i in gone)
                 are = "rows {} are" if count > 1 else "row {} is"
-                yield Slip(Node("block", kept), f"the {are.format(rows)} too many")
+                yield Slip(SyntaxNode("block", kept), f"the {are.format(rows)} too many")
 
     return _everywhere(side, change)
 
 
-def _digits(side: Node, alphabet: Alphabet) -> Iterator[Slip]:
+def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
     """A matrix is rounded before it is used."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         name = alphabet.rounded(node) if node.kind == "block" else None
         if name is not None:
             exact = f"the digits printed for {name} are too few: only its exact value gives this"
-            yield Slip(Node("letter", text=name), exact)
+            yield Slip(SyntaxNode("letter", text=name), exact)
 
     return _everywhere(side, change)
 
 
-def _primes(side: Node, alphabet: Alphabet) -> Iterator[Slip]:
+def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
     """A transpose or a dot is printed that should not be, or is missing."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "primed":
             yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
             inner = node.parts[0]
             if inner.kind == "letter" and alphabet.is_signal(inner.text):
-                yield Slip(Node("primed", (node,)), _printed_for(node, Node("primed", (node,))))
+                yield Slip(SyntaxNode("primed", (node,)), _printed_for(node, SyntaxNode("primed", (node,))))
         elif node.kind == "letter":
-            primed = Node("primed", (node,))
+            primed = SyntaxNode("primed", (node,))
             yield Slip(primed, _printed_for(node, primed))
 
     return _outermost(side, change)
 
 
-def _inverses(side: Node) -> Iterator[Slip]:
+def _inverses(side: SyntaxNode) -> Iterator[Slip]:
     """An inverse is printed that should not be, or is missing."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "power" and exponent_of(node) == -1:
             yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
         elif node.kind == "letter":
-            inverse = Node("power", (node, _MINUS_ONE))
+            inverse = SyntaxNode("power", (node, _MINUS_ONE))
             yield Slip(inverse, _printed_for(node, inverse))
 
     return _outermost(side, change)
 
 
-def _outermost(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterator[Slip]:
+def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
     """Yield the tree with one of its parts changed; a letter below a prime or an inverse is changed with it."""
     yield from change(node)
     for i, part in enumerate(node.parts):
@@ -253,22 +256,24 @@ def _outermost(node: Node, change: Callable[[Node], Iterator[Slip]]) -> Iterator
                 yield replace(slip, side=with_part(node, i, slip.side))
 
 
-def _signs(side: Node) -> Iterator[Slip]:
+def _signs(side: SyntaxNode) -> Iterator[Slip]:
     """The sign of a side, or of one of its terms, is wrong."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         for i, part in enumerate(node.parts if node.kind == "sum" else ()):
-            turned = part.parts[0] if part.kind == "negative" else Node("negative", (part,))
+            turned = part.parts[0] if part.kind == "negative" else SyntaxNode("negative", (part,))
             inner = part.parts[0] if part.kind == "negative" else part
             yield Slip(with_part(node, i, turned), f"the sign of {inner} is wrong")
 
     plain = side.parts[0] if side.kind == "negative" else side
     if side.kind != "sum":
-        yield Slip(plain if side.kind == "negative" else Node("negative", (side,)), f"the sign of {plain} is wrong")
+        yield Slip(
+            plain if side.kind == "negative" else SyntaxNode("negative", (side,)), f"the sign of {plain} is wrong"
+        )
     yield from _everywhere(side, change)
 
 
-def _indices(side: Node) -> Iterator[Slip]:
+def _indices(side: SyntaxNode) -> Iterator[Slip]:
     """One index is printed for another throughout a side."""
     found = {match[2] for name in letters_of(side) if (match := _INDEXED.fullmatch(name)) and match[2].isdigit()}
     for old in sorted(found):
@@ -277,26 +282,26 @@ def _indices(side: Node) -> Iterator[Slip]:
                 yield Slip(_reindexed(side, old, new), f"index {old} is printed for {new}")
 
 
-def _reindexed(node: Node, old: str, new: str) -> Node:
+def _reindexed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
     if node.kind == "letter" and node.text.endswith(f"_{old}"):
         return replace(node, text=f"{node.text.removesuffix(old)}{new}")
     return replace(node, parts=tuple(_reindexed(part, old, new) for part in node.parts))
 
 
-def _letters(side: Node, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
+def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
     """One letter is printed for another, or for the transpose or the derivative of another."""
 
-    def change(node: Node) -> Iterator[Slip]:
+    def change(node: SyntaxNode) -> Iterator[Slip]:
         for name in alphabet.offered(node.text, primed=primed) if node.kind == "letter" else ():
-            plain = Node("letter", text=name)
-            right = Node("primed", (plain,)) if primed else plain
+            plain = SyntaxNode("letter", text=name)
+            right = SyntaxNode("primed", (plain,)) if primed else plain
             yield Slip(right, _printed_for(node, right), near=_stem(name) == _stem(node.text))
 
     alone = _alone(side)
     return (slip for slip in _everywhere(side, change) if slip.near or _alone(slip.side) == alone)
 
 
-def _alone(side: Node) -> set[str]:
+def _alone(side: SyntaxNode) -> set[str]:
     """Return the functions and powers of a letter alone: which letter that is, another one's value does not tell."""
     return {str(part) for part in every(side) if part.kind in {"call", "power"} and part.parts[0].kind == "letter"}
 

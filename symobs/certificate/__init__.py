@@ -1,1 +1,1 @@
-"""TODO symobs/certificate."""
+"""Claims of results, their certificates, and the error bounds of randomised checks (trusted)."""

@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
-from symobs.certificate.error_bounds import Bound, Bounds
+from symobs.certificate.error_bounds import Bounds, SizeBound
 from symobs.certificate.pointwise import Pointwise, never_together_zero
 from symobs.conditions import sign_where, vanishing_factors
 from symobs.errors import CertificateRejected, NotShown, WrongKind
@@ -267,10 +267,10 @@ def _error_bound(relation: Relation, environment: Environment, arithmetic: Modul
     return min(total, 0.5)
 
 
-def _paired(left: Any, right: Any) -> list[tuple[Bound, Bound]]:
-    if isinstance(left, Bound) and isinstance(right, Bound):
+def _paired(left: Any, right: Any) -> list[tuple[SizeBound, SizeBound]]:
+    if isinstance(left, SizeBound) and isinstance(right, SizeBound):
         return [(left, right)]
-    zero = Bound(0, 0, 0, 0)
+    zero = SizeBound(0, 0, 0, 0)
     names = {*left.coefficients, *right.coefficients}
     return [(left.coefficients.get(name, zero), right.coefficients.get(name, zero)) for name in names]
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from symobs.formula import Environment, Modular
 
 
-class Bound(NamedTuple):
+class SizeBound(NamedTuple):
     """A rational function's size: degrees and base-2 logarithms of the lengths of its two parts; shape of a matrix."""
 
     above: float
@@ -44,24 +44,24 @@ class Bounds:
         self.larger = max(degrees.values(), default=1.0)
         self.longer = max([*bits.values(), POINT_BITS])
 
-    def leaf(self, value: Scalar | Matrix) -> Bound:
+    def leaf(self, value: Scalar | Matrix) -> SizeBound:
         above, below = value.degrees()
         shape = value.shape if isinstance(value, Matrix) else None
         if not self.named and id(value) in self.arithmetic.known:
-            return Bound(above, below, *self.arithmetic.point.bits[id(value)], shape)
+            return SizeBound(above, below, *self.arithmetic.point.bits[id(value)], shape)
         above_bits, below_bits = value.lengths()
         grown = (above + below) * self.longer
         degree = (above + below) * self.larger
-        return Bound(degree, degree, above_bits + grown, below_bits + grown, shape)
+        return SizeBound(degree, degree, above_bits + grown, below_bits + grown, shape)
 
-    def shape(self, value: Bound) -> tuple[int, int] | None:
+    def shape(self, value: SizeBound) -> tuple[int, int] | None:
         return value.shape
 
-    def entry(self, value: Bound) -> Bound:
-        return Bound(value.above, value.below, value.above_bits, value.below_bits)
+    def entry(self, value: SizeBound) -> SizeBound:
+        return SizeBound(value.above, value.below, value.above_bits, value.below_bits)
 
-    def add(self, left: Bound, right: Bound) -> Bound:
-        return Bound(
+    def add(self, left: SizeBound, right: SizeBound) -> SizeBound:
+        return SizeBound(
             max(left.above + right.below, right.above + left.below),
             left.below + right.below,
             1 + max(left.above_bits + right.below_bits, right.above_bits + left.below_bits),
@@ -69,8 +69,8 @@ class Bounds:
             left.shape,
         )
 
-    def scale(self, value: Bound, factor: Bound) -> Bound:
-        return Bound(
+    def scale(self, value: SizeBound, factor: SizeBound) -> SizeBound:
+        return SizeBound(
             value.above + factor.above,
             value.below + factor.below,
             value.above_bits + factor.above_bits,
@@ -78,10 +78,10 @@ class Bounds:
             value.shape,
         )
 
-    def matmul(self, left: Bound, right: Bound) -> Bound:
+    def matmul(self, left: SizeBound, right: SizeBound) -> SizeBound:
         inner, outer = left.shape or (1, 1), right.shape or (1, 1)
         product = self.scale(left, right)
-        return Bound(
+        return SizeBound(
             product.above,
             product.below,
             product.above_bits + log2(max(inner[1], 1)),
@@ -89,19 +89,19 @@ class Bounds:
             (inner[0], outer[1]),
         )
 
-    def _determinant(self, value: Bound, order: int) -> Bound:
-        return Bound(
+    def _determinant(self, value: SizeBound, order: int) -> SizeBound:
+        return SizeBound(
             order * value.above,
             order * value.below,
             order * (value.above_bits + log2(max(order, 1))),
             order * value.below_bits,
         )
 
-    def invert(self, value: Bound) -> Bound:
+    def invert(self, value: SizeBound) -> SizeBound:
         if value.shape is None:
-            return Bound(value.below, value.above, value.below_bits, value.above_bits)
+            return SizeBound(value.below, value.above, value.below_bits, value.above_bits)
         whole = self._determinant(value, value.shape[0])
-        return Bound(
+        return SizeBound(
             whole.above + whole.below,
             whole.above + whole.below,
             whole.above_bits + whole.below_bits,
@@ -109,24 +109,24 @@ class Bounds:
             value.shape,
         )
 
-    def transpose(self, value: Bound) -> Bound:
+    def transpose(self, value: SizeBound) -> SizeBound:
         rows, columns = value.shape or (1, 1)
-        return Bound(value.above, value.below, value.above_bits, value.below_bits, (columns, rows))
+        return SizeBound(value.above, value.below, value.above_bits, value.below_bits, (columns, rows))
 
-    def apply(self, function: str, value: Bound) -> Bound:
+    def apply(self, function: str, value: SizeBound) -> SizeBound:
         rows, columns = value.shape or (1, 1)
         whole = self._determinant(value, min(rows, columns))
         if function == "adj":
-            return Bound(whole.above, whole.below, whole.above_bits, whole.below_bits, value.shape)
+            return SizeBound(whole.above, whole.below, whole.above_bits, whole.below_bits, value.shape)
         return whole
 
-    def block(self, rows: list[list[Bound]]) -> Bound:
+    def block(self, rows: list[list[SizeBound]]) -> SizeBound:
         """All blocks over one common denominator."""
         parts = [part for row in rows for part in row]
         below, below_bits = sum(p.below for p in parts), sum(p.below_bits for p in parts)
         height = sum((row[0].shape or (1, 1))[0] for row in rows)
         width = sum((part.shape or (1, 1))[1] for part in rows[0])
-        return Bound(
+        return SizeBound(
             max(p.above for p in parts) + below,
             below,
             max(p.above_bits for p in parts) + below_bits,
@@ -134,5 +134,5 @@ class Bounds:
             (height, width),
         )
 
-    def equal(self, left: Bound, right: Bound) -> bool:
+    def equal(self, left: SizeBound, right: SizeBound) -> bool:
         raise AssertionError(f"sizes are not compared: {left}, {right}")

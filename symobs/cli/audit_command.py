@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.audit import REPORTS, audit, report
-from symobs.cli.common import EXIT_NO, _place, _read, _run, _say
+from symobs.cli.common import EXIT_NO, place_of, read_file, run_work, write_message
 from symobs.cli.options import LIMITS, options
 from symobs.cli.outcome import Outcome
 from symobs.cli.output import check_target
@@ -18,7 +18,7 @@ from symobs.problem import read
 
 if TYPE_CHECKING:
     from symobs.audit import Audited
-    from symobs.cli.outcome import Tell
+    from symobs.cli.time_and_memory import Progress
 
 
 @click.command("audit")
@@ -38,26 +38,26 @@ def audit_command(
     check_target(target)
     chosen = tuple(dict.fromkeys(files))
 
-    def work(tell: Tell) -> Outcome:
-        found = _audited(chosen, tell)
+    def work(report_progress: Progress) -> Outcome:
+        found = _audited(chosen, report_progress)
         wrong = any(each.wrong for each in found.values())
         return Outcome(((report(found, format_name), target),), (), EXIT_NO if wrong else 0)
 
-    _run(work, timeout, memory, _place(chosen[0]) if len(chosen) == 1 else "")
+    run_work(work, timeout, memory, place_of(chosen[0]) if len(chosen) == 1 else "")
 
 
-def _audited(files: tuple[str, ...], tell: Tell) -> dict[str, Audited]:
+def _audited(files: tuple[str, ...], report_progress: Progress) -> dict[str, Audited]:
     """Return what each file's audit found; the errors of all files are raised together."""
     found: dict[str, Audited] = {}
     errors: list[SymobsError] = []
     several = len(files) > 1
     shows = several and sys.stderr is not None and sys.stderr.isatty()
     for number, file in enumerate(files, start=1):
-        tell(_place(file) if several else None)
+        report_progress(place_of(file) if several else None)
         if shows:
-            _say(f"{number}/{len(files)} {file} …")
+            write_message(f"{number}/{len(files)} {file} …")
         try:
-            found[file] = audit(read(_read(file), file, Path(file).parent))
+            found[file] = audit(read(read_file(file), file, Path(file).parent))
         except SymobsError as raised:
             all_of_it = raised.errors if isinstance(raised, ProblemErrors) else (raised,)
             errors += all_of_it

@@ -18,19 +18,20 @@ from symobs.cli.common import (
     EXIT_INTERRUPTED,
     EXIT_UNDECIDED,
     NOT_ENOUGH_MEMORY,
-    _format_of,
-    _place,
-    _progress,
-    _read,
-    _run,
-    _say,
+    chosen_format,
+    place_of,
+    progress_on_terminal,
+    read_file,
+    run_work,
+    write_message,
 )
 from symobs.cli.options import OF_A_PAGE, options, quoted
 from symobs.cli.output import write, write_all
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 _MOST_LINES = 100
 #: Commands in modules of their own, imported when they are called, and what each does.
@@ -147,19 +148,21 @@ def solve(
     from symobs.problem import parse, validate  # noqa: PLC0415
     from symobs.result import tasks  # noqa: PLC0415
 
-    chosen = _format_of(format_name, target)
+    chosen = chosen_format(format_name, target)
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot)
     convention = convention_of(convention_name)
     page = page_of(detail, templates, chosen)
 
-    def work(tell: Tell) -> Outcome:
-        found = validate(parse(_read(file), file), task_name, Path(file).parent)
-        tell = _progress(found, tell)
-        return solved(found, chosen, target, plot, convention, tell, some=task_name is not None, **page)
+    def work(report_progress: Progress) -> Outcome:
+        found = validate(parse(read_file(file), file), task_name, Path(file).parent)
+        report_progress = progress_on_terminal(found, report_progress)
+        return solved(
+            found, chosen, target, plot, convention, report_progress, only_some_tasks=task_name is not None, **page
+        )
 
-    _run(work, timeout, memory, _place(file))
+    run_work(work, timeout, memory, place_of(file))
 
 
 # -- lists ----------------------------------------------------------------------------------------------------------
@@ -218,7 +221,7 @@ def copy(folder: str) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(reason_of(error), where=_place(folder), repair="name a folder that can be written") from None
+        raise InputError(reason_of(error), where=place_of(folder), repair="name a folder that can be written") from None
     write_all([(path.read_bytes(), str(target / path.name)) for path in _templates()])
 
 
@@ -238,7 +241,7 @@ def _interrupted() -> int:
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     shown = sys.stderr is not None and sys.stderr.isatty()
-    _say("\ninterrupted" if shown else "interrupted")  # a terminal has written ^C at the place where we write
+    write_message("\ninterrupted" if shown else "interrupted")  # a terminal has written ^C at the place where we write
     return EXIT_INTERRUPTED
 
 
@@ -254,7 +257,7 @@ def main() -> NoReturn:
     except SymobsError as error:
         lines = str(error).split("\n")
         more = [f"… and {len(lines) - _MOST_LINES} more"] if len(lines) > _MOST_LINES else []
-        _say("\n".join(lines[:_MOST_LINES] + more))
+        write_message("\n".join(lines[:_MOST_LINES] + more))
         several = error.errors if isinstance(error, ProblemErrors) else (error,)
         code = max(found.exit_code for found in several)
     except click.exceptions.Exit as leaving:
@@ -264,14 +267,14 @@ def main() -> NoReturn:
 
         error.show()
         if found := hint(error):
-            _say(found)
+            write_message(found)
         code = UsageError.exit_code
     except MemoryError:
-        _say(NOT_ENOUGH_MEMORY)
+        write_message(NOT_ENOUGH_MEMORY)
         code = EXIT_UNDECIDED
     except (KeyboardInterrupt, click.exceptions.Abort):
         code = _interrupted()
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
-        _say(f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this")
+        write_message(f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this")
         code = EXIT_BUG
     sys.exit(code)

@@ -1,4 +1,4 @@
-"""TODO symobs/cli/common.py."""
+"""Options, exit codes and reports shared by the commands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from symobs.errors import InputError, UsageError, reason_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
@@ -25,8 +26,8 @@ EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 
 
-def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
-    """Do the work within its budget, write what came of it, and leave with the contract's exit code."""
+def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
+    """Do the work within its time and memory, write its outputs and messages, and exit with its code."""
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
     else:
@@ -35,31 +36,31 @@ def _run(work: Callable[[Tell], Outcome], timeout: float | None, memory: float |
         outcome = bounded(work, timeout, memory, where)
     write_all(outcome.outputs)
     for line in outcome.messages:
-        _say(line)
+        write_message(line)
     sys.exit(outcome.code)
 
 
-def _say(text: str) -> None:
-    """Write to standard error; where nobody can read it, the exit code says enough."""
+def write_message(text: str) -> None:
+    """Write a message to standard error; a closed stream is no error."""
     with suppress(OSError):
         click.echo(text, err=True)
 
 
-def _progress(found: Any, tell: Tell) -> Tell:
-    """Return `tell`, which on a terminal shows the task being run where there are several."""
+def progress_on_terminal(found: Any, report_progress: Progress) -> Progress:
+    """Return a progress report that also writes the name of the task begun, if standard error is a terminal."""
     if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
-        return tell
+        return report_progress
 
     def shown(reached: object) -> None:
         if isinstance(reached, str):
-            _say(f"{reached} …")
-        tell(reached)
+            write_message(f"{reached} …")
+        report_progress(reached)
 
     return shown
 
 
-def _format_of(format_name: str | None, target: str | None) -> str:
-    """Return the format asked for, or the one the target's suffix names, or LaTeX."""
+def chosen_format(format_name: str | None, target: str | None) -> str:
+    """Return the output format: that of --format, else that of the suffix of the target, else LaTeX."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
     from symobs.result import format_named  # noqa: PLC0415
@@ -75,17 +76,18 @@ def _format_of(format_name: str | None, target: str | None) -> str:
     return str(format_named(format_name or "latex").name)
 
 
-def _place(file: str) -> str:
+def place_of(file: str) -> str:
+    """Return the name of a file for messages."""
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return shown(file, 200) or "an empty name" if file != "-" else "standard input"
 
 
-def _read(file: str) -> str:
+def read_file(file: str) -> str:
     """Return the text of a file or of standard input, bounded in size."""
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
-    where = _place(file)
+    where = place_of(file)
     try:
         if file == "-":
             raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)

@@ -14,9 +14,7 @@ from symobs.errors import OutOfBudget, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    #: Takes how far the work has come: the name of a task, or what is left of the work if it is ended now, or a function
-    #: that makes this, which is called only where the work can be ended.
-    Tell = Callable[[object], None]
+    from symobs.cli.time_and_memory import Progress
 
 #: Exit codes of the contract.
 EXIT_NO, EXIT_UNDECIDED = 4, 5
@@ -75,34 +73,34 @@ def solved(
     target: str | None,
     plot: str | None,
     convention: Any,
-    tell: Tell,
+    report_progress: Progress,
     *,
-    some: bool = False,
+    only_some_tasks: bool = False,
     **page: Any,
 ) -> Outcome:
     """Solve a problem and return its document, its picture, and what the contract says of them.
 
-    With `some`, only a part of the file's tasks is run, and only what is expected of that part counts.  What `page` holds
-    is put into the document.  `tell` is told which task begins, and what is to be left behind where the work is ended.
+    With `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the
+    document.  `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
 
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
-            tell(partial(_as_far_as, found, so_far, convention, target))
-        tell(name)
+            report_progress(partial(_as_far_as, found, so_far, convention, target))
+        report_progress(name)
 
     results = found.solve(begins)
     viewed = found.viewed(results)
-    expect = applicable(viewed, found.expect) if some else found.expect
+    expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
-    tell("the page")
+    report_progress("the page")
     outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
     if plot is not None:
         from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
 
-        tell("the picture")
+        report_progress("the picture")
         try:
             outputs.append((picture_file(results, plot), plot))
         except UsageError as error:  # there is none: the result stands all the same
@@ -125,7 +123,7 @@ def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str
     return Outcome(((whole, target),), (), EXIT_UNDECIDED)
 
 
-def bounded(work: Callable[[Tell], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
+def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
     """Return what the work leaves behind, or what was left of it when its budget was used up."""
     from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 

@@ -174,7 +174,7 @@ def _umask() -> int:
 
 @contextmanager
 def _explained(target: str | None) -> Iterator[None]:
-    """Tell what the system refuses as an `InputError`, but not that a reader has read enough."""
+    """Raise a refusal of the system as an `InputError`; a closed pipe is none."""
     try:
         yield
     except (BrokenPipeError, SymobsError):

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symobs._dataclass import dataclass
-from symobs.cli.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, _format_of, _place, _read, _say
+from symobs.cli.common import (
+    EXIT_BUG,
+    EXIT_NO,
+    EXIT_UNDECIDED,
+    NOT_ENOUGH_MEMORY,
+    chosen_format,
+    place_of,
+    read_file,
+    write_message,
+)
 from symobs.cli.options import LIMITS, options
 from symobs.cli.outcome import convention_of, page_of
 from symobs.cli.output import check_target, write
@@ -21,13 +30,13 @@ from symobs.expression.source import shown
 from symobs.phrases import PHRASES
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
-from symobs.render.page.sheet import Entry, Sheet
+from symobs.render.page.sheet import Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.cli.outcome import Tell
+    from symobs.cli.time_and_memory import Progress
     from symobs.result import Document
 
 _LONGEST_TITLE = 300
@@ -90,18 +99,18 @@ def sheet(
     texts = _texts(files)
     if timeout is not None or memory is not None:
         tasks()  # what all problems need is imported once, not in the process of each
-    entries: list[Entry] = []
+    entries: list[SheetEntry] = []
     codes: set[int] = set()
     progress = _Progress(len(texts))
     for number, (file, text) in enumerate(texts, 1):
         progress.show(number, Path(file).stem)
-        name = _place(file)
+        name = place_of(file)
         entry, code, messages = _bounded_entry(number, file, text, wanted)
         entries.append(entry)
         codes.add(code)
         progress.clear()
         for message in messages:
-            _say(message if message.startswith(f"{name}, ") else f"{name}: {message}")
+            write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
     whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
     progress.clear()
@@ -114,7 +123,7 @@ def sheet(
 
 def _sheet_format(name: str | None, target: str | None) -> Any:
     """Return the format; raises `UsageError` for one that has no sheets."""
-    found = format_named(_format_of(name, target))
+    found = format_named(chosen_format(name, target))
     if not hasattr(found, "sheet"):
         having = ", ".join(sorted(each.name for each in formats().values() if hasattr(each, "sheet")))
         raise UsageError(f"the format {found.name} is for one problem", where="--format", repair=f"use one of {having}")
@@ -131,7 +140,7 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     errors: list[SymobsError] = []
     for file in files:
         try:
-            texts.append((file, _read(file)))
+            texts.append((file, read_file(file)))
         except InputError as error:
             errors.append(error)
     if errors:
@@ -142,7 +151,7 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
 # -- one problem ------------------------------------------------------------------------------------------------------
 
 
-def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
     """Return what `_entry` does, and where that takes more than it may, as much as there was by then."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, file, text, wanted, lambda _: None)
@@ -150,26 +159,30 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
 
     try:
         budget = Budget(wanted.timeout, wanted.memory)
-        return within(budget, lambda tell: _entry(number, file, text, wanted, tell))
+        return within(budget, lambda report_progress: _entry(number, file, text, wanted, report_progress))
     except OutOfBudget as error:
         left: Any = error.facts["left"] or _empty(number, file)
         return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
 
 
-def _empty(number: int, file: str) -> Entry:
-    return Entry(number, file, Path(file).stem if file != "-" else "")
+def _empty(number: int, file: str) -> SheetEntry:
+    return SheetEntry(number, file, Path(file).stem if file != "-" else "")
 
 
-def _entry(number: int, file: str, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+def _entry(
+    number: int, file: str, text: str, wanted: _Wanted, report_progress: Progress
+) -> tuple[SheetEntry, int, list[str]]:
     """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
     entry = _empty(number, file)
     try:
-        return _worked_out(entry, text, wanted, tell)
+        return _worked_out(entry, text, wanted, report_progress)
     except Exception as error:  # noqa: BLE001 - whatever fails here, the other problems are not lost
         return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Tell) -> tuple[Entry, int, list[str]]:
+def _worked_out(
+    entry: SheetEntry, text: str, wanted: _Wanted, report_progress: Progress
+) -> tuple[SheetEntry, int, list[str]]:
     """Return the entry with its parts; a solution that fails leaves the question where there is one."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
@@ -177,7 +190,7 @@ def _worked_out(entry: Entry, text: str, wanted: _Wanted, tell: Tell) -> tuple[E
         problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
             entry = replace(entry, question=_part(question_of(problem), wanted))
-        tell(entry)
+        report_progress(entry)
         results = problem.solve()
         if wanted.solutions:
             entry = replace(entry, solution=_part(problem.document(results), wanted))
@@ -202,7 +215,7 @@ def _part(document: Document, wanted: _Wanted) -> Any:
     return wanted.format.part(told)
 
 
-def _failed(entry: Entry, error: Exception, wanted: _Wanted) -> tuple[Entry, int, list[str]]:
+def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
     """Return the entry of a problem that failed; one that has used up its memory is told of where that is bounded."""
     if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
         raise error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.common import _format_of, _run
+from symobs.cli.common import chosen_format, run_work
 from symobs.cli.options import OF_A_PAGE, options
 from symobs.cli.outcome import check_targets, convention_of, page_of, solved
 from symobs.errors import ProblemErrors, SymobsError
@@ -16,7 +16,8 @@ from symobs.problem import OPEN, validate
 from symobs.specification import KINDS
 
 if TYPE_CHECKING:
-    from symobs.cli.outcome import Outcome, Tell
+    from symobs.cli.outcome import Outcome
+    from symobs.cli.time_and_memory import Progress
 
 PLANT_OPTIONS = {
     "A": 'state matrix, "[0 1; 0 -1]"',
@@ -58,7 +59,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         chosen = {name: value for name, value in options_given.items() if name.startswith(group) and value is not None}
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
-    chosen = _format_of(options_given["format_name"], options_given["target"])
+    chosen = chosen_format(options_given["format_name"], options_given["target"])
     check_targets(options_given["target"], options_given["plot"])
     page = page_of(options_given["detail"], options_given["templates"], chosen)
     plant = given("plant_")
@@ -68,11 +69,13 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
     convention = convention_of(options_given["convention_name"])
 
-    def work(tell: Tell) -> Outcome:
-        return solved(validate(data), chosen, options_given["target"], options_given["plot"], convention, tell, **page)
+    def work(report_progress: Progress) -> Outcome:
+        return solved(
+            validate(data), chosen, options_given["target"], options_given["plot"], convention, report_progress, **page
+        )
 
     try:
-        _run(work, options_given["timeout"], options_given["memory"], task.name)
+        run_work(work, options_given["timeout"], options_given["memory"], task.name)
     except SymobsError as raised:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)

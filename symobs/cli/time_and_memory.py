@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from types import FrameType
 
-    from symobs.cli.outcome import Tell
+    #: Called with the name of the task begun, or with the partial outcome that is kept if the work ends there.
+    Progress = Callable[[object], None]
 
 Value = TypeVar("Value")
 
@@ -49,7 +50,7 @@ class _TimeOver(BaseException):
     """Raised by the alarm in a child: no code may take it for an error of its own."""
 
 
-def within(budget: Budget, work: Callable[[Tell], Value], where: str = "") -> Value:
+def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -> Value:
     """Return what `work` returns, or raise what it raises; raises `OutOfBudget` where it takes more than it may.
 
     `work` is given a function that takes how far it has come: a text says what it is at work on, anything else, or
@@ -86,19 +87,19 @@ def _require_child_processes(budget: Budget) -> None:
 # -- the child --------------------------------------------------------------------------------------------------------
 
 
-def _work(budget: Budget, work: Callable[[Tell], Any], writing: int) -> NoReturn:
+def _work(budget: Budget, work: Callable[[Progress], Any], writing: int) -> NoReturn:
     """Do the work, say on a pipe what came of it, and end this process."""
     code = 1
     try:
         with open(writing, "wb", buffering=0) as stream:
 
-            def tell(reached: object) -> None:
+            def report_progress(reached: object) -> None:
                 _say(stream, "reached", reached() if callable(reached) else reached)
 
             try:
                 listeners.append(lambda group: _say(stream, "group", group))
                 _set_up(budget)
-                kind, outcome = "value", work(tell)
+                kind, outcome = "value", work(report_progress)
             except SymobsError as error:
                 kind, outcome = "error", error
             except Exception as error:  # noqa: BLE001 - whatever it is, it is handed to the parent

@@ -1,4 +1,4 @@
-"""TODO symobs/convention/builtin.py."""
+"""Conventions by name: those of the package, and those of a folder or a file."""
 
 from __future__ import annotations
 

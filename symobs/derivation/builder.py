@@ -25,23 +25,23 @@ from symobs.derivation.steps import (
 )
 from symobs.errors import SymobsWarning
 from symobs.exact import Matrix, Scalar, rounded
-from symobs.exact.kernel.generators import identities, known, roots_in
+from symobs.exact.kernel.generators import function_named, identities, roots_in
 from symobs.formula import (
+    Conjunction,
     Decimals,
     Derivative,
     Environment,
-    Exactly,
     Fact,
     Formula,
+    HoldsExactlyWhere,
     Identity,
     Letter,
     Literal,
-    Names,
     Predicate,
     Relation,
     Roots,
     Shown,
-    Together,
+    SymbolList,
 )
 from symobs.formula.plain_text import plain_relation
 from symobs.formula.term import Term
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, Exactly, Together, Shown, Names)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
@@ -125,7 +125,7 @@ def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
     found: dict[str, None] = {}
     for value in values:
         for name in sorted(value.names):
-            function = known(name)
+            function = function_named(name)
             inner = roots_in(function.argument) if function and function.kind != "sqrt" else ()
             roots = [function] if function and function.kind == "sqrt" else inner
             found |= {root.name: None for root in roots if root.argument.numerator.size > 2}
@@ -223,7 +223,7 @@ class Page:
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
         self.environment = replace(self.environment, assumed=(*self.environment.assumed, *factors))
         conditions = tuple(relation(value, "!=", 0) for value in values)
-        self.steps.append(Given(conditions, sentence(key, {"condition": Together(conditions)})))
+        self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:
         """Establish a letter by its value, without a display."""
@@ -312,11 +312,11 @@ class Page:
         """Remark."""
         self.steps.append(Note(sentence(key, slots), facts))
 
-    def diagram(self, name: str, say: str = "", **labels: Member | Together) -> None:
+    def diagram(self, name: str, say: str = "", **labels: Member | Conjunction) -> None:
         """Draw a figure of `flow` with these gains; its signals have their own letters unless others are given."""
         from symobs.figures.block_diagram import with_signals  # noqa: PLC0415 - only pages with a diagram pay for it
 
-        given = {key: label if isinstance(label, Together) else formula_of(label) for key, label in labels.items()}
+        given = {key: label if isinstance(label, Conjunction) else formula_of(label) for key, label in labels.items()}
         because = sentence(say, {}) if say else None
         self.steps.append(Diagram(name, tuple(with_signals(name, given).items()), because))
 

@@ -39,22 +39,22 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
     Apply,
+    Conjunction,
     Derivative,
     Environment,
     Exact,
-    Exactly,
     Fact,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Relation,
     Roots,
     Shown,
     Signal,
-    Together,
+    SymbolList,
     children,
     evaluate,
     letters,
@@ -114,7 +114,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
     match step:
         case Given(relations, sentence):
             said = [slot for _, slot in sentence.slots] if sentence else []
-            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Together) else (slot,))}
+            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Conjunction) else (slot,))}
             for relation in relations:
                 if relation.operators == ("!=",) and (not sentence or relation in stated):
                     environment = _assume(relation, environment)
@@ -233,7 +233,7 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, Exactly, Together, Shown, Names)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, str):
             _established(slot, environment)
@@ -270,10 +270,10 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if verify(fact, environment)[0] == "":
             reject(plain_relation(fact, environment.variable))
         return
-    if isinstance(fact, Names):
+    if isinstance(fact, SymbolList):
         _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
         return
-    if isinstance(fact, Together):
+    if isinstance(fact, Conjunction):
         for part in fact.relations:
             _fact(part, environment, discrete)
         return
@@ -290,7 +290,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         if not are_roots(fact.values, polynomial, environment):
             reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
         return
-    if isinstance(fact, Exactly):
+    if isinstance(fact, HoldsExactlyWhere):
         _about_letters(fact.property.subject, environment)
         found = evaluate(fact.property.subject, environment, Exact(environment))
         (value,) = subjects(fact.property.name, found, environment.variable)

@@ -31,18 +31,18 @@ from symobs.derivation.steps import (
 from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
+    Conjunction,
     Exact,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Predicate,
     Product,
     Relation,
     Roots,
     Shown,
-    Together,
+    SymbolList,
     Transpose,
     Turned,
     children,
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be: S4 calls both H.
 _ANSATZ = {"L", "H_x"}
-_FACTS = (Sentence, Predicate, Roots, Exactly, Together)
+_FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)
 
 
 def translated(derivation: Derivation, convention: Convention) -> Derivation:
@@ -141,7 +141,7 @@ def _in_signs(item: Any, turned: Turned) -> Any:
 
 def _label_in_signs(label: Label, turned: Turned) -> Label:
     """Return what labels a box or a wire, a gain with its sign."""
-    found: Label = _in_signs(label, turned) if isinstance(label, Together) else turned.whole(label)
+    found: Label = _in_signs(label, turned) if isinstance(label, Conjunction) else turned.whole(label)
     return found
 
 
@@ -190,8 +190,8 @@ def _substituted(item: Any, meant: Mapping[str, Scalar]) -> Any:
     """Return steps with symbols replaced; what introduces one by its meaning introduces the new one."""
     if isinstance(item, Literal):
         return Literal(item.value.substitute({k: v for k, v in meant.items() if k in item.value.names}))
-    if isinstance(item, Names):
-        return Names(tuple(name for part in item.names for name in meant.get(part, Scalar.symbol(part)).names))
+    if isinstance(item, SymbolList):
+        return SymbolList(tuple(name for part in item.names for name in meant.get(part, Scalar.symbol(part)).names))
     if isinstance(item, Formula):
         changed = with_children(item, tuple(_substituted(part, meant) for part in children(item)))
         return _without_minus(changed) if changed != item else item

@@ -12,10 +12,10 @@ from symobs.formula import Exact, evaluate
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.formula import Environment, Exactly
+    from symobs.formula import Environment, HoldsExactlyWhere
 
 
-def is_exactly(fact: Exactly, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
+def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
     """Tell whether a polynomial has a property exactly where some inequalities hold.
 
     They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
-from symobs.formula import Literal, Names, Relation
+from symobs.formula import Literal, Relation, SymbolList
 from symobs.phrases.english.stability.regions import counted, in_words, root_in_words
-from symobs.stability.criteria.critical_polynomials import Boundary, Critical
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.solved_bounds import box
 from symobs.stability.regions.description import are_whole, between, parts, relations_of
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import region_in
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.region_for import exact_region
+from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -75,7 +75,7 @@ def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]
 def _of_everything(region: LineRegion | PlaneRegion, names: tuple[str, ...]) -> Iterator[Sentence]:
     """Yield that no value is left out, where it is so."""
     if all(sample.stable for sample in region.samples(())) and is_region(region, ()):
-        yield Sentence("region_everywhere", (("names", Names(names)),))
+        yield Sentence("region_everywhere", (("names", SymbolList(names)),))
 
 
 def _of_line(region: LineRegion) -> Iterator[Sentence]:
@@ -141,10 +141,10 @@ def _region_of(
     discrete: bool,  # noqa: FBT001 - what is cached is called by position
     names: tuple[str, ...],
 ) -> LineRegion | PlaneRegion | None:
-    critical = Critical(polynomial, Boundary(variable, discrete), dict(signs))
+    critical = CriticalPolynomials(polynomial, StabilityBoundary(variable, discrete), dict(signs))
     if names and (variable in names or not set(critical.parameters) <= set(names)):
         return None
-    return region_in(critical, names or critical.parameters)
+    return exact_region(critical, names or critical.parameters)
 
 
 def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, str], ...]) -> bool:
@@ -159,7 +159,9 @@ def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, s
     names = {name for value, _ in where for name in value.names}
     if not names <= set(region.critical.parameters):
         return False
-    return is_region(region, tuple(Bound(value.numerator * value.denominator, operator) for value, operator in where))
+    return is_region(
+        region, tuple(RegionInequality(value.numerator * value.denominator, operator) for value, operator in where)
+    )
 
 
 def _declared(region: LineRegion) -> list[tuple[Scalar, str]]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
-    from symobs.formula import Exactly, Fact, Formula, Relation, Together
+    from symobs.formula import Conjunction, Fact, Formula, HoldsExactlyWhere, Relation
     from symobs.stability.criteria.routh_table import RouthTable
 
 
@@ -118,7 +118,7 @@ class Tabulate:
 class Where:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
-    fact: Exactly
+    fact: HoldsExactlyWhere
     sentence: Sentence | None = None
     answer: bool = False
 
@@ -155,7 +155,7 @@ class Case:
     letters in `anew` have no meaning there until they are introduced again.
     """
 
-    when: Relation | Together
+    when: Relation | Conjunction
     substitution: tuple[tuple[str, Scalar], ...]
     steps: tuple[Step, ...]
     sentence: Sentence | None = None

@@ -4,8 +4,8 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 """
 
 from symobs.exact.algebraic.complex import Complex
-from symobs.exact.algebraic.decimals import is_rounding, places, rounded, written
-from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_rounding, rounded
+from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
 from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero
@@ -41,8 +41,8 @@ __all__ = [
     "EIGENVALUE",
     "RATIONALS",
     "VARIABLES",
+    "AlgebraicExtension",
     "Complex",
-    "Extension",
     "Factored",
     "Field",
     "Ideal",
@@ -57,6 +57,8 @@ __all__ = [
     "apply_polynomial",
     "companion",
     "controller",
+    "decimal_digits",
+    "decimal_places",
     "derivative",
     "echelon",
     "exponential_of_integral",
@@ -68,7 +70,6 @@ __all__ = [
     "kernel",
     "matrix_of_numbers",
     "modulo",
-    "places",
     "pole_and_zero_polynomial",
     "product_of",
     "rank",
@@ -83,5 +84,4 @@ __all__ = [
     "transfer",
     "transfer_matrix",
     "unit_rows",
-    "written",
 ]

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import re
     from collections.abc import Iterator, Sequence
 
-    from symobs.expression.tokenizer import Token
+    from symobs.expression.source import Token
 
 OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 _OPENING, _CLOSING = ("_OPEN", "LEFT"), ("_CLOSE", "_RIGHT")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     from symobs.expression.names import Scope
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
 
     Entry: TypeAlias = "Number | Grid"
 
@@ -45,7 +45,7 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     return [evaluator.entry(tree) for tree in trees]
 
 
-def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[Node, ...]]:
+def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[SyntaxNode, ...]]:
     """Return the trees of a text's entries, and where they stand."""
     source = Source(text, where)
     return source, parse(Tokeniser(source, scope).run(), source)
@@ -83,7 +83,7 @@ class Evaluator:
         self.functions = scope.functions
         self.names = scope.names or {}
 
-    def entry(self, tree: Node) -> Entry:
+    def entry(self, tree: SyntaxNode) -> Entry:
         """Return what a tree is worth."""
         stack: list[Any] = []
         for node in operands_first(tree):
@@ -92,7 +92,7 @@ class Evaluator:
         (found,) = stack
         return found  # type: ignore[no-any-return]
 
-    def _value(self, node: Node, parts: list[Any]) -> Any:
+    def _value(self, node: SyntaxNode, parts: list[Any]) -> Any:
         """Return what a node is worth whose parts are worth these."""
         match node.kind:
             case "number":
@@ -128,7 +128,7 @@ class Evaluator:
         self._spend(power_size(base, exponent), place)
         return base**exponent
 
-    def _call(self, call: Node, number: Number) -> Number:
+    def _call(self, call: SyntaxNode, number: Number) -> Number:
         """Return sqrt of the square of a rational number, the one call with a value in the field.
 
         Where functions of time are asked for, a function of a real argument is a generator of its own.

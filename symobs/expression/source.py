@@ -1,9 +1,14 @@
-"""The text being read: safe excerpts of it, and errors that point into it."""
+"""The text being read: its tokens, safe excerpts of it, and errors that point into it."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Self
+
 from symobs._dataclass import dataclass
 from symobs.errors import ExpressionError, InputError
+
+if TYPE_CHECKING:
+    from symobs.exact import Complex, Scalar
 
 MOST_SHOWN = 60
 #: An error that points into a text shows this much of it, more than half of it before the place.
@@ -34,3 +39,19 @@ class Source:
         place = f"line {line}, column {column}" if "\n" in self.text else f"column {column}"
         facts |= {"text": excerpt, "line": line, "column": column}
         return kind(f'{message}, at {place} of "{excerpt}"', where=self.where, repair=repair, **facts)
+
+
+class Token(str):
+    """A piece of the text: its type, where it begins, and the number it stands for, None where it stands for none."""
+
+    __slots__ = ("start", "type", "value")
+
+    type: str
+    start: int
+    value: Scalar | Complex | None
+
+    def __new__(cls, type_: str, text: str, start: int, value: Scalar | Complex | None = None) -> Self:
+        """Make the token of a text."""
+        token = super().__new__(cls, text)
+        token.type, token.start, token.value = type_, start, value
+        return token

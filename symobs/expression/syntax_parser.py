@@ -17,14 +17,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.errors import ShapeMismatch
 from symobs.expression.source import shown
-from symobs.expression.syntax_tree import Node
+from symobs.expression.syntax_tree import SyntaxNode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.errors import InputError
-    from symobs.expression.source import Source
-    from symobs.expression.tokenizer import Token
+    from symobs.expression.source import Source, Token
 
 _BINDING = {"ADD": 1, "sign": 2, "MULTIPLY": 3, "inner sign": 4, "POWER": 5, "APPLY": 6}
 _OPERAND_STARTS = ("VALUE", "FUNCTION", "_OPEN", "LEFT")
@@ -43,7 +42,7 @@ class _Waiting(NamedTuple):
     token: Token
 
 
-def parse(tokens: Sequence[Token], source: Source, apart: str = "_COMMA") -> tuple[Node, ...]:
+def parse(tokens: Sequence[Token], source: Source, apart: str = "_COMMA") -> tuple[SyntaxNode, ...]:
     """Return the trees of a text's entries, which tokens of the type `apart` set apart; raises ExpressionError.
 
     Brackets are matched already, and between two operands there is an operator or a comma (`tokens`).
@@ -57,12 +56,12 @@ class _Parser:
     def __init__(self, source: Source, apart: str) -> None:
         self.source = source
         self.apart = apart
-        self.operands: list[Node] = []
+        self.operands: list[SyntaxNode] = []
         self.waiting: list[_Waiting] = []
         #: How many entries each row has so far, of the whole text and of every bracket still open.
         self.lengths = [[1]]
 
-    def entries(self, tokens: Sequence[Token]) -> tuple[Node, ...]:
+    def entries(self, tokens: Sequence[Token]) -> tuple[SyntaxNode, ...]:
         """Return the trees of all entries."""
         operand = False  # whether one has just ended
         for token in tokens:
@@ -80,7 +79,7 @@ class _Parser:
         match kind := token.type:
             case "VALUE":
                 leaf = "letter" if token.value is None else "number"
-                self.operands.append(Node(leaf, text=str(token), value=token.value, places=(token.start,)))
+                self.operands.append(SyntaxNode(leaf, text=str(token), value=token.value, places=(token.start,)))
             case "FUNCTION" | "_OPEN" | "LEFT":
                 self.waiting.append(_Waiting(kind, token))
                 if kind != "FUNCTION":
@@ -93,7 +92,7 @@ class _Parser:
                 self.waiting.append(_Waiting(kind, token))
             case "PRIME":
                 self._end_power()
-                self.operands.append(Node("primed", (self.operands.pop(),), places=(token.start,)))
+                self.operands.append(SyntaxNode("primed", (self.operands.pop(),), places=(token.start,)))
             case _:
                 self._complete()
                 self._close(token)
@@ -119,15 +118,15 @@ class _Parser:
         last = self.operands.pop()
         match kind:
             case "sign" | "inner sign":
-                found = Node("negative", (last,), places=place) if token == "-" else last  # noqa: S105 - of the text
+                found = SyntaxNode("negative", (last,), places=place) if token == "-" else last  # noqa: S105 - of the text
             case "POWER":
-                found = Node("power", (self.operands.pop(), last), places=place)
+                found = SyntaxNode("power", (self.operands.pop(), last), places=place)
             case "APPLY":
-                found = Node("at", (self.operands.pop(), last), places=place)
+                found = SyntaxNode("at", (self.operands.pop(), last), places=place)
             case _ if token == "/":  # noqa: S105
-                found = Node("quotient", (self.operands.pop(), last), places=place)
+                found = SyntaxNode("quotient", (self.operands.pop(), last), places=place)
             case _:
-                right = Node("negative", (last,), places=place) if token == "-" else last  # noqa: S105
+                right = SyntaxNode("negative", (last,), places=place) if token == "-" else last  # noqa: S105
                 found = _joined("sum" if kind == "ADD" else "product", self.operands.pop(), right, place)
         self.operands.append(found)
 
@@ -149,7 +148,7 @@ class _Parser:
             if self.waiting and self.waiting[-1].kind == "FUNCTION":
                 called_by = self.waiting.pop().token
                 arguments = self._taken(count)
-                self.operands.append(Node("call", arguments, text=str(called_by), places=(called_by.start,)))
+                self.operands.append(SyntaxNode("call", arguments, text=str(called_by), places=(called_by.start,)))
 
     def _block(self, left: Token, lengths: Sequence[int]) -> None:
         entries = iter(self._taken(sum(lengths)))
@@ -159,10 +158,10 @@ class _Parser:
             spaced = _SPACED_PRODUCT.search(self.source.text)
             meant = f"; a space sets entries apart, so write {spaced[1]}*{spaced[2]}… for a product" if spaced else ""
             raise self.source.error(unequal[0], left.start, EQUAL_ROWS + meant, kind=ShapeMismatch, row=unequal[1])
-        nodes = tuple(Node("row", tuple(row)) for row in rows)
-        self.operands.append(Node("block", nodes, places=(left.start,)))
+        nodes = tuple(SyntaxNode("row", tuple(row)) for row in rows)
+        self.operands.append(SyntaxNode("block", nodes, places=(left.start,)))
 
-    def _taken(self, count: int) -> tuple[Node, ...]:
+    def _taken(self, count: int) -> tuple[SyntaxNode, ...]:
         """Return the last operands, which are taken off the stack."""
         start = len(self.operands) - count
         found = tuple(self.operands[start:])
@@ -175,12 +174,12 @@ class _Parser:
         return self.source.error(f'a number, a name or "(" is expected {place}', position, "write one there")
 
 
-def _joined(kind: str, left: Node, right: Node, place: tuple[int, ...]) -> Node:
+def _joined(kind: str, left: SyntaxNode, right: SyntaxNode, place: tuple[int, ...]) -> SyntaxNode:
     """Return a sum or a product of all terms of both sides."""
     (first, before), (last, behind) = (
         (each.parts, each.places) if each.kind == kind else ((each,), ()) for each in (left, right)
     )
-    return Node(kind, (*first, *last), places=(*before, *place, *behind))
+    return SyntaxNode(kind, (*first, *last), places=(*before, *place, *behind))
 
 
 def unequal_row(rows: Sequence[Sequence[object]]) -> tuple[str, int] | None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Node:
+class SyntaxNode:
     """A part of an expression, as it is written.
 
     number (`text`, `value`), letter (`text`, no value yet), sum, product, negative, quotient, power (base, exponent), primed,
@@ -23,7 +23,7 @@ class Node:
     """
 
     kind: str
-    parts: tuple[Node, ...] = ()
+    parts: tuple[SyntaxNode, ...] = ()
     text: str = ""
     value: Scalar | Complex | None = None
     places: tuple[int, ...] = field(default=(), compare=False)
@@ -32,7 +32,7 @@ class Node:
         return written(self)
 
 
-def every(node: Node) -> Iterator[Node]:
+def every(node: SyntaxNode) -> Iterator[SyntaxNode]:
     """Yield a node and all below it, from the left; a tree that is too deep is still counted."""
     waiting = [node]
     while waiting:
@@ -40,7 +40,7 @@ def every(node: Node) -> Iterator[Node]:
         waiting += reversed(first.parts)
 
 
-def operands_first(node: Node) -> Iterator[Node]:
+def operands_first(node: SyntaxNode) -> Iterator[SyntaxNode]:
     """Yield a node and all below it, each after its parts, from the left; nothing recurses."""
     waiting, found = [node], []
     while waiting:
@@ -49,17 +49,17 @@ def operands_first(node: Node) -> Iterator[Node]:
     return reversed(found)
 
 
-def letters_of(*nodes: Node) -> list[str]:
+def letters_of(*nodes: SyntaxNode) -> list[str]:
     """Return the letters of these trees, each once, in the order in which they stand."""
     return list(dict.fromkeys(part.text for node in nodes for part in every(node) if part.kind == "letter"))
 
 
-def with_part(node: Node, index: int, part: Node) -> Node:
+def with_part(node: SyntaxNode, index: int, part: SyntaxNode) -> SyntaxNode:
     """Return the node with one part replaced."""
     return replace(node, parts=(*node.parts[:index], part, *node.parts[index + 1 :]))
 
 
-def exponent_of(node: Node) -> int | None:
+def exponent_of(node: SyntaxNode) -> int | None:
     """Return the integer that stands as the exponent of a power; None where another expression does."""
     exponent = node.parts[1]
     sign, number = (-1, exponent.parts[0]) if exponent.kind == "negative" else (1, exponent)
@@ -72,13 +72,13 @@ def exponent_of(node: Node) -> int | None:
 _BINDING = {"sum": 0, "negative": 1, "product": 2, "quotient": 2, "power": 3, "primed": 4}
 
 
-def written(node: Node, above: int = 0, *, tight: bool = False) -> str:
+def written(node: SyntaxNode, above: int = 0, *, tight: bool = False) -> str:
     """Return the text of a tree; `tight` inside brackets, where a space sets entries apart."""
     text = _written(node, tight=tight)
     return f"({text})" if _BINDING.get(node.kind, 5) < above else text
 
 
-def _written(node: Node, *, tight: bool) -> str:
+def _written(node: SyntaxNode, *, tight: bool) -> str:
     parts = node.parts
     match node.kind:
         case "number" | "letter":
@@ -112,7 +112,7 @@ def _written(node: Node, *, tight: bool) -> str:
             return "[" + "; ".join(" ".join(written(part, tight=True) for part in row.parts) for row in parts) + "]"
 
 
-def _product(parts: tuple[Node, ...], *, tight: bool) -> str:
+def _product(parts: tuple[SyntaxNode, ...], *, tight: bool) -> str:
     """Return factors side by side; after a division they need their sign."""
     text = written(parts[0], 2, tight=tight)
     for before, part in pairwise(parts):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
@@ -17,7 +17,7 @@ from symobs.exact.algebraic.rounded_decimals import as_generator
 from symobs.exact.kernel.generators import PI
 from symobs.expression.ambiguous_products import OPERAND_ENDS, division_before, two_readings
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
-from symobs.expression.source import Source, shown
+from symobs.expression.source import Source, Token, shown
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable
@@ -52,22 +52,6 @@ def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
     names = {name for text in texts for name in NAME.findall(text)} - set(FUNCTIONS)
     fit = {name for name in names if len(name) <= LONGEST_NAME}
     return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
-
-
-class Token(str):
-    """A piece of the text: its type, where it begins, and the number it stands for, None where it stands for none."""
-
-    __slots__ = ("start", "type", "value")
-
-    type: str
-    start: int
-    value: Scalar | Complex | None
-
-    def __new__(cls, type_: str, text: str, start: int, value: Scalar | Complex | None = None) -> Self:
-        """Make the token of a text."""
-        token = super().__new__(cls, text)
-        token.type, token.start, token.value = type_, start, value
-        return token
 
 
 class Tokeniser:

@@ -12,7 +12,7 @@ from symobs.expression.names import Scope
 if TYPE_CHECKING:
     from symobs.expression.names import Names
     from symobs.expression.size_limits import Number
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
 
 _ONE = Scalar.of(1)
 
@@ -80,7 +80,7 @@ class _Written(Evaluator):
             self._require_nonzero(above, place)
         return Fraction(_value_of(below), _value_of(above))
 
-    def _call(self, call: Node, number: Any) -> Any:
+    def _call(self, call: SyntaxNode, number: Any) -> Any:
         return super()._call(call, self._reduced(number, call.places[0]))
 
     def _reduced(self, number: Any, place: int) -> Number:

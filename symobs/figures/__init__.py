@@ -1,1 +1,1 @@
-"""TODO symobs/figures."""
+"""Block diagrams and plots as data, before any format draws them."""

@@ -21,13 +21,13 @@ from typing import TYPE_CHECKING, TypeAlias, overload
 
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
-from symobs.formula import Formula, Letter, Literal, Negative, Together
+from symobs.formula import Conjunction, Formula, Letter, Literal, Negative
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: A gain or a signal; in the box of a whole system its equations.
-Label: TypeAlias = Formula | Together
+Label: TypeAlias = Formula | Conjunction
 Labels: TypeAlias = "Mapping[str, Label]"
 
 

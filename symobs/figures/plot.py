@@ -26,7 +26,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Mark:
+class MarkedPoint:
     """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
     place: Place
@@ -44,7 +44,7 @@ class RegionPicture:
     window: tuple[Interval, Interval]
     areas: tuple[tuple[Place, ...], ...]
     curves: tuple[Curve, ...]
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[MarkedPoint, ...] = ()
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
@@ -88,10 +88,10 @@ class PoleMap:
 
 
 @dataclass(frozen=True)
-class Course:
+class Response:
     """One component of a signal over time; it is `row` times the state that the picture starts from.
 
-    `component` counts from 1, and is 0 where the signal has no other; a `dashed` course is an estimate.
+    `component` counts from 1, and is 0 where the signal has no other; a `dashed` response is an estimate.
     `heights` are its values, in whole parts of one, at equal distances from the begin of the window to its end.
     """
 
@@ -106,22 +106,22 @@ class Course:
 class TimeResponse:
     """Signals over time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
 
-    Heights of courses are counted in `parts` of one.  In `discrete` time they stand at 0, 1, 2, … and are exact.
+    Heights of responses are counted in `parts` of one.  In `discrete` time they stand at 0, 1, 2, … and are exact.
     """
 
     states: tuple[str, ...]
     starts: tuple[tuple[Fraction, ...], ...]
-    courses: tuple[Course, ...]
+    responses: tuple[Response, ...]
     window: tuple[Interval, Interval]
     parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
     discrete: bool = False
 
-    def points(self, course: Course) -> list[Place]:
-        """Return the places in the plane of one of the courses."""
+    def points(self, response: Response) -> list[Place]:
+        """Return the places in the plane of one of the responses."""
         begin, end = self.window[0]
-        step = (end - begin) / (len(course.heights) - 1)
-        return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(course.heights)]
+        step = (end - begin) / (len(response.heights) - 1)
+        return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(response.heights)]
 
 
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse

@@ -1,4 +1,4 @@
-"""TODO symobs/formula/arithmetic.py."""
+"""The arithmetic of formulas: signals, and the operations on scalars, matrices and signals."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar
 from symobs.formula.evaluate import Exact
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Restricted(Exact):
         if len(factors) != 1 or factors[0][1] != 1:
             message = "a rank on a stratum is shown by minors and kernels"
             raise NotShown(message)
-        field = Extension(generators[0], max(factors[0][0].names, key=lambda name: (name == EIGENVALUE, name)))
+        field = AlgebraicExtension(generators[0], max(factors[0][0].names, key=lambda name: (name == EIGENVALUE, name)))
         return Scalar.of(len(field.echelon(value)[0]))
 
     def equal(self, left: Any, right: Any) -> bool:

@@ -197,7 +197,7 @@ class Roots:
 
 
 @dataclass(frozen=True)
-class Exactly:
+class HoldsExactlyWhere:
     """A property of a value holds exactly where these inequalities do; shown as their list."""
 
     property: Predicate
@@ -205,7 +205,7 @@ class Exactly:
 
 
 @dataclass(frozen=True)
-class Together:
+class Conjunction:
     """Several relations that hold at once; shown as their list."""
 
     relations: tuple[Relation, ...]
@@ -220,13 +220,13 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Names:
+class SymbolList:
     """Some parameters, which a sentence speaks of; it claims nothing of them."""
 
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | Exactly | Together | Shown | Names
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | SymbolList
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.

@@ -18,7 +18,7 @@ from symobs.derivation import Note, Section, translated
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
-from symobs.formula import Names, Roots
+from symobs.formula import Roots, SymbolList
 from symobs.phrases.english.page.questions import PHRASES, UNSAID
 from symobs.problem.schema import keys_of
 from symobs.result import Document
@@ -170,7 +170,7 @@ def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
             form: Term = page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
             return form
         case "Names":
-            return Names(value)
+            return SymbolList(value)
         case "Entries":
             return ", ".join(f"({row + 1}, {column + 1})" for row, column in value)
     if isinstance(value, Matrix) and value.shape == (1, 1):

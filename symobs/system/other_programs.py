@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import Any
 
 from symobs.errors import InputError
@@ -22,7 +21,7 @@ def as_plant(value: Any, *, only: bool = True) -> Any:
         return value
     module = type(value).__module__
     if module.partition(".")[0] == "control":
-        return from_control(value)
+        return StateSpace.from_control(value)
     if module.startswith("sympy.physics.control"):
         return _from_sympy(value)
     if isinstance(value, (list, tuple)) and len(value) == 2 and all(isinstance(part, (list, tuple)) for part in value):
@@ -34,41 +33,6 @@ def as_plant(value: Any, *, only: bool = True) -> Any:
         repair += ', or symobs.StateSpace.from_transfer_function("1/(s*(s+1))")'
     message = f"a plant is expected, but a value of type {type(value).__name__} came"
     raise InputError(message, where="plant", repair=repair)
-
-
-def from_control(system: Any, **known: Any) -> StateSpace:
-    """Return the plant of a python-control system; each float is read as its shortest decimal, and the page says so.
-
-    Raises `InputError` where the system has no A, B, C, D and no numerator and denominator of numbers.
-    """
-    dt = (repr(system.dt) if isinstance(system.dt, float) else system.dt) or 0 if hasattr(system, "dt") else 0
-    if hasattr(system, "num") and hasattr(system, "den"):
-        if len(system.num) != 1 or len(system.num[0]) != 1:
-            message = "a transfer matrix has several realisations"
-            raise InputError(message, where="plant", repair="convert it by control.ss(system)")
-        parts = [_shortest_decimals(system, name, [getattr(system, name)[0][0]])[0] for name in ("num", "den")]
-        plant = StateSpace.from_transfer_function(parts, dt, **known)
-    else:
-        rows = {name: _shortest_decimals(system, name, getattr(system, name, None)) for name in "ABCD"}
-        plant = StateSpace(rows["A"], rows["B"], rows["C"], rows["D"], dt, **known)
-    plant.is_from_floats = True
-    return plant
-
-
-def _shortest_decimals(system: Any, name: str, rows: Any) -> list[list[str]]:
-    """Return rows of floats as texts, each the shortest that names the same float."""
-    try:
-        found = [[float(entry) for entry in (row.tolist() if hasattr(row, "tolist") else row)] for row in rows]
-    except (TypeError, ValueError) as error:
-        message = (
-            f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers {name}"
-        )
-        raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)") from error
-    for entry in (entry for row in found for entry in row):
-        if not isfinite(entry):
-            message = f"{entry} is not a finite number"
-            raise InputError(message, where=f"plant.{name}", repair="give finite entries")
-    return [[repr(entry) for entry in row] for row in found]
 
 
 def _from_sympy(system: Any) -> StateSpace:

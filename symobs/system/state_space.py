@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismatch, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
+from symobs.system.control_system import read_control_system
 from symobs.system.matrices import Matrices
 from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
-from symobs.system.transfer_function_text import MOST_STATES, Written, read_transfer_function, realise
+from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFunction, read_transfer_function, realise
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -41,7 +42,7 @@ class StateSpace:
         dt: object = 0,
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
-        transfer_function: Written | None = None,
+        transfer_function: WrittenTransferFunction | None = None,
     ) -> None:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
@@ -130,9 +131,13 @@ class StateSpace:
 
         The page says so.  Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
         """
-        from symobs.system.other_programs import from_control  # noqa: PLC0415 - it stands on this module
-
-        return from_control(system, symbols=symbols)
+        transfer_function, matrices, dt = read_control_system(system)
+        if transfer_function is None:
+            plant = cls(**matrices, dt=dt, symbols=symbols)
+        else:
+            plant = cls.from_transfer_function(transfer_function, dt, symbols=symbols)
+        plant.is_from_floats = True
+        return plant
 
     # -- what the kernel sees ----------------------------------------------------------------------------------------
 

@@ -21,7 +21,7 @@ MOST_STATES = 200
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenTransferFunction:
     """A rational function of the variable as it is written: above / below, with what they have in common."""
 
     above: Scalar
@@ -48,7 +48,7 @@ class Written:
         return tuple(factor for factor, _ in self._common if self.variable not in factor.names)
 
 
-def read_transfer_function(value: object, symbols: Symbols, variable: str, where: str) -> Written:
+def read_transfer_function(value: object, symbols: Symbols, variable: str, where: str) -> WrittenTransferFunction:
     """Return the function that a text, a SymPy expression, a number or two lists of coefficients stand for."""
     if isinstance(value, str):
         found = parse_scalar(value, symbols.names, variable=variable, where=where)
@@ -62,7 +62,7 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
         found, written = read_scalar(value, symbols, where), None
     above, below = written or (found.numerator, found.denominator)
     common = above.denominator * below.denominator  # numbers, unless a polynomial came with coefficients 1/m
-    return Written((above * common).numerator, (below * common).numerator, variable)
+    return WrittenTransferFunction((above * common).numerator, (below * common).numerator, variable)
 
 
 def _of_sympy(value: Any, where: str) -> tuple[Scalar, Scalar] | None:

@@ -18,7 +18,7 @@ import pytest
 import symobs
 from symobs.conditions import never_zero
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import known, symbols_in
+from symobs.exact.kernel.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
 from tests.support.independent_algebra.plain import (
@@ -179,7 +179,7 @@ def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
             for entry in value.entries if isinstance(value, Matrix) else [value] if isinstance(value, Scalar) else []:
                 factors = {factor for factor, _ in entry.denominator.factors()[1]}
                 inner = {factor for factor in factors if not {problem.plant.variable, "t"} & factor.names}
-                moving = {factor for factor in inner if any(map(known, factor.names))}
+                moving = {factor for factor in inner if any(map(function_named, factor.names))}
                 assert all(factor in listed or never_zero(factor, signs) for factor in inner - moving)
                 for point in everywhere[: FEW if moving else 0]:
                     if conditions_hold(result.holds_where, point):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.exact.kernel.generators import known, symbols_in
+from symobs.exact.kernel.generators import function_named, symbols_in
 from symobs.expression import parse_scalar
 from symobs.formula import Literal
 from symobs.problem import read
@@ -58,7 +58,7 @@ EVERY: list[tuple[str, Result]] = [
 def has_functions(part: Result) -> bool:
     """Whether an answer contains exponentials, sines or the like."""
     values = [value for value in part.answer.values() if isinstance(value, (Scalar, Matrix))]
-    return part.in_time or any(known(name) for value in values for name in value.names)
+    return part.in_time or any(function_named(name) for value in values for name in value.names)
 
 
 PARTS = [(name, part) for name, part in EVERY if not has_functions(part)]

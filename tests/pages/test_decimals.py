@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from symobs import StateSpace, observer, reduced_order_observer
 from symobs.derivation import Derivation, Equal
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, is_rounding, places, rounded, written
+from symobs.exact import Matrix, Scalar, decimal_digits, decimal_places, is_rounding, rounded
 from symobs.formula import Decimals, Environment, Letter, Literal, Relation
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
@@ -53,14 +53,14 @@ def test_what_is_shown_is_the_rounding_of_the_decimal_module(number: Fraction) -
     right = (Decimal(number.numerator) / Decimal(number.denominator)).quantize(unit, ROUND_HALF_EVEN)
     assert abs(near.fraction() - Fraction(right)) <= Fraction(unit) * (number.denominator > 10**5)
     assert is_rounding(Scalar.of(number), near)
-    assert Fraction(written(near)) == abs(near.fraction())
+    assert Fraction(decimal_digits(near)) == abs(near.fraction())
 
 
 def test_decimals_are_left_out_where_they_help_nobody() -> None:
     assert rounded(Matrix.row([Scalar.of(Fraction(16, 5)), Scalar.of(-1)])) is None
     assert rounded(Scalar.symbol("omega")) is None
     assert rounded(scalar("200000001/100000000")) is None  # it would read as 2, exactly
-    assert places(scalar("1/3")) is None
+    assert decimal_places(scalar("1/3")) is None
 
 
 def test_numbers_are_written_with_their_point() -> None:

@@ -12,7 +12,7 @@ import pytest
 import symobs
 from symobs.derivation import Case, Conclude, Define, Equal, Given, Note, Sentence
 from symobs.errors import UsageError
-from symobs.formula import Letter, Literal, Relation, Together
+from symobs.formula import Conjunction, Letter, Literal, Relation
 from symobs.formula.plain_text import plain_relation
 from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT, slots_of
 from symobs.problem import read
@@ -149,7 +149,7 @@ SAME = Relation((A, B), ("=",))
 @pytest.mark.parametrize("detail", SHORTER)
 def test_every_kind_of_step_that_conditions_stays(detail: str) -> None:
     different = Relation((A, B), ("!=",))
-    condition = Sentence("provided_observability", (("condition", Together((different,))),))
+    condition = Sentence("provided_observability", (("condition", Conjunction((different,))),))
     steps: tuple[Step, ...] = (
         Given((SAME,)),
         Given((different,), condition),

@@ -13,7 +13,7 @@ import pytest
 
 from symobs.cli.sheet_command import _Progress
 from symobs.render.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
-from symobs.render.page.sheet import WITHOUT_CONTENTS, Entry, Sheet
+from symobs.render.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
 from symobs.result import formats
 from tests.support.tools.command_line import EXAMPLES, ROOT, SERVO, fresh, inside
 
@@ -338,7 +338,7 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("symobs.render.formats.pdf.compiled", recorded)
     long = {"body": "x" * int(200 * SLOWEST), "drawings": False}
     for part in ({"body": "x", "drawings": False}, long):
-        Pdf().sheet(Sheet("", (Entry(1, "file", "title", part, part),)))
+        Pdf().sheet(Sheet("", (SheetEntry(1, "file", "title", part, part),)))
     assert limits[0] == TIME_LIMIT
     assert limits[1] > 400
 

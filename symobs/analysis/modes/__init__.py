@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/modes."""
+"""Unobservable and uncontrollable modes: the PBH test, detectability and stabilizability."""

@@ -35,7 +35,7 @@ from symobs.derivation import Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE
-from symobs.formula import Exactly, Together
+from symobs.formula import Conjunction, HoldsExactlyWhere
 from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
@@ -125,7 +125,7 @@ def _where(page: Page, result: HiddenStability, about: Term) -> None:
     if all(condition.operator == ">=" for condition in conditions):
         solved = [as_inequality(condition.expression, signs) for condition in conditions]
         where = tuple(relation(left, f"{operator}=", right) for left, operator, right in solved)
-        page.conclude("marginal_if", where=Exactly(predicate("marginal", about), where))
+        page.conclude("marginal_if", where=HoldsExactlyWhere(predicate("marginal", about), where))
         page.conclude(f"exactly_there_{result.task}")
         return
     say_stability(page, about)  # of the polynomial as the page has it, which equations may make a shorter one
@@ -154,8 +154,8 @@ def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> Non
     apart = [as_written(condition) for condition in result.grows_where]
     if verify(grows, page.environment)[0]:
         page.steps.append(words)
-    elif apart and verify(grows, on_stratum(Together(tuple(apart)), {}, page.environment))[0]:
-        page.steps.append(CaseStep(Together(tuple(apart)), (), (words,)))
+    elif apart and verify(grows, on_stratum(Conjunction(tuple(apart)), {}, page.environment))[0]:
+        page.steps.append(CaseStep(Conjunction(tuple(apart)), (), (words,)))
     else:
         page.remark("lyapunov_undecided")
 

@@ -21,7 +21,7 @@ from symobs.conditions import sign_of
 from symobs.derivation.builder import relation
 from symobs.exact import (
     EIGENVALUE,
-    Extension,
+    AlgebraicExtension,
     Factored,
     Matrix,
     Root,
@@ -113,7 +113,7 @@ def _witness(
         return rows, columns, kernel, independent_rows(kernel)
     if parametric and degree > _DEGREE_WITH_PARAMETERS:
         return None
-    field = Extension(factor.substitute({variable: Scalar.symbol(EIGENVALUE)}), EIGENVALUE)
+    field = AlgebraicExtension(factor.substitute({variable: Scalar.symbol(EIGENVALUE)}), EIGENVALUE)
     columns, kernel = field.echelon(pencil)
     rows = field.echelon(pencil.select(range(pencil.shape[0]), columns).T)[0]
     return rows, columns, kernel, tuple(j for j in range(order) if j not in columns)

@@ -14,7 +14,7 @@ from symobs.derivation import Conclude, Equal, Step
 from symobs.derivation.builder import Page, relation, sentence, shows
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
-from symobs.formula import Roots, Together
+from symobs.formula import Conjunction, Roots
 from symobs.formula.term import block
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int, conditions
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
     at = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
     ranks = relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank)
-    when = Together((at, *map(as_written, conditions))) if conditions else at
+    when = Conjunction((at, *map(as_written, conditions))) if conditions else at
     if part.matrix.names - {EIGENVALUE} and not shows([ranks], on_stratum(when, {}, page.environment)):
         return []  # it is shown by the minors of X − λI, and too long to be shown by those of the whole matrix
     steps: list[Step] = [Equal((ranks,))]

@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/rank."""
+"""Observability and controllability by rank, and minimal sets of additional measurements."""

@@ -20,7 +20,7 @@ from symobs.derivation import Conclude, Equal, Step
 from symobs.derivation.builder import Page, relation, sentence, shows
 from symobs.derivation.wording_check import fits
 from symobs.exact import Matrix, roots_of, unit_rows
-from symobs.formula import Roots, Together
+from symobs.formula import Conjunction, Roots
 from symobs.formula.term import block
 
 if TYPE_CHECKING:
@@ -138,4 +138,4 @@ def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
     if not systems or not steps:
         return steps if systems == () else []
     apart = tuple(relation(distance, "!=", 0) for distance in distances(systems))
-    return [CaseStep(Together(apart), (), tuple(steps))]
+    return [CaseStep(Conjunction(apart), (), tuple(steps))]

@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/realization."""
+"""Realisations: canonical and modal forms, Kalman decomposition, duality and the transfer function."""

@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/stability_region."""
+"""The stability region of a polynomial or matrix in its parameters."""

@@ -35,8 +35,8 @@ from symobs.stability.regions.description import parts
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import region_in
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.region_for import exact_region
+from symobs.stability.regions.short_list import RegionInequality, short_list
 from symobs.system import StateSpace, Symbols
 
 if TYPE_CHECKING:
@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import Picture, PoleMap
     from symobs.specification import GainText, Name, Names, PolynomialText, Quantity
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.inequalities.proof import Equivalence
     from symobs.stability.inequalities.simplify import Simplified
-    from symobs.stability.regions.description import Part
+    from symobs.stability.regions.description import CylindricalPart
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,7 +67,7 @@ class StabilityRegion(Result):
         return cls(question.plant, method_name, answer, question)
 
     @property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """Where roots can cross the boundary."""
         return self.question.critical
 
@@ -77,7 +77,7 @@ class StabilityRegion(Result):
         return region_of(self.question)
 
     @cached_property
-    def parts(self) -> tuple[Part, ...]:
+    def parts(self) -> tuple[CylindricalPart, ...]:
         """The region of two parameters as bounds of one over intervals of the other."""
         return parts(self.region) if isinstance(self.region, PlaneRegion) and not self.empty else ()
 
@@ -98,12 +98,12 @@ class StabilityRegion(Result):
         if isinstance(region, PlaneRegion) and self.parts:
             yield Statement("the bounds over each interval", lambda: "exact" if are_parts(region, self.parts) else "")
 
-    def _says(self, bounds: Sequence[Bound] | None) -> str:
+    def _says(self, bounds: Sequence[RegionInequality] | None) -> str:
         if bounds is None:
             return "stable nowhere"
         return f"stable exactly where {' and '.join(self.stable_if)}" if bounds else "stable everywhere"
 
-    def _is_proved(self, bounds: Sequence[Bound] | None) -> bool:
+    def _is_proved(self, bounds: Sequence[RegionInequality] | None) -> bool:
         """Tell whether the proof leads from the conditions of the criterion to these inequalities and back."""
         said = [Scalar.of(0)] if bounds is None else [positive_of(bound) for bound in bounds]
         chi, question = self.question.polynomial, self.question
@@ -236,7 +236,7 @@ class StabilityRegion(Result):
         return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
 
 
-def _bounds_of(question: Question) -> tuple[tuple[Bound, ...] | None, Equivalence | None]:
+def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
     """Return inequalities that hold exactly on the region, None where it is empty, and the proof where it is no region."""
     region = region_of(question)
     if region is not None:
@@ -252,20 +252,20 @@ def conditions_of(question: Question) -> Simplified:
     return stable_where(question.polynomial, question.plant.variable, question.plant.symbols.signs, **question.limits)
 
 
-def bound_of(positive: Scalar) -> Bound:
+def bound_of(positive: Scalar) -> RegionInequality:
     """Return a value > 0, a square as its root ≠ 0."""
     root = root_of_square(positive)
-    return Bound(positive) if root is None else Bound(root, "!=")
+    return RegionInequality(positive) if root is None else RegionInequality(root, "!=")
 
 
-def positive_of(bound: Bound) -> Scalar:
+def positive_of(bound: RegionInequality) -> Scalar:
     """Return what an inequality says is positive."""
     return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 
 
 def region_of(question: Question) -> LineRegion | PlaneRegion | None:
     """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
-    return None if question.symbols else region_in(question.critical, question.parameters)
+    return None if question.symbols else exact_region(question.critical, question.parameters)
 
 
 @method("stability_region/routh", source="E. J. Routh, 1877; the plane divided after G. E. Collins, 1975")

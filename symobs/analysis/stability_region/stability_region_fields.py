@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from symobs.analysis.stability_region.stability_region_question import Question
     from symobs.exact import RealNumber
     from symobs.stability.inequalities.simplify import Simplified
-    from symobs.stability.regions.description import Edge, Part
-    from symobs.stability.regions.interval_region import Piece
+    from symobs.stability.regions.description import CylindricalPart, Edge
+    from symobs.stability.regions.interval_region import IntervalPiece
     from symobs.stability.regions.plane_region import PlaneRegion
-    from symobs.stability.regions.short_list import Bound
+    from symobs.stability.regions.short_list import RegionInequality
 
 DIGITS = 6
 
 
 def stable_if(
-    bounds: Sequence[Bound] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
+    bounds: Sequence[RegionInequality] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
 ) -> list[str]:
     """Return the inequalities as texts; of a single interval its ends."""
     if bounds is None:
@@ -35,7 +35,7 @@ def stable_if(
     return [" ".join(map(str, solved(bound, signs, parameters))) for bound in bounds]
 
 
-def solved(bound: Bound, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
+def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
     """Return an inequality solved for a parameter where its coefficient has a certain sign."""
     if bound.operator == "!=":
         left, operator, right = as_inequality(bound.polynomial, signs, parameters)
@@ -60,7 +60,7 @@ def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
     return {name: str(value) for name, value in (point or {}).items()}
 
 
-def ends_of(piece: Piece, name: str, signs: Mapping[str, str]) -> list[str]:
+def ends_of(piece: IntervalPiece, name: str, signs: Mapping[str, str]) -> list[str]:
     """Return name > low and name < high, without what the declared sign says already."""
     found = []
     if piece.low is not None and not (
@@ -130,7 +130,7 @@ def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
     return listed
 
 
-def components_of(region: PlaneRegion, parts: Sequence[Part]) -> list[dict[str, Any]]:
+def components_of(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> list[dict[str, Any]]:
     """Return every connected component: bounded or not, a point of it, and bounds of y over intervals of x."""
     x, y = region.names
     listed = []

@@ -13,7 +13,7 @@ from symobs.derivation import Conclude, Step, Survey, Where
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
-from symobs.formula import Exactly, Literal, Names, Power, Product, Quotient, Sum
+from symobs.formula import HoldsExactlyWhere, Literal, Power, Product, Quotient, Sum, SymbolList
 from symobs.result import page_of
 from symobs.stability.criteria.stability import hurwitz_matrix
 from symobs.stability.plots.region_plot import picture_of_line
@@ -96,8 +96,8 @@ def _sought(page: Page, result: StabilityRegion) -> None:
         page.remark("sought_margin", names=names, limit=-boundary.margin)
 
 
-def _listed(result: StabilityRegion) -> Names:
-    return Names(result.question.parameters)
+def _listed(result: StabilityRegion) -> SymbolList:
+    return SymbolList(result.question.parameters)
 
 
 def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
@@ -200,11 +200,11 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
     if relations and len(known) > len(relations):
         say = "shortened"
         if sum(value.size for value in raw) <= WRITTEN_UP_TO:
-            page.steps.append(Where(Exactly(stable, known), sentence("criterion", {})))
+            page.steps.append(Where(HoldsExactlyWhere(stable, known), sentence("criterion", {})))
         else:
             page.remark("criterion_long", count=str(len(raw)))
     if relations:
-        page.steps.append(Where(Exactly(stable, relations), sentence(say, {}), answer=True))
+        page.steps.append(Where(HoldsExactlyWhere(stable, relations), sentence(say, {}), answer=True))
     if findings:
         page.steps.append(Survey(page[chi].formula, names, findings))
     page.steps += [_case(page, case, chi) for case in result.case_tree if case.result is not None]
@@ -229,7 +229,7 @@ def _case(page: Page, case: Case, chi: str) -> Step:
     else:
         names = found.question.parameters
         relations = tuple(relation(*solved(bound, found.signs, names)) for bound in found.answer["bounds"])
-        steps = (Where(Exactly(stable, relations), sentence("case_region", {})),)
+        steps = (Where(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
@@ -247,7 +247,7 @@ def _region(page: Page, result: StabilityRegion, chi: str) -> None:
         return
     relations = _inequalities(result, region)
     if relations:
-        fact = Exactly(predicate("stable", page[chi]), relations)
+        fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
         page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")

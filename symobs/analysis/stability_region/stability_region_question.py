@@ -10,7 +10,7 @@ from symobs.conditions import sign_of
 from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Scalar
 from symobs.specification import read_gain, read_names
-from symobs.stability.criteria.critical_polynomials import Boundary, Critical
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.system import StateSpace, read_scalar
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ class Question:
     K: Matrix | None
     L: Matrix | None
     parameters: tuple[str, ...]
-    boundary: Boundary
+    boundary: StabilityBoundary
 
     @cached_property
     def polynomial(self) -> Scalar:
@@ -56,9 +56,9 @@ class Question:
         }
 
     @cached_property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """Where roots can cross the boundary."""
-        return Critical(self.polynomial, self.boundary, self.plant.symbols.signs)
+        return CriticalPolynomials(self.polynomial, self.boundary, self.plant.symbols.signs)
 
     @property
     def symbols(self) -> tuple[str, ...]:
@@ -116,7 +116,7 @@ def _free(names: set[str], plant: StateSpace) -> tuple[str, ...]:
     return tuple(free or sorted(names))
 
 
-def _boundary(plant: StateSpace, margin: object, radius: object) -> Boundary:
+def _boundary(plant: StateSpace, margin: object, radius: object) -> StabilityBoundary:
     """Return what stable means; raises `InputError` for a margin in discrete time, a radius in continuous time."""
     name, other = ("margin", "radius") if plant.is_discrete else ("radius", "margin")
     wrong, value = (margin, radius) if plant.is_discrete else (radius, margin)
@@ -124,7 +124,7 @@ def _boundary(plant: StateSpace, margin: object, radius: object) -> Boundary:
         message = f"a {name} is for {'continuous' if plant.is_discrete else 'discrete'} time"
         raise InputError(message, where=f"specification.{name}", repair=f"give a {other}, or leave it out")
     if value is None:
-        return Boundary(plant.variable, plant.is_discrete)
+        return StabilityBoundary(plant.variable, plant.is_discrete)
     where = f"specification.{other}"
     found = read_scalar(value, plant.symbols.seen(value), where)
     if plant.variable in found.names:
@@ -135,10 +135,10 @@ def _boundary(plant: StateSpace, margin: object, radius: object) -> Boundary:
         if sign_of(found, signs) in {"negative", "nonpositive"} and not found.is_zero:
             message = f"the margin is {found}, which is negative"
             raise InputError(message, where=where, repair="all roots shall lie in Re s < -margin: give a margin >= 0")
-        return Boundary(plant.variable, margin=found)
+        return StabilityBoundary(plant.variable, margin=found)
     if sign_of(found, signs) in {"zero", "negative", "nonpositive"} or sign_of(found - 1, signs) == "positive":
         message = f"the radius is {found}, which is not between 0 and 1"
         raise InputError(
             message, where=where, repair="all roots shall lie in |z| < radius: give a radius > 0, at most 1"
         )
-    return Boundary(plant.variable, discrete=True, radius=found)
+    return StabilityBoundary(plant.variable, discrete=True, radius=found)

@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/strata."""
+"""Strata of the parameters: where ranks drop and eigenvalues coincide."""

@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/time_response."""
+"""The matrix exponential, the observability Gramian, and the initial state from measurements."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.conditions import never_zero
-from symobs.exact.kernel.generators import derivative, known
+from symobs.exact.kernel.generators import derivative, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def stationary(variance: Scalar, end: str, signs: Mapping[str, str]) -> str | None:
     """Return `T**4 == 140*r/q` where the derivative vanishes at one power of the horizon, else None."""
-    if any(known(name) for name in variance.names):
+    if any(function_named(name) for name in variance.names):
         return None
     factors = [f for f, _ in derivative(variance, end).numerator.factors()[1] if not never_zero(f, signs)]
     if len(factors) != 1:

@@ -18,7 +18,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
-from symobs.exact.kernel.generators import all_roots, identities, known, substitute, symbols_in
+from symobs.exact.kernel.generators import all_roots, function_named, identities, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
 from symobs.formula import Environment, Literal, Together
 from symobs.formula.term import Term, letter
@@ -252,7 +252,7 @@ def vanishing_denominators(values: Any, signs: Mapping[str, str]) -> tuple[Scala
     found: dict[Scalar, None] = {}
     for value in values:
         for factor in vanishing_factors([value.common_denominator()], signs):
-            if not any(known(name) for name in factor.names):
+            if not any(function_named(name) for name in factor.names):
                 found[factor] = None
     return tuple(found)
 

@@ -42,7 +42,7 @@ from symobs.formula import Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Case, Result, choose, method, task
-from symobs.stability.criteria.stability import Stability, stability
+from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
@@ -128,10 +128,10 @@ class Gramian(Branched):
         return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
 
     @cached_property
-    def decay(self) -> Stability:
+    def decay(self) -> StabilityVerdict:
         """Whether what the output sees decays, on which an integral over all time stands."""
         if "seen" not in self.answer:
-            return Stability("yes")
+            return StabilityVerdict("yes")
         plant = self.plant
         return stability(self.answer["seen"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
 

@@ -19,7 +19,7 @@ from symobs.derivation import Conclude
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import substitute
-from symobs.formula import Exactly, Literal, Quotient, Together
+from symobs.formula import Conjunction, HoldsExactlyWhere, Literal, Quotient
 from symobs.formula.calculus import since_start
 from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
@@ -147,7 +147,7 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     if where:
         found = [as_inequality(value, result.plant.symbols.signs) for value in where]
         listed = tuple(relation(left, operator, right) for left, operator, right in found)
-        page.conclude("gramian_exists_if", where=Exactly(predicate("stable", seen), listed))
+        page.conclude("gramian_exists_if", where=HoldsExactlyWhere(predicate("stable", seen), listed))
     else:
         page.conclude(f"gramian_infinite_{answer['of']}", predicate("stable", seen))
     count = answer["rank"]["kernel"].shape[1]
@@ -191,7 +191,7 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
         key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere else key
         says = Conclude(sentence(key, {"determinant": relation(M.apply("det"), value)}), (relation(value, "!=", 0),))
         factors = vanishing_factors([value], result.plant.symbols.signs)
-        apart = Together(tuple(relation(factor, "!=", 0) for factor in factors))
+        apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
         page.steps.append(CaseStep(apart, (), (says,)) if factors else says)
         return
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import sign_of
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, remainder
-from symobs.exact.kernel.generators import NotWritten, known
+from symobs.exact.kernel.generators import NotWritten, function_named
 from symobs.expression import parse_scalar
 from symobs.stability.criteria.stability import stability
 from symobs.system import read_scalar
@@ -35,7 +35,7 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
         found = parse_scalar(value, plant.symbols.names, where=where, functions=True)
     else:
         found = read_scalar(value, plant.symbols.seen(value), where)
-    if any(known(name) for name in found.names):
+    if any(function_named(name) for name in found.names):
         raise InputError(f"the horizon {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
     if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
         raise InputError(f"the horizon {found} is not positive", where=where, repair='write "T", or a number above 0')

@@ -24,7 +24,7 @@ from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.kernel.generators import substitute, tidy
+from symobs.exact.kernel.generators import normal_form, substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, integral, matrix_at, product, table_of, transposed
 from symobs.formula import Environment, Literal
@@ -215,13 +215,13 @@ def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Tab
     if columns:
         solution = O.select(rows, columns).solve(right.select(rows, [0]))
         for place, index in enumerate(columns):
-            values[index] = tidy(solution[place, 0])
+            values[index] = normal_form(solution[place, 0])
     state = Matrix.column(values)
-    left = [tidy(entry) for entry in (O @ state - right).entries]
+    left = [normal_form(entry) for entry in (O @ state - right).entries]
     if any(not entry.is_zero for entry in left):
         null = kernel(O.T)
         for vector in (null.select(range(null.shape[0]), [j]) for j in range(null.shape[1])):
-            if not tidy((vector.T @ right)[0, 0]).is_zero:
+            if not normal_form((vector.T @ right)[0, 0]).is_zero:
                 return {"row": vector.T, "start": right}
     rest = difference(free, product(seen, table_of(state)))
     if any(not entry.is_zero for row in rest for entry in row):

@@ -28,7 +28,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.generators import identities, roots_in, substitute
 from symobs.exact.time_functions.matrix_exponential import Exponential, NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
-    Quasi,
+    Quasipolynomial,
     Table,
     determinant,
     integral,
@@ -200,7 +200,7 @@ def _too_long(plant: StateSpace, found: Exponential) -> str:
     )
 
 
-def roots_of_frequencies(value: Quasi) -> bool:
+def roots_of_frequencies(value: Quasipolynomial) -> bool:
     """Whether a root stands in a rate or a frequency."""
     return any(roots_in(key.rate) or roots_in(key.frequency) for key in value.terms)
 
@@ -266,7 +266,7 @@ class _Inverse:
             ]
             for i in range(order)
         ]
-        one = Quasi.constant(Scalar.of(1))
+        one = Quasipolynomial.constant(Scalar.of(1))
         cofactors = [[determinant(m) if m else one for m in row] for row in minor]
         self.adjugate = tuple(
             tuple(-cofactors[j][i] if (i + j) % 2 else cofactors[j][i] for j in range(order)) for i in range(order)

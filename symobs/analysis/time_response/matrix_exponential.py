@@ -14,7 +14,7 @@ from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, factored
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.exact.time_functions.matrix_exponential import (
     MOST_STATES_WITH_PARAMETERS,
     Exponential,
@@ -170,7 +170,7 @@ def tell_roots(page: Page, *values: Matrix) -> None:
     """Say what the letters of square roots stand for."""
     for name in page.forms:
         used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)
-        root = known(name)
+        root = function_named(name)
         if used and root is not None:
             square = page.term(Power(Literal(Scalar.symbol(name)), 2))
             page.conclude("root_named", root=relation(square, page.term(_term_by_term(root.argument))))
@@ -188,7 +188,7 @@ def _term_by_term(value: Scalar) -> Formula:
 
 
 def _functions(value: Matrix) -> list[Any]:
-    return [f for name in value.names if (f := known(name)) is not None]
+    return [f for name in value.names if (f := function_named(name)) is not None]
 
 
 def _sum_of_modes(found: Exponential) -> Formula:

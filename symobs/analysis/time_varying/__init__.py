@@ -1,1 +1,1 @@
-"""TODO symobs/analysis/time_varying."""
+"""Time-varying plants: the transition matrix and observability on an interval."""

@@ -16,7 +16,7 @@ from symobs.analysis.time_varying.transition_matrix import (
     transition,
 )
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, rank
-from symobs.exact.kernel.generators import derivative, identities, known, substitute
+from symobs.exact.kernel.generators import derivative, function_named, identities, substitute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -65,7 +65,7 @@ def dependences(
 
 def _functions(values: Iterable[Matrix | Scalar]) -> list[Scalar]:
     """Return the functions that occur in values."""
-    names = {name for value in values for name in value.names if known(name)}
+    names = {name for value in values for name in value.names if function_named(name)}
     return [Scalar.symbol(name) for name in sorted(names)]
 
 
@@ -79,7 +79,7 @@ def _moved(value: Scalar, one: Scalar, other: Scalar) -> Scalar:
 
 def has_functions(value: Matrix | Scalar) -> bool:
     """Whether exponentials, cosines or the like occur."""
-    return any(known(name) for name in value.names)
+    return any(function_named(name) for name in value.names)
 
 
 def closed_form(plant: StateSpace, asked: Asked, test: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""TODO symobs/audit/equations."""
+"""Printed equations: their grammar, the values of letters and signals, and their evaluation."""

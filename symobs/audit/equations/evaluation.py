@@ -24,7 +24,7 @@ from symobs.certificate.claims import EVALUATION_ERRORS
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator, decimals_in
-from symobs.expression.syntax_tree import Node, exponent_of
+from symobs.expression.syntax_tree import SyntaxNode, exponent_of
 from symobs.formula import Apply, Letter, Literal, Signal
 from symobs.formula.term import Term, block
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symobs.audit.equations.reading import Reading
 
 
-def value_of(node: Node, reading: Reading) -> Printed:
+def value_of(node: SyntaxNode, reading: Reading) -> Printed:
     """Return what a tree is worth; raises Misfit, Unknown and BudgetExceeded."""
     found = _value(node, reading)
     if isinstance(found, Term):
@@ -49,7 +49,7 @@ def _bounded(term: Term) -> None:
             raise too_large()
 
 
-def _value(node: Node, reading: Reading) -> Printed:
+def _value(node: SyntaxNode, reading: Reading) -> Printed:
     parts = node.parts
     match node.kind:
         case "number":
@@ -66,7 +66,7 @@ def _value(node: Node, reading: Reading) -> Printed:
         case "product":
             total = value_of(parts[0], reading)
             for i, part in enumerate(parts[1:], start=1):
-                total = _times(total, value_of(part, reading), Node("product", parts[:i]), part)
+                total = _times(total, value_of(part, reading), SyntaxNode("product", parts[:i]), part)
                 if isinstance(total, Term):
                     _bounded(total)
             return total
@@ -97,7 +97,7 @@ def _letter(name: str, reading: Reading) -> Printed:
     raise Unknown(name)
 
 
-def _sum(parts: Sequence[Node], reading: Reading) -> Printed:
+def _sum(parts: Sequence[SyntaxNode], reading: Reading) -> Printed:
     found = [value_of(part, reading) for part in parts]
     terms = [(part, value) for part, value in zip(parts, found, strict=True) if isinstance(value, Term)]
     if not terms:
@@ -115,11 +115,11 @@ def _sum(parts: Sequence[Node], reading: Reading) -> Printed:
     return total
 
 
-def _unsigned(part: Node) -> Node:
+def _unsigned(part: SyntaxNode) -> SyntaxNode:
     return part.parts[0] if part.kind == "negative" else part
 
 
-def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed:
+def _times(left: Printed, right: Printed, before: SyntaxNode, behind: SyntaxNode) -> Printed:
     if isinstance(left, Flexible):
         if isinstance(right, Flexible):
             return Flexible(left.factor * right.factor)
@@ -138,7 +138,7 @@ def _times(left: Printed, right: Printed, before: Node, behind: Node) -> Printed
     return left @ right
 
 
-def _quotient(parts: Sequence[Node], reading: Reading) -> Printed:
+def _quotient(parts: Sequence[SyntaxNode], reading: Reading) -> Printed:
     above, below = (value_of(part, reading) for part in parts)
     if isinstance(below, Flexible) or is_signal(below) or shape(below) not in (None, (1, 1)):
         raise Misfit(f"{parts[1]} is no number to divide by")
@@ -149,7 +149,7 @@ def _quotient(parts: Sequence[Node], reading: Reading) -> Printed:
     return Flexible(above.factor / divisor) if isinstance(above, Flexible) else above / below
 
 
-def _power(base: Node, exponent: int, reading: Reading) -> Printed:
+def _power(base: SyntaxNode, exponent: int, reading: Reading) -> Printed:
     value = value_of(base, reading)
     if isinstance(value, Flexible):
         if exponent < 0:
@@ -173,13 +173,13 @@ def _power(base: Node, exponent: int, reading: Reading) -> Printed:
     return total
 
 
-def _require_inverse(base: Node, determinant: Scalar, reading: Reading) -> None:
+def _require_inverse(base: SyntaxNode, determinant: Scalar, reading: Reading) -> None:
     if determinant.is_zero:
         raise Misfit(f"{base} has no inverse")
     reading.fails_where([determinant], f"{base} has no inverse")
 
 
-def _at(function: Node, argument: Node, reading: Reading) -> Printed:
+def _at(function: SyntaxNode, argument: SyntaxNode, reading: Reading) -> Printed:
     """Return a function at its argument: P(0), φ(A); at its own variable, and at a time, it is itself."""
     value, variable = value_of(function, reading), reading.environment.variable
     varies = isinstance(value, Term) and not is_signal(value) and variable in value.value.names
@@ -203,7 +203,7 @@ def _at(function: Node, argument: Node, reading: Reading) -> Printed:
     return Term(Literal(found), reading.environment)
 
 
-def _at_matrix(function: Node, value: Term, argument: Node, where: Term) -> Term:
+def _at_matrix(function: SyntaxNode, value: Term, argument: SyntaxNode, where: Term) -> Term:
     polynomial = function.kind == "letter" and isinstance(value.value, Scalar)
     if not polynomial or not value.value.is_polynomial_in(where.environment.variable):
         raise Misfit(f"{function} is no polynomial, which alone has a value at a matrix")
@@ -212,7 +212,7 @@ def _at_matrix(function: Node, value: Term, argument: Node, where: Term) -> Term
     return Term(Apply(f"{function.text}_at", where.formula), where.environment)
 
 
-def _primed(base: Node, reading: Reading) -> Printed:
+def _primed(base: SyntaxNode, reading: Reading) -> Printed:
     value = value_of(base, reading)
     if isinstance(value, Flexible):
         return value
@@ -229,7 +229,7 @@ def _primed(base: Node, reading: Reading) -> Printed:
 # -- blocks -----------------------------------------------------------------------------------------------------------
 
 
-def _block(rows: Sequence[Sequence[Node]], reading: Reading) -> Printed:
+def _block(rows: Sequence[Sequence[SyntaxNode]], reading: Reading) -> Printed:
     found = [[value_of(entry, reading) for entry in row] for row in rows]
     found = [[_zero(value) for value in row] for row in found] if _in_blocks(found) else found
     heights: list[int | None] = [None] * len(rows)
@@ -295,7 +295,7 @@ def _of_size(value: Flexible, size: tuple[int, int], reading: Reading) -> Term:
 # -- functions --------------------------------------------------------------------------------------------------------
 
 
-def _call(node: Node, reading: Reading) -> Printed:
+def _call(node: SyntaxNode, reading: Reading) -> Printed:
     if node.text == "integral":
         return _integral(node.parts, reading)
     found = [value_of(part, reading) for part in node.parts]
@@ -305,19 +305,19 @@ def _call(node: Node, reading: Reading) -> Printed:
     return Term(Literal(applied(node, arguments, reading)), reading.environment)
 
 
-def _argument(part: Node, value: Printed) -> Matrix:
+def _argument(part: SyntaxNode, value: Printed) -> Matrix:
     if isinstance(value, Flexible) or is_signal(value):
         raise Misfit(f"{part} is no matrix here")
     return value.value if isinstance(value.value, Matrix) else Matrix.of([[value.value]])
 
 
-def _size(part: Node, value: Printed, reading: Reading) -> Term:
+def _size(part: SyntaxNode, value: Printed, reading: Reading) -> Term:
     if isinstance(value, Flexible):
         raise Misfit(f"{part} has any size")
     return Term(Literal(Matrix.row(list(shape(value) or (1, 1)))), reading.environment)
 
 
-def _integral(parts: Sequence[Node], reading: Reading) -> Term:
+def _integral(parts: Sequence[SyntaxNode], reading: Reading) -> Term:
     if parts[1].kind != "letter":
         raise Misfit(f"{parts[1]} is no time to integrate over")
     integrand, begin, end = (_argument(part, value_of(part, reading)) for part in (parts[0], *parts[2:]))
@@ -329,7 +329,7 @@ def _integral(parts: Sequence[Node], reading: Reading) -> Term:
     return Term(Literal(found), reading.environment)
 
 
-def as_printed(node: Node, reading: Reading) -> Matrix | Scalar | None:
+def as_printed(node: SyntaxNode, reading: Reading) -> Matrix | Scalar | None:
     """Return what is printed of a value, decimals as generators; None where decimals are used and not compared.
 
     They are compared where numbers, symbols, sums, products and quotients make up a number or the entries of one bracket.
@@ -340,7 +340,7 @@ def as_printed(node: Node, reading: Reading) -> Matrix | Scalar | None:
     return None if isinstance(found, Flexible) or is_signal(found) else found.value
 
 
-def _written_as(node: Node, reading: Reading) -> str | None:
+def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
     """Return `number` or `block` for a value that is written out, None for what refers to other values."""
     plain = {*reading.environment.signs, reading.environment.variable, *INSTANTS}
     kinds = [_written_as(part, reading) for part in node.parts]
@@ -361,7 +361,7 @@ def _written_as(node: Node, reading: Reading) -> str | None:
             return None
 
 
-def holds(left: Node, right: Node, reading: Reading) -> bool:
+def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
     """Tell whether an equation is true; one whose sizes do not fit is not."""
     try:
         return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
@@ -369,7 +369,7 @@ def holds(left: Node, right: Node, reading: Reading) -> bool:
         return False
 
 
-def is_rounded(node: Node, reading: Reading) -> bool:
+def is_rounded(node: SyntaxNode, reading: Reading) -> bool:
     """Whether a side is a value written out with decimals."""
     value = as_printed(node, reading)
     return value is not None and bool(decimals_in(value))

@@ -21,7 +21,7 @@ from symobs.expression.tokenizer import Tokeniser
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
 
 FUNCTIONS = (
     ("det", 1),
@@ -48,7 +48,7 @@ _OF_ITS_VARIABLE = re.compile(rf"\([ ]*({'|'.join(VARIABLES)})[ ]*\)")
 
 def read_relation(
     text: str, where: str, functions: Collection[str] = (), symbols: Collection[str] = ()
-) -> tuple[Node, ...]:
+) -> tuple[SyntaxNode, ...]:
     """Return the members of a printed equation `a = b = …`; raises ExpressionError with the place of the fault.
 
     A letter of `functions` directly before "(" is applied to what stands there; before `(s)`, `(z)` or `(t)` any letter is
@@ -67,7 +67,7 @@ def read_relation(
     return members
 
 
-def _require_known(part: Node, source: Source) -> None:
+def _require_known(part: SyntaxNode, source: Source) -> None:
     """Refuse exponents that are no integers, and functions of another number of arguments."""
     if part.kind == "power":
         exponent = exponent_of(part)

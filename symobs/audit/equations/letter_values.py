@@ -34,7 +34,7 @@ HIDDEN = frozenset({"Phi_", "F_z", "G_u", "G_y"})
 
 
 @dataclass(frozen=True)
-class Matrices:
+class PlantMatrices:
     """The matrices of a plant, None for what it does not have."""
 
     A: Matrix
@@ -43,16 +43,16 @@ class Matrices:
     D: Matrix | None
 
     @staticmethod
-    def of(plant: StateSpace) -> Matrices:
+    def of(plant: StateSpace) -> PlantMatrices:
         """Return the matrices of a plant."""
         m = plant.matrices
         B, C = m.B if m.B.shape[1] else None, m.C if m.C.shape[0] else None
-        return Matrices(m.A, B, C, m.D if B is not None and C is not None else None)
+        return PlantMatrices(m.A, B, C, m.D if B is not None and C is not None else None)
 
 
 def values(plant: StateSpace, results: Sequence[Result], convention: Convention) -> dict[str, Value]:
     """Return the value of every letter for a matrix or a number, in a convention."""
-    m, name, answers = Matrices.of(plant), convention.name, answers_of(results)
+    m, name, answers = PlantMatrices.of(plant), convention.name, answers_of(results)
     K, L = answers.get("K"), answers.get("L")
     written = convention.written(reduced=any(result.has_reduced_observer for result in results))
     found: dict[str, Value | None] = {key: value for key, value in answers.items() if key not in {"K", "L", "T"}}
@@ -98,7 +98,7 @@ def _transition(answers: Mapping[str, Any]) -> Matrix | None:
 
 
 def _of_the_plant(plant: StateSpace) -> dict[str, Value | None]:
-    m, s = Matrices.of(plant), Scalar.symbol(plant.variable)
+    m, s = PlantMatrices.of(plant), Scalar.symbol(plant.variable)
     pencil = Matrix.identity(plant.order) * s - m.A
     found: dict[str, Value | None] = {}
     if m.C is not None:
@@ -120,7 +120,7 @@ def _polynomials(
     plant: StateSpace, K: Matrix | None, L: Matrix | None, convention: Convention
 ) -> dict[str, Value | None]:
     """Return the characteristic and the desired polynomials, V of the pair (Aᵀ, Cᵀ), and the coefficients of S1."""
-    m, s, name = Matrices.of(plant), plant.variable, convention.name
+    m, s, name = PlantMatrices.of(plant), plant.variable, convention.name
     found: dict[str, Value | None] = {}
     if K is not None and m.B is not None:
         found[convention.letters.get("phi_c", "phi_c")] = (m.A - m.B @ K).characteristic_polynomial(s)
@@ -142,7 +142,7 @@ def _polynomials(
 
 def blocks_of(plant: StateSpace, K: Matrix | None, L: Matrix | None, convention: Convention) -> dict[str, Value | None]:
     """Return the blocks of the plant where y = C₁ x₁ with C₁ invertible, and the minimal-order observer made of them."""
-    m = Matrices.of(plant)
+    m = PlantMatrices.of(plant)
     first = leading_block(m.C)
     if first is None or m.C is None or first == m.C:
         return {}
@@ -166,7 +166,7 @@ def blocks_of(plant: StateSpace, K: Matrix | None, L: Matrix | None, convention:
     return found | ({written.get("G_z", "G"): u} if m.B is not None else {})
 
 
-def _for_the_observer(m: Matrices, L: Matrix | None, name: str) -> dict[str, Value | None]:
+def _for_the_observer(m: PlantMatrices, L: Matrix | None, name: str) -> dict[str, Value | None]:
     """Return F and G of S4, x̂' = F x̂ + G u + H y."""
     if name != "S4" or L is None or m.C is None or L.shape != (m.A.shape[0], m.C.shape[0]):
         return {}

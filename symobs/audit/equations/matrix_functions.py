@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.audit.equations.reading import Reading
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
     from symobs.formula import Environment
 
 MOST_TERMS = 5_000
@@ -65,7 +65,7 @@ def sized(size: tuple[int, int] | None) -> str:
     return "a number" if size is None else f"{size[0]}x{size[1]}"
 
 
-def applied(node: Node, arguments: Sequence[Matrix], reading: Reading) -> Scalar | Matrix:
+def applied(node: SyntaxNode, arguments: Sequence[Matrix], reading: Reading) -> Scalar | Matrix:
     """Return the value of a function of matrices; raises Misfit and BudgetExceeded."""
     name, first, environment = node.text, arguments[0], reading.environment
     for argument in arguments:
@@ -142,7 +142,7 @@ def _transition(instants: Sequence[Scalar], environment: Environment) -> Matrix:
     return substitute(kept, {END: end, BEGIN: begin})
 
 
-def _function(name: str, part: Node, argument: Matrix, reading: Reading) -> Scalar:
+def _function(name: str, part: SyntaxNode, argument: Matrix, reading: Reading) -> Scalar:
     """Return exp, sin, … of a number, as a generator; where it has a value in the field, that."""
     if argument.shape != (1, 1):
         raise Misfit(f"{part} is {sized(argument.shape)}, but {name} takes a number")
@@ -154,7 +154,7 @@ def _function(name: str, part: Node, argument: Matrix, reading: Reading) -> Scal
     return number if number.is_zero else _root(part, number, reading)
 
 
-def _root(part: Node, radicand: Scalar, reading: Reading) -> Scalar:
+def _root(part: SyntaxNode, radicand: Scalar, reading: Reading) -> Scalar:
     """Return the root that is not negative: of f² it is f or -f, as the sign of f says."""
     unit, factors = radicand.factors()
     odd = product_of([unit, *(factor for factor, power in factors if power % 2)])

@@ -28,7 +28,7 @@ _NOT_NEGATIVE, _NOT_POSITIVE = {"positive", "nonnegative", "zero"}, {"negative",
 
 
 @dataclass(frozen=True)
-class Where:
+class EquationConditions:
     """The conditions of an equation, and the signs of the symbols with them.
 
     apart   of each group one is not 0
@@ -41,7 +41,7 @@ class Where:
     above: tuple[Scalar, ...] = ()
 
     @staticmethod
-    def of(text: str, signs: Mapping[str, str], place: str) -> Where:
+    def of(text: str, signs: Mapping[str, str], place: str) -> EquationConditions:
         """Return what a text such as `c != 0, d > 0` says; raises InputError where it says nothing."""
         apart, above = [], []
         for part in re.split(r",|\band\b", text):
@@ -54,7 +54,7 @@ class Where:
                 apart.append(tuple(value for value, _ in group))
             if group[0][1] != "!=":
                 above.append(group[0][0])
-        return Where(text.strip(), _stronger(signs, apart, above), tuple(apart), tuple(above))
+        return EquationConditions(text.strip(), _stronger(signs, apart, above), tuple(apart), tuple(above))
 
     def sign(self, value: Scalar) -> str:
         """Return what is certain of a sign."""
@@ -119,7 +119,7 @@ class Reading:
     """
 
     environment: Environment
-    where: Where = field(default_factory=Where)
+    where: EquationConditions = field(default_factory=EquationConditions)
     rounding: bool = False
     turned: frozenset[Scalar] = frozenset()
     gaps: list[Gap] = field(default_factory=list)
@@ -179,7 +179,7 @@ def exceptions(reading: Reading, nonzero: tuple[Scalar, ...]) -> tuple[list[str]
     return list(needed), list(reasons)
 
 
-def _parts(values: Sequence[Scalar], where: Where, nonzero: tuple[Scalar, ...]) -> list[list[Scalar]]:
+def _parts(values: Sequence[Scalar], where: EquationConditions, nonzero: tuple[Scalar, ...]) -> list[list[Scalar]]:
     """Return the groups of polynomials of which one has to vanish: each common factor, and what is left of all together."""
     factored: list[dict[Scalar, int]] = [dict(value.factors()[1]) for value in values if not value.is_zero]
     common = [factor for factor in factored[0] if all(factor in other for other in factored)]

@@ -6,7 +6,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
-from symobs.audit.equations.letter_values import MEASURED, Matrices, answers_of, blocks_of, leading_block
+from symobs.audit.equations.letter_values import MEASURED, PlantMatrices, answers_of, blocks_of, leading_block
 from symobs.convention import STANDARD
 from symobs.exact import Matrix
 from symobs.formula import Block, Environment, Formula, Letter, Literal, Negative, Product, Sum
@@ -68,7 +68,7 @@ def signals(
     y stands by itself where nothing of x is `mentioned`, u where it is; the error replaces the estimate where it stands
     on the `right`.
     """
-    m, answers = Matrices.of(plant), answers_of(results)
+    m, answers = PlantMatrices.of(plant), answers_of(results)
     K, L, known = answers.get("K"), answers.get("L"), _Signals()
     called = {key: convention.letters.get(key, key) for key in ("e", "e_2", "e_d", "x_hat")}
     called["x_hat_2"] = convention.letters.get("x_2_hat", "x_hat_2")
@@ -107,7 +107,11 @@ def _sum(*terms: Formula | None) -> Formula:
 
 
 def _full_order(
-    known: _Signals, m: Matrices, L: Matrix, called: Mapping[str, str], letters: tuple[Collection[str], Collection[str]]
+    known: _Signals,
+    m: PlantMatrices,
+    L: Matrix,
+    called: Mapping[str, str],
+    letters: tuple[Collection[str], Collection[str]],
 ) -> None:
     """Add x̂ and e = x - x̂, one of which has equations of its own."""
     mentioned, right = letters
@@ -134,7 +138,7 @@ def _partitioned(
     right: Collection[str],
 ) -> None:
     """Add x = [x₁; x₂], and z, x̂₂ and e₂ of a minimal-order observer, one of which has equations of its own."""
-    m, (L, first) = Matrices.of(plant), gains
+    m, (L, first) = PlantMatrices.of(plant), gains
     n, p = plant.order, first.shape[0]
     for name, rows in (("x_1", range(p)), ("x_2", range(p, n))):
         known.free(name, len(rows), Product((Literal(Matrix.identity(n).select(rows, range(n))), rate)))

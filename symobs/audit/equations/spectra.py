@@ -8,10 +8,10 @@ from symobs.errors import InputError
 from symobs.exact import Scalar, roots_of
 from symobs.exact.algebraic.rounded_decimals import polynomial_of
 from symobs.expression import parse_poles
-from symobs.expression.syntax_tree import Node
+from symobs.expression.syntax_tree import SyntaxNode
 
 
-def spectral(left: Node, right: Node, variable: str) -> tuple[Node, Node]:
+def spectral(left: SyntaxNode, right: SyntaxNode, variable: str) -> tuple[SyntaxNode, SyntaxNode]:
     """Return both sides, a list of numbers beside `eigenvalues` read as the polynomial with these roots."""
     if is_spectrum(left) and right.kind == "block":
         return left, _polynomial(right, variable)
@@ -20,26 +20,26 @@ def spectral(left: Node, right: Node, variable: str) -> tuple[Node, Node]:
     return left, right
 
 
-def is_spectrum(node: Node) -> bool:
+def is_spectrum(node: SyntaxNode) -> bool:
     """Whether this is `eigenvalues(X)`."""
     return node.kind == "call" and node.text == "eigenvalues"
 
 
-def _polynomial(node: Node, variable: str) -> Node:
+def _polynomial(node: SyntaxNode, variable: str) -> SyntaxNode:
     try:
         roots = parse_poles(str(node), functions=True, rounding=True)
     except InputError:
         raise Misfit(f"{node} is no list of numbers") from None
     try:
-        return Node("number", text=str(node), value=polynomial_of(roots, variable))
+        return SyntaxNode("number", text=str(node), value=polynomial_of(roots, variable))
     except ValueError:
         raise Misfit(f"{node} lacks a complex conjugate") from None
 
 
-def spectrum_text(spectrum: Node, polynomial: Scalar, variable: str) -> str:
+def spectrum_text(spectrum: SyntaxNode, polynomial: Scalar, variable: str) -> str:
     """Return the equation that lists the eigenvalues, or that gives their polynomial where they have no short form."""
     roots = [str(root) for root in roots_of(polynomial, variable)]
     if not any("CRootOf" in root for root in roots):
         return f"{spectrum} = [{', '.join(root.replace(' ', '') for root in roots)}]".replace("**", "^")
-    pencil = Node("sum", (Node("letter", text=f"{variable} I"), Node("negative", spectrum.parts)))
-    return f"{Node('call', (pencil,), text='det')} = {text(polynomial)}"
+    pencil = SyntaxNode("sum", (SyntaxNode("letter", text=f"{variable} I"), SyntaxNode("negative", spectrum.parts)))
+    return f"{SyntaxNode('call', (pencil,), text='det')} = {text(polynomial)}"

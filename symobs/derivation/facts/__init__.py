@@ -1,1 +1,1 @@
-"""TODO symobs/derivation/facts."""
+"""Facts a derivation may state besides equations: properties of matrices, rejected alternatives, restricted parameters."""

@@ -12,14 +12,14 @@ from symobs.conditions import never_zero, vanishing_factors
 from symobs.derivation.facts.rejection import reject
 from symobs.exact import Ideal, Scalar, apart_from_zero
 from symobs.exact.kernel.generators import substitute
-from symobs.formula import Environment, Exact, Relation, Together, evaluate
+from symobs.formula import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.plain_text import plain_relation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-def on_stratum(when: Relation | Together, substitution: dict[str, Scalar], environment: Environment) -> Environment:
+def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], environment: Environment) -> Environment:
     """Return the environment on a stratum, after verifying that the substitution describes it.
 
     Without a substitution the single equation itself is what is known inside: that a polynomial of the parameters
@@ -61,7 +61,7 @@ def on_stratum(when: Relation | Together, substitution: dict[str, Scalar], envir
         above=above,
         relations=relations,
     )
-    if isinstance(when, Together):
+    if isinstance(when, Conjunction):
         return inside.under(_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
     factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
@@ -78,7 +78,7 @@ def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> An
     return substitute(value, substitution)
 
 
-def _left_of(when: Together, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
+def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
     """Return what of the equations (1 − w p = 0 for an inequation of p) is left when parameters are put in.
 
     What is said of the stratum is held to them, and so to each of its points.

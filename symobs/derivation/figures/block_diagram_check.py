@@ -14,6 +14,7 @@ from symobs.exact import Scalar
 from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
 from symobs.formula import (
     Block,
+    Conjunction,
     Derivative,
     Environment,
     Formula,
@@ -23,7 +24,6 @@ from symobs.formula import (
     Product,
     Relation,
     Sum,
-    Together,
     children,
     letters,
 )
@@ -58,7 +58,7 @@ class _Flow:
     def label(self, name: str) -> Formula:
         """Return a label that must be there."""
         found = self.labels.get(name)
-        if found is None or isinstance(found, Together):
+        if found is None or isinstance(found, Conjunction):
             raise ValueError(f"no formula for {name}")
         return found
 
@@ -66,7 +66,7 @@ class _Flow:
         """Yield the equation of a node, if it has one."""
         wires = self.figure.into(node)
         label = self.labels.get(key(node))
-        if isinstance(label, Together):
+        if isinstance(label, Conjunction):
             yield from label.relations
             self.hold_to_its_signals(node, label)
         elif is_integrator(node):
@@ -109,9 +109,9 @@ class _Flow:
 
     def is_from_system(self, wires: list[Wire]) -> bool:
         """Whether wires come from the box of a whole system, which says itself what leaves it."""
-        return any(isinstance(self.labels.get(wire.begin), Together) for wire in wires)
+        return any(isinstance(self.labels.get(wire.begin), Conjunction) for wire in wires)
 
-    def hold_to_its_signals(self, node: str, equations: Together) -> None:
+    def hold_to_its_signals(self, node: str, equations: Conjunction) -> None:
         """Reject a system whose equations speak of other signals than those at its box and its own state."""
         members = [member for relation in equations.relations for member in relation.members]
         spoken = {name for member in members for name in letters(member)} & self.environment.signals.keys()

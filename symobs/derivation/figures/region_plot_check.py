@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from symobs.derivation.figures.plot_points import Stability
     from symobs.exact import Scalar
-    from symobs.figures.plot import Curve, Interval, Mark, Place, RegionPicture
+    from symobs.figures.plot import Curve, Interval, MarkedPoint, Place, RegionPicture
     from symobs.formula import Relation
 
 #: Parts of a window: what is near a curve, and what the middle of a drawn segment may lie off its curve.
@@ -97,7 +97,7 @@ def faults_of_area(
 
 
 def faults_of_mark(
-    mark: Mark,
+    mark: MarkedPoint,
     is_filled: bool,  # noqa: FBT001 - the tests keep what is asked by position
     window: tuple[Interval, Interval],
     test: Stability,

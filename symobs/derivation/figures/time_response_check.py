@@ -1,4 +1,4 @@
-"""Whether courses over time are those of the equations of the page (trusted).
+"""Whether responses over time are those of the equations of the page (trusted).
 
 The values are found anew, in whole numbers with an error that is counted: e^{Mh} from the power series of a small part
 of Mh and by squaring, and then twice as many instants with each power e^{Mh}, e^{2Mh}, e^{4Mh}, ….  In discrete time
@@ -21,7 +21,7 @@ from symobs.formula import Block, Derivative, Exact, Letter, Literal, Product, R
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.figures.plot import Course, TimeResponse
+    from symobs.figures.plot import Response, TimeResponse
     from symobs.formula import Environment, Formula
 
 #: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
@@ -35,16 +35,16 @@ _TURN, _SQUARINGS = 3, 6
 
 
 def faults_of_response(picture: TimeResponse, subject: Formula, environment: Environment) -> Iterator[str]:
-    """Yield what a picture of courses shows that is not so."""
+    """Yield what a picture of responses shows that is not so."""
     state = Block(tuple((Letter(name),) for name in picture.states))
     for relation in ((Derivative(state), Product((subject, state))), *_signals(picture, state, environment)):
         if verify(Relation(relation, ("=",)), environment)[0] == "":
             yield f"an equation of {', '.join(picture.states)} with this matrix"
             return
     (begin, end), (bottom, top) = picture.window
-    counts = {len(course.heights) for course in picture.courses}
+    counts = {len(response.heights) for response in picture.responses}
     if len(counts) != 1 or min(counts) < 2 or begin != 0 or end <= 0 or bottom >= top or picture.parts < 1:
-        yield "a window that begins at 0 and that courses fill"
+        yield "a window that begins at 0 and that responses fill"
         return
     steps = min(counts) - 1
     sizes = [_size(name, environment) for name in picture.states]
@@ -60,34 +60,34 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
         yield "modes that do not turn unseen between two instants"
         return
     values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
-    for course in picture.courses:
-        yield from _faults_of_course(course, picture.parts, values, (bottom, top))
+    for response in picture.responses:
+        yield from _faults_of_component(response, picture.parts, values, (bottom, top))
 
 
 def _faults_of_samples(picture: TimeResponse, matrix: Matrix, state: tuple[Fraction, ...]) -> Iterator[str]:
-    """Yield where a course of discrete time is not what it is said to be: exactly row · Mᵏ · start."""
-    count = len(picture.courses[0].heights)
+    """Yield where a response of discrete time is not what it is said to be: exactly row · Mᵏ · start."""
+    count = len(picture.responses[0].heights)
     if picture.window[0][1] != count - 1:
         yield "instants other than 0, 1, 2, ..."
         return
     table = [[entry.fraction() for entry in row] for row in matrix.rows]
-    heights: list[list[Fraction]] = [[] for _ in picture.courses]
+    heights: list[list[Fraction]] = [[] for _ in picture.responses]
     for _ in range(count):
-        for found, course in zip(heights, picture.courses, strict=True):
-            found.append(sum(map(mul, course.row, state), Fraction(0)))
+        for found, response in zip(heights, picture.responses, strict=True):
+            found.append(sum(map(mul, response.row, state), Fraction(0)))
         state = tuple(sum(map(mul, row, state), Fraction(0)) for row in table)
     bottom, top = picture.window[1]
-    for found, course in zip(heights, picture.courses, strict=True):
-        if [height * picture.parts for height in found] != list(course.heights):
-            yield f"the course of {course.signal}"
+    for found, response in zip(heights, picture.responses, strict=True):
+        if [height * picture.parts for height in found] != list(response.heights):
+            yield f"the response of {response.signal}"
         if min(found) < bottom or max(found) > top:
-            yield f"{course.signal}, which leaves the window,"
+            yield f"{response.signal}, which leaves the window,"
 
 
 def _signals(picture: TimeResponse, state: Block, environment: Environment) -> Iterator[tuple[Formula, Formula]]:
-    """Yield the equations that make courses components of their signals."""
-    for name in dict.fromkeys(course.signal for course in picture.courses):
-        rows = {course.component: course.row for course in picture.courses if course.signal == name}
+    """Yield the equations that make responses components of their signals."""
+    for name in dict.fromkeys(response.signal for response in picture.responses):
+        rows = {response.component: response.row for response in picture.responses if response.signal == name}
         size = _size(name, environment)
         if sorted(rows) != ([0] if size == 1 else list(range(1, size + 1))):
             raise ValueError(f"not all components of {name}")
@@ -101,22 +101,22 @@ def _size(name: str, environment: Environment) -> int:
     return signal.size if isinstance(signal, Signal) else 0
 
 
-def _faults_of_course(
-    course: Course, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
+def _faults_of_component(
+    response: Response, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
 ) -> Iterator[str]:
-    """Yield where a course is not what it is said to be; `values` are those at all instants and between them."""
-    common = lcm(*(part.denominator for part in course.row))
-    row = [int(part * common) for part in course.row]
+    """Yield where a response is not what it is said to be; `values` are those at all instants and between them."""
+    common = lcm(*(part.denominator for part in response.row))
+    row = [int(part * common) for part in response.row]
     true = [sum(map(mul, row, value)) // common for value in values]
-    drawn = [(height << _BITS) // parts for height in course.heights]
+    drawn = [(height << _BITS) // parts for height in response.heights]
     bottom, top = (int(edge * (1 << _BITS)) for edge in edges)
     height = top - bottom
     off = [abs(y - value) for y, value in zip(drawn, true[::2], strict=True)]
     between = [abs((a + b) // 2 - value) for (a, b), value in zip(pairwise(drawn), true[1::2], strict=True)]
     if max(off) > height * _NEAR or max(between) > height * _BETWEEN:
-        yield f"the course of {course.signal}"
+        yield f"the response of {response.signal}"
     if min(drawn) < bottom or max(drawn) > top:
-        yield f"{course.signal}, which leaves the window,"
+        yield f"{response.signal}, which leaves the window,"
 
 
 def _is_slow(matrix: Matrix, step: Fraction) -> bool:
@@ -163,7 +163,7 @@ def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count:
         if max(state.error for state in states) < 1 << (spare - 1):
             half = 1 << (spare - 1)
             return [[(part + half) >> spare for (part,) in state.rows] for state in states]
-    raise ValueError("a course with too much to compute")
+    raise ValueError("a response with too much to compute")
 
 
 def _exponential(table: list[list[Fraction]], bits: int) -> _Enclosed:

@@ -1,1 +1,1 @@
-"""TODO symobs/design/compensator."""
+"""Observer-based compensators of full and of minimal order, and their pages."""

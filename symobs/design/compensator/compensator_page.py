@@ -20,7 +20,7 @@ from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop,
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
-from symobs.formula import Exactly, Literal, Quotient, Roots, Shown
+from symobs.formula import HoldsExactlyWhere, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.phrases import PHRASES
 from symobs.result import page_of
@@ -173,7 +173,7 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         return
     inequalities = [as_inequality(value, plant.symbols.signs) for value in positive]
     where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
-    page.conclude(f"{stem}_stable_if", proper, where=Exactly(predicate("stable", page["F"]), where), **slots)
+    page.conclude(f"{stem}_stable_if", proper, where=HoldsExactlyWhere(predicate("stable", page["F"]), where), **slots)
 
 
 def _reason(page: Page, design: OutputFeedback, word: str) -> dict[str, Slot]:

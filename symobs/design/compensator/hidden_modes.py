@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.derivation.builder import predicate, relation
 from symobs.exact import Matrix, Scalar, pole_and_zero_polynomial, roots_of
-from symobs.formula import Exactly, Literal, Quotient, Roots
+from symobs.formula import HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -68,5 +68,5 @@ def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
         page.caution(f"hides_{time}", predicate("unstable", rest), relation(rest, hidden), modes=modes)
         return
     solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
-    where = Exactly(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
+    where = HoldsExactlyWhere(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
     page.caution("some_hidden", relation(rest, hidden), modes=modes, where=where)

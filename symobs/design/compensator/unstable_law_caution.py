@@ -1,4 +1,4 @@
-"""TODO symobs/design/compensator/unstable_law_caution.py."""
+"""Remark on a compensator that is unstable in open loop."""
 
 from __future__ import annotations
 

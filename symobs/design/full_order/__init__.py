@@ -1,1 +1,1 @@
-"""TODO symobs/design/full_order."""
+"""Full-order observers and state feedback, and the existence of an asymptotic observer."""

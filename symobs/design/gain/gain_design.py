@@ -31,7 +31,7 @@ from symobs.exact.kernel.generators import identities
 from symobs.formula import Environment, Literal, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Case, Result
-from symobs.stability.criteria.stability import Stability, stability
+from symobs.stability.criteria.stability import StabilityVerdict, stability
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -338,7 +338,7 @@ class GainDesign(Result):
         return cases_of(self, self.desired) if self.desired is not None else cases_of_given(self)
 
     @cached_property
-    def stability(self) -> Stability:
+    def stability(self) -> StabilityVerdict:
         """Whether the polynomial is stable, or where."""
         plant = self.plant
         return stability(self.answer["polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)

@@ -1,4 +1,4 @@
-"""The method whose derivation of a gain is printed where none was asked for."""
+"""Choice of the derivation for a gain: canonical form for small plants, else a general formula."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""TODO symobs/design/page_parts."""
+"""Parts shared by the pages of designs: block diagrams, component equations, time responses and remarks on poles."""

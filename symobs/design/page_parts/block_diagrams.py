@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation.builder import Page, relation
-from symobs.formula import Negative, Quotient, Together
+from symobs.formula import Conjunction, Negative, Quotient
 from symobs.formula.term import Term, block
 
 if TYPE_CHECKING:
@@ -97,26 +97,26 @@ def _driven(page: Page) -> Term:
     return page["B"] - page["L"] @ page["D"] if page.plant.matrices.has_feedthrough else page["B"]
 
 
-def _plant(page: Page) -> Together:
+def _plant(page: Page) -> Conjunction:
     x, u = page["x"], page["u"]
     output = page["C"] @ x
     if page.plant.matrices.has_feedthrough:
         output = output + page["D"] @ u
-    return Together((relation(x.derivative, page["A"] @ x + page["B"] @ u), relation(page["y"], output)))
+    return Conjunction((relation(x.derivative, page["A"] @ x + page["B"] @ u), relation(page["y"], output)))
 
 
-def _observer(page: Page) -> Together:
+def _observer(page: Page) -> Conjunction:
     x_hat, L = page["x_hat"], page["L"]
     rate = (page["A"] - L @ page["C"]) @ x_hat + _driven(page) @ page["u"] + L @ page["y"]
-    return Together((relation(x_hat.derivative, rate),))
+    return Conjunction((relation(x_hat.derivative, rate),))
 
 
-def _minimal_order_observer(page: Page) -> Together:
+def _minimal_order_observer(page: Page) -> Conjunction:
     z, u, y = _state(page), page["u"], page["y"]
     rate = page["F_z"] @ z + page["G_z"] @ u + page["H_z"] @ y
     known = y - page["D"] @ u if page.plant.matrices.has_feedthrough else y
     estimate = page["M_z"] @ block([[known], [z]])
-    return Together((relation(z.derivative, rate), relation(page["x_hat"], estimate)))
+    return Conjunction((relation(z.derivative, rate), relation(page["x_hat"], estimate)))
 
 
 def _state(page: Page) -> Term:

@@ -8,7 +8,7 @@ from operator import mul
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix
-from symobs.figures.plot import Course, TimeResponse
+from symobs.figures.plot import Response, TimeResponse
 from symobs.formula import Letter
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from symobs.figures.plot import Interval
     from symobs.formula.term import Term
 
-#: Modes that differ in speed by more cannot be seen in one picture; with more courses none can be told from another.
-_SPREAD, _COURSES = 15.0, 6
+#: Modes that differ in speed by more cannot be seen in one picture; with more responses none can be told from another.
+_SPREAD, _RESPONSES = 15.0, 6
 #: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
 _TIMES = 6.0
 #: In discrete time: the radius below which all modes are dead at once, and how many instants are drawn.
@@ -47,24 +47,24 @@ def _plot(
 ) -> None:
     """Plot, unless the page has parameters or a picture would show nothing."""
     value = matrix.value
-    courses = sum(table.shape[0] for _, table, _ in signals)
-    if value.names or page.plant.relations or courses > _COURSES:
+    responses = sum(table.shape[0] for _, table, _ in signals)
+    if value.names or page.plant.relations or responses > _RESPONSES:
         return
     if page.plant.is_discrete:
         _plot_samples(page, states, matrix, signals, say)
         return
-    from symobs.exact.time_functions.state_response import rates, response  # noqa: PLC0415 - only pages with courses pay for it
+    from symobs.exact.time_functions.state_response import spectral_abscissae, state_response  # noqa: PLC0415 - only pages with responses pay for it
 
-    slowest, fastest = rates(value)
+    slowest, fastest = spectral_abscissae(value)
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)
     try:
-        states_there = response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
+        states_there = state_response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
     except ArithmeticError:
         return
     made = tuple(
-        Course(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
+        Response(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
         for name, table, dashed in signals
         for index, row in enumerate(_rows(table), 1)
     )
@@ -75,9 +75,9 @@ def _plot_samples(
     page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
 ) -> None:
     """Plot the exact values at 0, 1, 2, …, until they are small, unless that takes too many."""
-    from symobs.exact.time_functions.state_response import radius  # noqa: PLC0415 - only pages with courses pay for it
+    from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - only pages with responses pay for it
 
-    largest, size = radius(matrix.value), matrix.value.shape[0]
+    largest, size = spectral_radius(matrix.value), matrix.value.shape[0]
     last = size + 1 if largest < _DEAD else ceil(_TIMES / -log(largest)) if largest < 1 else _SAMPLES + 1
     if last > _SAMPLES:
         return
@@ -99,7 +99,7 @@ def _plot_samples(
     ]
     parts = lcm(*(height.denominator for _, _, _, heights, _ in found for height in heights))
     made = tuple(
-        Course(name, index, row, tuple(int(height * parts) for height in heights), dashed)
+        Response(name, index, row, tuple(int(height * parts) for height in heights), dashed)
         for name, index, row, heights, dashed in found
     )
     window = _window(Fraction(len(states_there) - 1), made, parts)
@@ -110,9 +110,9 @@ def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], 
     return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
 
 
-def _window(end: Fraction, courses: Sequence[Course], parts: int) -> tuple[Interval, Interval]:
+def _window(end: Fraction, responses: Sequence[Response], parts: int) -> tuple[Interval, Interval]:
     """Return a window with a little room above and below."""
-    low, high = min(min(course.heights) for course in courses), max(max(course.heights) for course in courses)
+    low, high = min(min(course.heights) for course in responses), max(max(course.heights) for course in responses)
     edge = Fraction(high - low, 20)
     return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
 

@@ -1,1 +1,1 @@
-"""TODO symobs/design/pole_advice."""
+"""Advice on observer poles: candidates and warnings from the zeros and poles of the plant."""

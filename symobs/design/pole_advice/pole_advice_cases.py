@@ -12,7 +12,7 @@ from symobs.analysis.strata.strata import carried, region_of, strata
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.pole_advice.pole_candidates import OPEN, needed_of
 from symobs.errors import InputError
-from symobs.exact.kernel.generators import NotWritten, known
+from symobs.exact.kernel.generators import NotWritten, function_named
 from symobs.result import Case
 
 if TYPE_CHECKING:
@@ -87,6 +87,6 @@ def _of_kept_modes(advice: AdvisedPoles) -> Iterator[Case]:
         return
     rest = advice.pair.divided(advice.answer["polynomial"].value)[1]
     left = [c.numerator for c in rest.coefficients(advice.plant.variable) if not c.is_zero]
-    if not any(c.is_constant for c in left) and not any(known(name) for c in left for name in c.names):
+    if not any(c.is_constant for c in left) and not any(function_named(name) for c in left for name in c.names):
         for locus in loci(left, region_of(advice.plant)):
             yield Case(undecided_conditions(locus), {}, None)

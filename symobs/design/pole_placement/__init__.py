@@ -1,1 +1,1 @@
-"""TODO symobs/design/pole_placement."""
+"""Pole placement algorithms: from an observable pair and a desired polynomial to the gain."""

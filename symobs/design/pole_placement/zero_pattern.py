@@ -13,7 +13,7 @@ from math import floor
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.exact import EIGENVALUE, Extension, Ideal, Matrix, Scalar, TooLarge, modulo
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, TooLarge, modulo
 from symobs.exact.kernel.generators import identities
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def _in_root(gain: Matrix, factor: Scalar, name: str) -> Matrix | RootGain:
     """Return a gain in a root of a polynomial: with its closed form where it has one."""
     from symobs.exact.algebraic.real_algebraic import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
 
-    field = Extension(factor, name)
+    field = AlgebraicExtension(factor, name)
     reduced = Matrix.of([[field.reduce(entry) for entry in row] for row in gain.rows], gain.shape[1])
     root = roots_of_scalar(factor, name)[0]
     closed = root.closed_form()
@@ -210,7 +210,7 @@ class Search:
         """Whether a factor has a real root, and all equations hold for its roots."""
         from symobs.exact.algebraic.real_algebraic import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
 
-        field = Extension(factor, name)
+        field = AlgebraicExtension(factor, name)
         return all(e.names == {name} and field.reduce(e).is_zero for e in equations) and bool(
             roots_of_scalar(factor, name)
         )

@@ -1,1 +1,1 @@
-"""TODO symobs/design/reduced_order."""
+"""Reduced-order observers, and their pages."""

@@ -1,1 +1,1 @@
-"""TODO symobs/design/reference."""
+"""Reference tracking and feedforward to a state feedback."""

@@ -1,1 +1,1 @@
-"""TODO symobs/exact/algebraic."""
+"""Algebraic numbers: roots of polynomials, certified enclosures, and decimals."""

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.enclosure import near, sign_of_number
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.exact.kernel.matrix import Matrix
 from symobs.exact.kernel.scalar import Scalar
 
@@ -19,7 +19,7 @@ _MOST_PLACES = 12
 _HARD_TO_READ = 10
 
 
-def places(value: Scalar) -> int | None:
+def decimal_places(value: Scalar) -> int | None:
     """Return how many places after the point a number has, None where it is none or does not end so soon."""
     if not value.is_constant:
         return None
@@ -27,9 +27,9 @@ def places(value: Scalar) -> int | None:
     return next((count for count in range(_MOST_PLACES + 1) if 10**count % below == 0), None)
 
 
-def written(value: Scalar) -> str:
+def decimal_digits(value: Scalar) -> str:
     """Return the digits of a decimal, without its sign: 0.3676, 60.  Raises `ValueError` where it does not end."""
-    count = places(value)
+    count = decimal_places(value)
     if count is None:
         message = f"{value} is not a decimal of at most {_MOST_PLACES} places"
         raise ValueError(message)
@@ -39,7 +39,7 @@ def written(value: Scalar) -> str:
 
 def is_rounding(exact: Scalar, shown: Scalar) -> bool:
     """Tell whether a decimal is off by at most half a unit of its last place; without a point it must be exact."""
-    count = places(shown)
+    count = decimal_places(shown)
     if count is None:
         return False
     if not exact.is_constant:
@@ -75,7 +75,7 @@ def _number(value: Scalar) -> Fraction | None:
     """Return a rational number, or one that a real root without a closed form is nearly."""
     if value.is_constant:
         return value.fraction()
-    counted = any(f.kind == "CRootOf" for name in value.names if (f := known(name)) is not None)
+    counted = any(f.kind == "CRootOf" for name in value.names if (f := function_named(name)) is not None)
     return near(value) if counted else None
 
 

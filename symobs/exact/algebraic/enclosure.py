@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel.generators import PI, known, symbols_in
+from symobs.exact.kernel.generators import PI, function_named, symbols_in
 from symobs.exact.kernel.precision import Precision
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _BITS = (64, 256, 1024, 4096)
 
 def is_number(value: Scalar) -> bool:
     """Whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
-    kinds = {f.kind for name in value.names if (f := known(name)) is not None}
+    kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
     return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
 
 
@@ -83,7 +83,7 @@ def polynomial_ball(value: Scalar, names: Mapping[str, arb]) -> arb:
 
 
 def _generator(name: str) -> arb:
-    found = known(name)
+    found = function_named(name)
     if found is None:
         return arb.pi()
     if isinstance(found, RealRoot):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Extension:
+class AlgebraicExtension:
     """The field of a root `name` of an irreducible polynomial in `name`."""
 
     polynomial: Scalar

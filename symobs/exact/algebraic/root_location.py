@@ -48,7 +48,7 @@ def has_positive_minors(coefficients: Sequence[Fraction]) -> bool:
     )
 
 
-def sides(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:
+def count_roots_by_half_plane(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:
     """Return how many roots lie to the left of the imaginary axis, on it and to the right, by isolating them.
 
     Those on the axis, and pairs r, −r, are roots of the greatest common divisor of p(s) and p(−s), which is sᵏ q(s²):

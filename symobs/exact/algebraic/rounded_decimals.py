@@ -34,7 +34,7 @@ _BITS, _RADIUS, _STEPS = 256, 60, 60
 
 
 @dataclass(frozen=True)
-class Decimal:
+class PrintedDecimal:
     """A decimal as it is printed: so many units of its last place, with the power of ten written beside it."""
 
     units: int
@@ -42,16 +42,16 @@ class Decimal:
     power: str
 
     @staticmethod
-    def of(text: str) -> Decimal | None:
+    def of(text: str) -> PrintedDecimal | None:
         """Return the decimal that a text is; None where it has neither a point nor a power of ten."""
         match = _DECIMAL.fullmatch(text)
         if match is None or (match["places"] is None and match["power"] is None):
             return None
         places = match["places"] or ""
-        return Decimal(int((match["whole"] + places) or "0"), len(places), match["power"] or "")
+        return PrintedDecimal(int((match["whole"] + places) or "0"), len(places), match["power"] or "")
 
-    def __neg__(self) -> Decimal:
-        return Decimal(-self.units, self.places, self.power)
+    def __neg__(self) -> PrintedDecimal:
+        return PrintedDecimal(-self.units, self.places, self.power)
 
     @property
     def unit(self) -> Fraction:
@@ -84,13 +84,13 @@ class Decimal:
 
 def as_generator(text: str, place: int) -> Scalar | None:
     """Return the generator of a decimal; None for a text that is none."""
-    return None if Decimal.of(text) is None else Scalar.symbol(f"{text}@{place}")
+    return None if PrintedDecimal.of(text) is None else Scalar.symbol(f"{text}@{place}")
 
 
-def decimals_in(value: Scalar | Matrix) -> dict[str, Decimal]:
+def decimals_in(value: Scalar | Matrix) -> dict[str, PrintedDecimal]:
     """Return the decimals of a value by their generators."""
     names = sorted(name for name in value.names if "@" in name)
-    return {name: found for name in names if (found := Decimal.of(name.partition("@")[0])) is not None}
+    return {name: found for name in names if (found := PrintedDecimal.of(name.partition("@")[0])) is not None}
 
 
 def written_out(value: Any) -> Any:
@@ -109,9 +109,9 @@ def rounds_to(printed: Scalar, exact: Scalar) -> bool:
     alike = {name: Scalar.symbol(name.partition("@")[0] + "@") for name in decimals}
     merged = {str(alike[name]): each for name, each in decimals.items()}
     equations = _equations(printed - exact, decimals)
-    return _Box(decimals).holds_solution(equations) or (
+    return _DecimalBox(decimals).holds_solution(equations) or (
         len(merged) < len(decimals)
-        and _Box(merged).holds_solution([equation.substitute(alike) for equation in equations])
+        and _DecimalBox(merged).holds_solution([equation.substitute(alike) for equation in equations])
     )
 
 
@@ -133,16 +133,16 @@ def polynomial_of(roots: Iterable[Complex], variable: str) -> Scalar:
     return value
 
 
-def _equations(difference: Scalar, decimals: Mapping[str, Decimal]) -> list[Scalar]:
+def _equations(difference: Scalar, decimals: Mapping[str, PrintedDecimal]) -> list[Scalar]:
     """Return the coefficients that have to vanish: polynomials in the decimals, over numbers."""
     numbers = {name for name in difference.names if name in decimals or is_number(Scalar.symbol(name))}
     return [equation for equation in coefficients_over(difference, numbers) if not equation.is_zero]
 
 
-class _Box:
+class _DecimalBox:
     """What decimals may stand for, and what equations say of them: `meanings` holds those that are solved for."""
 
-    def __init__(self, decimals: Mapping[str, Decimal]) -> None:
+    def __init__(self, decimals: Mapping[str, PrintedDecimal]) -> None:
         self.decimals = dict(decimals)
         self.meanings = {name: Scalar.symbol(name) for name in decimals}
 

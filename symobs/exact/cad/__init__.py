@@ -1,1 +1,1 @@
-"""TODO symobs/exact/cad."""
+"""Cylindrical algebraic decomposition of the plane, and its check."""

@@ -1,1 +1,1 @@
-"""TODO symobs/exact/ideals."""
+"""Polynomial ideals by Gröbner bases."""

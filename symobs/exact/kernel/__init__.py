@@ -1,1 +1,1 @@
-"""TODO symobs/exact/kernel."""
+"""Scalars, matrices and polynomials over Q(parameters), on FLINT."""

@@ -4,10 +4,43 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import gcd
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from symobs.exact.kernel.scalar import Scalar
+    from fractions import Fraction
+
+    from flint import fmpz_mpoly
+
+    from symobs.exact.kernel.field import Field
+
+
+class RationalFunction(Protocol):
+    """A reduced fraction of polynomials with integer coefficients, of which a scalar is one."""
+
+    field: Field
+    numerator_part: fmpz_mpoly
+    denominator_part: fmpz_mpoly
+
+    @property
+    def numerator(self) -> RationalFunction:
+        """The numerator."""
+
+    @property
+    def denominator(self) -> RationalFunction:
+        """The denominator."""
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether no generator occurs."""
+
+    def fraction(self) -> Fraction:
+        """Return a constant as a `Fraction`."""
+
+    def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
+        """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""
+
+    def __hash__(self) -> int:
+        """Return equal numbers for equal values."""
 
 
 def _monomial(coefficient: int, divisor: int, powers: tuple[tuple[str, int], ...]) -> str:
@@ -21,7 +54,7 @@ def _monomial(coefficient: int, divisor: int, powers: tuple[tuple[str, int], ...
     return text if bottom == 1 else f"{text}/{bottom}"
 
 
-def _sum(value: Scalar, divisor: int) -> str:
+def _sum(value: RationalFunction, divisor: int) -> str:
     if divisor == 1 and all(map(str.isidentifier, value.field.names)):  # the kernel's own text, but for its powers
         return str(value.numerator_part.str()).replace("^", "**")
     pieces: list[str] = []
@@ -35,12 +68,12 @@ def _sum(value: Scalar, divisor: int) -> str:
 
 
 @lru_cache(maxsize=16)
-def _denominator(value: Scalar) -> str:
+def _denominator(value: RationalFunction) -> str:
     """Return the text of a denominator: the entries of a matrix share theirs."""
     return _sum(value, 1)
 
 
-def scalar_text(value: Scalar) -> str:
+def scalar_text(value: RationalFunction) -> str:
     """Return the canonical text of a scalar."""
     below = value.denominator
     if below.is_constant:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from threading import Lock
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, Protocol, Self, cast
 from weakref import WeakValueDictionary
 
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
@@ -20,11 +20,17 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from symobs.exact.kernel.generators import Function
-
 VARIABLES = ("s", "z", "t")
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
 EIGENVALUE = "lambda"
+
+
+class NamedFunction(Protocol):
+    """A function that a generator may stand for; functions of one text are equal."""
+
+    @property
+    def text(self) -> str:
+        """SymPy's text."""
 
 
 class Generator(str):
@@ -32,9 +38,9 @@ class Generator(str):
 
     __slots__ = ("function",)
 
-    function: Function
+    function: NamedFunction
 
-    def __new__(cls, function: Function) -> Self:
+    def __new__(cls, function: NamedFunction) -> Self:
         """Return the name of a function; functions of one text are equal."""
         name = super().__new__(cls, function.text)
         name.function = function

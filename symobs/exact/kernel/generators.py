@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import gcd, isqrt, lcm
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, cast, overload
 
 from flint import fmpz
 
@@ -79,9 +79,9 @@ class Function:
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
 
 
-def known(name: str) -> Function | None:
+def function_named(name: str) -> Function | None:
     """Return the function a generator's name stands for, None for a plain symbol."""
-    return name.function if isinstance(name, Generator) else None
+    return cast("Function", name.function) if isinstance(name, Generator) else None
 
 
 def generator(kind: str, argument: Scalar) -> Scalar:
@@ -176,14 +176,14 @@ def square_root_of(numbers: Iterable[Scalar]) -> str:
 
 def roots_in(value: Scalar | Matrix) -> list[Function]:
     """Return the square roots that occur, longer radicands last."""
-    found = [f for name in value.names if (f := known(name)) is not None and f.kind == "sqrt"]
+    found = [f for name in value.names if (f := function_named(name)) is not None and f.kind == "sqrt"]
     return sorted(found, key=lambda f: (f.argument.size, f.name))
 
 
 def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
     """Return the functions among the generators that occur; most fields have none, which is soon seen."""
     having = [value for value in values if value.field.functions]
-    return frozenset(f for value in having for name in value.names if (f := known(name)) is not None)
+    return frozenset(f for value in having for name in value.names if (f := function_named(name)) is not None)
 
 
 def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
@@ -193,7 +193,7 @@ def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
     return frozenset(f for f in found if f.kind == "sqrt") | inner
 
 
-def tidy(value: Scalar) -> Scalar:
+def normal_form(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
         above = _split(value.numerator, root)
@@ -266,7 +266,7 @@ def partial(value: Scalar, name: str) -> Scalar:
 def _rate(name: str, time: str) -> Scalar:
     if name == time:
         return ONE
-    found = known(name)
+    found = function_named(name)
     return ZERO if found is None else found.rate(time)
 
 
@@ -282,7 +282,7 @@ def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar |
         return Matrix.of([[substitute(entry, values) for entry in row] for row in value.rows], value.shape[1])
     images = {name: values[name] for name in value.names if name in values}
     for name in value.names:
-        found = known(name)
+        found = function_named(name)
         if found is not None and found.symbols & values.keys():
             images[name] = found.moved(values)
     return value.substitute(images) if images else value
@@ -292,14 +292,14 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
     """Return the plain symbols of a value, also those inside functions."""
     names: set[str] = set()
     for name in value.names:
-        found = known(name)
+        found = function_named(name)
         names |= found.symbols if found is not None else {name}
     return frozenset(names)
 
 
 def symbols_named(name: str) -> frozenset[str]:
     """Return the plain symbols of a generator: its own name, or those of its argument."""
-    found = known(name)
+    found = function_named(name)
     return found.symbols if found is not None else frozenset((name,))
 
 

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
 
 from symobs.errors import WrongKind
+from symobs.exact.kernel.canonical_text import scalar_text
 from symobs.exact.kernel.field import RATIONALS, Field
 from symobs.exact.kernel.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
-from symobs.exact.kernel.univariate import by_powers
+from symobs.exact.kernel.univariate import coefficients_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -247,8 +248,6 @@ class Scalar:
             yield int(coefficient), tuple((name, int(power)) for name, power in pairs if power)
 
     def __str__(self) -> str:
-        from symobs.exact.kernel.canonical_text import scalar_text  # noqa: PLC0415 - printing stands on scalars, not the reverse
-
         return scalar_text(self)
 
     def __repr__(self) -> str:
@@ -277,7 +276,7 @@ class Scalar:
         index = self.field.position.get(variable)
         if index is None or self.degree(variable) <= 0:
             return (self.within(target),)
-        parts = by_powers(self.numerator_part, index, self.field, target)
+        parts = coefficients_in(self.numerator_part, index, self.field, target)
         below = target.lift(self.denominator_part, self.field)
         return tuple(Scalar.reduced(target, part, below) for part in parts)
 

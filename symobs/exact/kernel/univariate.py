@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from symobs.exact.kernel.field import Field
 
 
-def by_powers(polynomial: fmpz_mpoly, index: int, source: Field, target: Field) -> list[fmpz_mpoly]:
+def coefficients_in(polynomial: fmpz_mpoly, index: int, source: Field, target: Field) -> list[fmpz_mpoly]:
     """Return the coefficients of the powers of the generator `index` of `source`, highest first, in `target`.
 
     The target must contain the other generators that occur.

@@ -1,1 +1,1 @@
-"""TODO symobs/exact/linear_algebra."""
+"""Linear algebra over Q(parameters): elimination, Krylov rows, Smith–McMillan form and transfer functions."""

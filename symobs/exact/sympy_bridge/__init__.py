@@ -1,1 +1,1 @@
-"""TODO symobs/exact/sympy_bridge."""
+"""Conversion to and from SymPy, the only import of SymPy."""

@@ -53,7 +53,9 @@ _SYMPYS_ORDER = cmp_to_key(sympy.Basic.compare)
 
 def _polynomial(part: Scalar, known: dict[str, Any], divisor: int = 1) -> sympy.Expr:
     """Return a polynomial with integer coefficients, divided by an integer, multiplied out."""
-    if part.size > _LONG and all(name.isidentifier() and functions.known(name) is None for name in part.field.names):
+    if part.size > _LONG and all(
+        name.isidentifier() and functions.function_named(name) is None for name in part.field.names
+    ):
         generators = {name: _generator(name, known) for name in part.names}
         if all(generator.is_commutative for generator in generators.values()):
             return _long_polynomial(str(part), generators, divisor)
@@ -125,7 +127,7 @@ def _term(text: str) -> tuple[int, list[str]]:
 
 def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
     """Return the Symbol of a name, or the function it is the name of."""
-    found = functions.known(name)
+    found = functions.function_named(name)
     if found is None:
         return sympy.pi if name == functions.PI else objects.setdefault(name, sympy.Symbol(name))
     if isinstance(found, RootSum):

@@ -1,1 +1,1 @@
-"""TODO symobs/exact/time_functions."""
+"""Exponentials, sines and cosines of time: quasipolynomials, their integrals, and e^{At}."""

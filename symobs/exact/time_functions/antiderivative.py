@@ -13,7 +13,7 @@ from symobs.exact.kernel.matrix import Matrix
 from symobs.exact.kernel.polynomial import from_coefficients
 from symobs.exact.kernel.scalar import Scalar
 from symobs.exact.linear_algebra.elimination import kernel
-from symobs.exact.time_functions.trigonometric_sums import antiderivative_of_waves, moves
+from symobs.exact.time_functions.trigonometric_sums import antiderivative_of_waves, depends_on_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,7 +36,7 @@ def antiderivative(value: Value, name: str) -> Value | None:
 
 
 def _antiderivative(value: Scalar, name: str) -> Scalar | None:
-    if any(moves(other, name) for other in value.names):
+    if any(depends_on_time(other, name) for other in value.names):
         found = antiderivative_of_waves(value, name)
         if found is None or (rest := _antiderivative(found[1], name)) is None:
             return None
@@ -113,7 +113,7 @@ def _combination(parts: Sequence[Scalar], whole: Scalar, name: str) -> list[Scal
 
 def exponential_of_integral(value: Scalar, name: str) -> Scalar | None:
     """Return ρ = e^p Π fᵢ^nᵢ with ρ' = value · ρ, None where there is none: value = p' + Σ nᵢ fᵢ'/fᵢ, p a polynomial."""
-    if any(moves(other, name) for other in value.names):
+    if any(depends_on_time(other, name) for other in value.names):
         return None
     whole, rest = _divided(value, name)
     found = _of_logarithms(rest, name)

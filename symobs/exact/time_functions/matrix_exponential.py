@@ -12,14 +12,14 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.kernel.field import EIGENVALUE
 from symobs.exact.kernel.generators import ONE, ZERO, square_root
 from symobs.exact.kernel.matrix import Matrix
 from symobs.exact.kernel.polynomial import companion
 from symobs.exact.kernel.scalar import Scalar
-from symobs.exact.time_functions.quasipolynomial import Key, Quasi, matrix_at
+from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, matrix_at
 from symobs.exact.time_functions.root_sum import RootSum
 
 if TYPE_CHECKING:
@@ -78,20 +78,20 @@ class Mode:
         """√|δ|."""
         return square_root(-self.discriminant if self.oscillates else self.discriminant)
 
-    def functions(self, power: int) -> tuple[Quasi, ...]:
+    def functions(self, power: int) -> tuple[Quasipolynomial, ...]:
         """Return tᵏ e^{σt}, or the pair tᵏ e^{σt} C and tᵏ e^{σt} S."""
         if self.discriminant.is_zero:
-            return (Quasi({Key(power, self.rate, "", ZERO): ONE}),)
+            return (Quasipolynomial({Key(power, self.rate, "", ZERO): ONE}),)
         root, half = self.root, Fraction(1, 2)
         if self.oscillates:
             return (
-                Quasi({Key(power, self.rate, "cos", root): ONE}),
-                Quasi.of([(Key(power, self.rate, "sin", root), 1 / root)]),
+                Quasipolynomial({Key(power, self.rate, "cos", root): ONE}),
+                Quasipolynomial.of([(Key(power, self.rate, "sin", root), 1 / root)]),
             )
         up, down = Key(power, self.rate + root, "", ZERO), Key(power, self.rate - root, "", ZERO)
         return (
-            Quasi.of([(up, ONE * half), (down, ONE * half)]),
-            Quasi.of([(up, half / root), (down, -half / root)]),
+            Quasipolynomial.of([(up, ONE * half), (down, ONE * half)]),
+            Quasipolynomial.of([(up, half / root), (down, -half / root)]),
         )
 
 
@@ -104,7 +104,7 @@ class RootMode:
     @property
     def rates(self) -> Matrix:
         """D with φ′ = D φ: φⱼ′ = φⱼ₊₁, and the last one by q(λ) = 0."""
-        return companion(Extension(self.polynomial, EIGENVALUE).coefficients[1:])
+        return companion(AlgebraicExtension(self.polynomial, EIGENVALUE).coefficients[1:])
 
     @property
     def start(self) -> tuple[Scalar, ...]:
@@ -143,7 +143,7 @@ class Exponential:
 
     def table(self) -> Table:
         """Return the entries, as far as their functions are closed forms."""
-        zero = Quasi({})
+        zero = Quasipolynomial({})
         rows = [[zero] * self.order for _ in range(self.order)]
         for mode, power, matrices in self.parts:
             if isinstance(mode, RootMode):

@@ -1,7 +1,7 @@
 """Quasipolynomials: sums of c · tⁿ e^{αt}, c · tⁿ e^{αt} cos βt and c · tⁿ e^{αt} sin βt with constants c, α, β.
 
 These functions are linearly independent, so a sum has one form: two are equal where their coefficients are.  Sums are
-closed under products, derivatives and integrals.  Constants are scalars, with square roots in normal form (`tidy`).
+closed under products, derivatives and integrals.  Constants are scalars, with square roots in normal form (`normal_form`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from symobs.exact.kernel.generators import (
     ZERO,
     derivative,
     function,
-    known,
+    function_named,
     leads_with_minus,
+    normal_form,
     roots_in,
-    tidy,
     with_roots,
 )
 from symobs.exact.kernel.matrix import Matrix
@@ -40,44 +40,44 @@ class Key(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Quasi:
+class Quasipolynomial:
     """Σ coefficient · function; no coefficient is 0."""
 
     terms: Mapping[Key, Scalar]
 
     @staticmethod
-    def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasi:
+    def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasipolynomial:
         """Return the sum of terms, those of one function collected."""
         total: dict[Key, Scalar] = {}
         for key, coefficient in terms:
             total[key] = total[key] + coefficient if key in total else coefficient
-        tidied = {key: tidy(coefficient) for key, coefficient in total.items()}
-        return Quasi({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
+        tidied = {key: normal_form(coefficient) for key, coefficient in total.items()}
+        return Quasipolynomial({key: coefficient for key, coefficient in tidied.items() if not coefficient.is_zero})
 
     @staticmethod
-    def constant(value: Scalar) -> Quasi:
+    def constant(value: Scalar) -> Quasipolynomial:
         """Return a constant."""
-        return Quasi.of([(Key(0, ZERO, "", ZERO), value)])
+        return Quasipolynomial.of([(Key(0, ZERO, "", ZERO), value)])
 
-    def __add__(self, other: Quasi) -> Quasi:
-        return Quasi.of([*self.terms.items(), *other.terms.items()])
+    def __add__(self, other: Quasipolynomial) -> Quasipolynomial:
+        return Quasipolynomial.of([*self.terms.items(), *other.terms.items()])
 
-    def __neg__(self) -> Quasi:
-        return Quasi({key: -coefficient for key, coefficient in self.terms.items()})
+    def __neg__(self) -> Quasipolynomial:
+        return Quasipolynomial({key: -coefficient for key, coefficient in self.terms.items()})
 
-    def __sub__(self, other: Quasi) -> Quasi:
+    def __sub__(self, other: Quasipolynomial) -> Quasipolynomial:
         return self + (-other)
 
-    def scaled(self, factor: Scalar) -> Quasi:
+    def scaled(self, factor: Scalar) -> Quasipolynomial:
         """Return the sum times a constant."""
-        return Quasi.of([(key, coefficient * factor) for key, coefficient in self.terms.items()])
+        return Quasipolynomial.of([(key, coefficient * factor) for key, coefficient in self.terms.items()])
 
-    def __mul__(self, other: Quasi) -> Quasi:
+    def __mul__(self, other: Quasipolynomial) -> Quasipolynomial:
         found: list[tuple[Key, Scalar]] = []
         for a, left in self.terms.items():
             for b, right in other.terms.items():
                 found += _times(a, b, left * right)
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
     @property
     def is_zero(self) -> bool:
@@ -91,9 +91,9 @@ class Quasi:
         for key, coefficient in self.terms.items():
             if key.power == 0 and key.wave != "sin":
                 total = total + coefficient
-        return tidy(total)
+        return normal_form(total)
 
-    def derivative(self) -> Quasi:
+    def derivative(self) -> Quasipolynomial:
         """Return d/dt."""
         found: list[tuple[Key, Scalar]] = []
         for key, c in self.terms.items():
@@ -103,23 +103,23 @@ class Quasi:
             if key.wave:
                 other = "sin" if key.wave == "cos" else "cos"
                 found.append((key._replace(wave=other), c * key.frequency * (-1 if key.wave == "cos" else 1)))
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
-    def integral(self) -> Quasi:
+    def integral(self) -> Quasipolynomial:
         """Return the integral from 0 to t, by parts; where a rate depends on parameters it must not vanish."""
         found: list[tuple[Key, Scalar]] = []
         for key, coefficient in self.terms.items():
             found += _primitive(key, coefficient)
-        whole = Quasi.of(found)
-        return whole - Quasi.constant(whole.at_zero)
+        whole = Quasipolynomial.of(found)
+        return whole - Quasipolynomial.constant(whole.at_zero)
 
-    def reversed(self) -> Quasi:
+    def reversed(self) -> Quasipolynomial:
         """Return the function of −t."""
         found = []
         for key, c in self.terms.items():
             sign = (-1) ** key.power * (-1 if key.wave == "sin" else 1)
             found.append((key._replace(rate=-key.rate), c * sign))
-        return Quasi.of(found)
+        return Quasipolynomial.of(found)
 
     def value_at(self, time: Scalar) -> Scalar:
         """Return the scalar whose generators are functions of `time`, conjugate exponentials as cosh and sinh."""
@@ -127,7 +127,7 @@ class Quasi:
         parts = [part for key, c in self.terms.items() for part in (key.rate, key.frequency, c)]
         roots = dict.fromkeys(root for part in parts for root in roots_in(part))
         for key, coefficient in _hyperbolic(self.terms):
-            value = with_roots(tidy(coefficient), roots) * time**key.power * function("exp", key.rate * time)
+            value = with_roots(normal_form(coefficient), roots) * time**key.power * function("exp", key.rate * time)
             total = total + (value * function(key.wave, key.frequency * time) if key.wave else value)
         return total
 
@@ -143,12 +143,12 @@ def _key(power: int, rate: Scalar, wave: str, frequency: Scalar, c: Scalar) -> l
 
 def _times(a: Key, b: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
     """Return a product of two functions: of two waves those of sum and difference."""
-    power, rate = a.power + b.power, tidy(a.rate + b.rate)
+    power, rate = a.power + b.power, normal_form(a.rate + b.rate)
     if not a.wave or not b.wave:
         return [(Key(power, rate, a.wave or b.wave, a.frequency + b.frequency), c)]
     if a.wave == "cos" and b.wave == "sin":
         a, b = b, a
-    both, apart = tidy(a.frequency + b.frequency), tidy(a.frequency - b.frequency)
+    both, apart = normal_form(a.frequency + b.frequency), normal_form(a.frequency - b.frequency)
     half = c * _HALF
     if a.wave == "sin" and b.wave == "sin":
         return [*_key(power, rate, "cos", apart, half), *_key(power, rate, "cos", both, -half)]
@@ -162,13 +162,13 @@ def _primitive(key: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
         return [(key._replace(power=power + 1), c / (power + 1))]
     if not key.wave:
         lower = _primitive(key._replace(power=power - 1), -(c * power) / a) if power else []
-        return [(key, tidy(c / a)), *lower]
-    size = tidy(a * a + b * b)
+        return [(key, normal_form(c / a)), *lower]
+    size = normal_form(a * a + b * b)
     p, q = (c, ZERO) if key.wave == "cos" else (ZERO, c)
     found: list[tuple[Key, Scalar]] = []
     for wave, part in (("cos", (a * p - b * q) / size), ("sin", (b * p + a * q) / size)):
         if not part.is_zero:
-            found.append((key._replace(wave=wave), tidy(part)))
+            found.append((key._replace(wave=wave), normal_form(part)))
             found += _primitive(key._replace(wave=wave, power=power - 1), -part * power) if power else []
     return found
 
@@ -189,21 +189,23 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
         for wave, part in (("cosh", c), ("sinh", -c if turned else c)):
             place = Key(key.power, middle, wave, offset)
             found[place] = found.get(place, ZERO) + part
-    return [(key, c) for key, c in found.items() if not tidy(c).is_zero]
+    return [(key, c) for key, c in found.items() if not normal_form(c).is_zero]
 
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
     """Return (the part without square roots, the rest)."""
-    plain = rate.substitute({name: ZERO for name in rate.names if (f := known(name)) is not None and f.kind == "sqrt"})
+    plain = rate.substitute(
+        {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
+    )
     return plain, rate - plain
 
 
 # -- from scalars ----------------------------------------------------------------------------------------------------
 
 
-def quasi_of(value: Scalar, time: str = "t") -> Quasi:
+def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
     """Return a scalar in functions of time as a sum; raises ValueError for what is none, such as exp(t²) or 1/t."""
-    below = Quasi.constant(ONE)
+    below = Quasipolynomial.constant(ONE)
     for name, power in _monomial_below(value, time):
         below = below * _power(_inverse(name, time), power)
     rest = _polynomial(value.numerator, time) * below
@@ -227,53 +229,53 @@ def _monomial_below(value: Scalar, time: str) -> list[tuple[str, int]]:
 
 
 def _moves(name: str, time: str) -> bool:
-    found = known(name)
+    found = function_named(name)
     return name == time or (found is not None and not derivative(found.argument, time).is_zero)
 
 
-def _inverse(name: str, time: str) -> Quasi:
-    found = known(name)
+def _inverse(name: str, time: str) -> Quasipolynomial:
+    found = function_named(name)
     if found is None or found.kind != "exp":
         message = f"1/{name} is not a sum of exponentials, sines and cosines times powers of {time}"
         raise ValueError(message)
     return quasi_of(function("exp", -found.argument), time)
 
 
-def _polynomial(value: Scalar, time: str) -> Quasi:
-    total = Quasi.constant(ZERO)
+def _polynomial(value: Scalar, time: str) -> Quasipolynomial:
+    total = Quasipolynomial.constant(ZERO)
     for coefficient, powers in value.terms():
-        term = Quasi.constant(Scalar.of(coefficient))
+        term = Quasipolynomial.constant(Scalar.of(coefficient))
         for name, power in powers:
             term = term * _power(_generator(name, time), power)
         total = total + term
     return total
 
 
-def _power(base: Quasi, exponent: int) -> Quasi:
-    value = Quasi.constant(ONE)
+def _power(base: Quasipolynomial, exponent: int) -> Quasipolynomial:
+    value = Quasipolynomial.constant(ONE)
     for _ in range(exponent):
         value = value * base
     return value
 
 
-def _generator(name: str, time: str) -> Quasi:
+def _generator(name: str, time: str) -> Quasipolynomial:
     if name == time:
-        return Quasi({Key(1, ZERO, "", ZERO): ONE})
+        return Quasipolynomial({Key(1, ZERO, "", ZERO): ONE})
     if not _moves(name, time):
-        return Quasi.constant(Scalar.symbol(name))
-    found = known(name)
+        return Quasipolynomial.constant(Scalar.symbol(name))
+    found = function_named(name)
     assert found is not None  # noqa: S101 - only functions move
     speed = derivative(found.argument, time)
     if found.kind == "RootSum" or speed * Scalar.symbol(time) != found.argument or _depends(speed, time):
         message = f"{name} is not a function of a multiple of {time}"
         raise ValueError(message)
     if found.kind == "exp":
-        return Quasi({Key(0, speed, "", ZERO): ONE})
+        return Quasipolynomial({Key(0, speed, "", ZERO): ONE})
     if found.kind in {"cos", "sin"}:
-        return Quasi({Key(0, ZERO, found.kind, speed): ONE})
+        return Quasipolynomial({Key(0, ZERO, found.kind, speed): ONE})
     sign = 1 if found.kind == "cosh" else -1
     half = Scalar.of(_HALF)
-    return Quasi.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
+    return Quasipolynomial.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
 
 
 def _depends(value: Scalar, time: str) -> bool:
@@ -282,7 +284,7 @@ def _depends(value: Scalar, time: str) -> bool:
 
 # -- tables ----------------------------------------------------------------------------------------------------------
 
-Table = tuple[tuple[Quasi, ...], ...]
+Table = tuple[tuple[Quasipolynomial, ...], ...]
 
 
 def table_of(matrix: Matrix, time: str = "t") -> Table:
@@ -296,8 +298,8 @@ def product(left: Table, right: Table) -> Table:
     return tuple(tuple(_dot(row, column) for column in columns) for row in left)
 
 
-def _dot(row: Iterable[Quasi], column: Iterable[Quasi]) -> Quasi:
-    total = Quasi({})
+def _dot(row: Iterable[Quasipolynomial], column: Iterable[Quasipolynomial]) -> Quasipolynomial:
+    total = Quasipolynomial({})
     for a, b in zip(row, column, strict=True):
         total = total + a * b
     return total
@@ -313,11 +315,11 @@ def integral(table: Table) -> Table:
     return tuple(tuple(entry.integral() for entry in row) for row in table)
 
 
-def determinant(table: Table) -> Quasi:
+def determinant(table: Table) -> Quasipolynomial:
     """Return the determinant, by the first row."""
     if len(table) == 1:
         return table[0][0]
-    total = Quasi({})
+    total = Quasipolynomial({})
     for j, entry in enumerate(table[0]):
         if not entry.is_zero:
             rest = tuple(row[:j] + row[j + 1 :] for row in table[1:])

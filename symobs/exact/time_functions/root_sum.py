@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.exact.algebraic.extension import Extension
+from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.kernel.field import EIGENVALUE
 from symobs.exact.kernel.generators import Function, derivative, function, partial, substitute, symbols_in
 from symobs.exact.kernel.scalar import Scalar
@@ -48,7 +48,7 @@ class RootSum(Function):
     @property
     def discriminant(self) -> Scalar:
         """What vanishes exactly where two of the roots are equal: the product of q′ over all roots."""
-        return Extension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
+        return AlgebraicExtension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
 
     @property
     def bound(self) -> str:
@@ -72,7 +72,7 @@ class RootSum(Function):
 
     def rate(self, time: str) -> Scalar:
         """Return d/dt: the summand times λ, its power reduced by q."""
-        field = Extension(self.polynomial, EIGENVALUE)
+        field = AlgebraicExtension(self.polynomial, EIGENVALUE)
         image = field.reduce(Scalar.symbol(EIGENVALUE) ** (self.power + 1))
         total = Scalar.of(0)
         for power, c in enumerate(reversed(image.coefficients(EIGENVALUE))):
@@ -84,7 +84,7 @@ class RootSum(Function):
         """Return the sum with symbols replaced; where the time is 0, the trace of λᵖ / q′(λ)."""
         argument, q = substitute(self.argument, values), substitute(self.polynomial, values)
         slope = partial(q, EIGENVALUE)
-        field = Extension(q, EIGENVALUE)
+        field = AlgebraicExtension(q, EIGENVALUE)
         below = field.inverse(slope)  # raises where two roots are equal
         if not argument.is_zero:
             return replace(self, argument=argument, polynomial=q).value

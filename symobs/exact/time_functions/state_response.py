@@ -20,20 +20,22 @@ _BITS = (128, 256, 512, 1024, 2048, 4096)
 _HALF = arb(0.5)
 
 
-def rates(matrix: Matrix) -> tuple[float, float]:
+def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
     """Return the largest and the smallest real part among the eigenvalues of a matrix of numbers, nearly."""
     roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
     real = [float(root.real.mid()) for root, _ in roots]
     return max(real), min(real)
 
 
-def radius(matrix: Matrix) -> float:
+def spectral_radius(matrix: Matrix) -> float:
     """Return the largest absolute value among the eigenvalues of a matrix of numbers, nearly."""
     roots: Any = _rational(matrix).charpoly().complex_roots()
     return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
 
 
-def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int) -> list[list[int]]:
+def state_response(
+    matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int
+) -> list[list[int]]:
     """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
 
     The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again: an enclosure goes through few products.
@@ -50,7 +52,7 @@ def response(matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: i
                 power = power * power
             if all(entry.rad() < _HALF for row in columns for entry in row[:count]):
                 return [[_nearest(entry) for entry in state] for state in islice(zip(*columns, strict=True), count)]
-    raise ArithmeticError("a course with too much to compute")
+    raise ArithmeticError("a response with too much to compute")
 
 
 def _rational(matrix: Matrix) -> fmpq_mat:

@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english."""
+"""The English sentences of the pages, by key."""

@@ -1,1 +1,1 @@
-"""TODO symobs/render/diagrams."""
+"""Block diagrams: their layout, and a writer for each format."""

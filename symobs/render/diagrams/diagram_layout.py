@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
-from symobs.formula import Derivative, Letter, Literal, Negative, Power, Quotient, Together
+from symobs.formula import Conjunction, Derivative, Letter, Literal, Negative, Power, Quotient
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -50,7 +50,7 @@ class Metrics:
 
 
 @dataclass(frozen=True)
-class Box:
+class DiagramBox:
     """A box with its label in the middle."""
 
     centre: Point
@@ -67,7 +67,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Mark:
+class DiagramMark:
     """Something written: in the middle of `place`, `above` it or to its `right`."""
 
     label: Label
@@ -89,11 +89,11 @@ class Arrangement:
     """A block diagram, settled."""
 
     size: Point
-    boxes: tuple[Box, ...]
+    boxes: tuple[DiagramBox, ...]
     junctions: tuple[Point, ...]
     branches: tuple[Point, ...]
     lines: tuple[Line, ...]
-    marks: tuple[Mark, ...]
+    marks: tuple[DiagramMark, ...]
     signs: tuple[SignMark, ...]
 
 
@@ -163,7 +163,7 @@ class _Arranging:
         at_ends = {key(node) for node in self.figure.place if self.is_end(node)}
         for node in self.figure.place:
             label = self.labels.get(key(node))
-            if is_box(node) or label is None or isinstance(label, Together) or self.is_end(node):
+            if is_box(node) or label is None or isinstance(label, Conjunction) or self.is_end(node):
                 continue
             into, out = self.figure.into(node), self.figure.out_of(node)
             if is_integrator(node) and self.metrics.rates and len(into) == 1 and self.ends_across(into[0]):
@@ -255,12 +255,12 @@ class _Arranging:
         plain = [node for node in nodes if not self.is_drawn(node)]
         return Arrangement(
             size=(self.ends[0], self.ends[1]),
-            boxes=tuple(Box(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
+            boxes=tuple(DiagramBox(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
             junctions=tuple(self.at(node) for node in nodes if self.figure.is_junction(node)),
             branches=tuple(self.at(node) for node in plain if len(self.figure.out_of(node)) > 1),
             lines=tuple(Line(self.corners(wire), self.is_drawn(wire.end)) for wire in self.figure.wires),
             marks=(
-                *(Mark(_given(self.shown(node)), self.at(node)) for node in ends),
+                *(DiagramMark(_given(self.shown(node)), self.at(node)) for node in ends),
                 *(self.mark(wire, label, begins) for wire, (label, begins) in self.over.items()),
             ),
             signs=tuple(self.signs()),
@@ -270,11 +270,11 @@ class _Arranging:
         """Whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
         return self.shown(node) is not None or self.figure.is_junction(node)
 
-    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> Mark:  # noqa: FBT001
+    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> DiagramMark:  # noqa: FBT001
         """Return what is written over a wire, in the middle of its first or last stretch."""
         points = self.corners(wire)
         (x0, y0), (x1, y1) = points[:2] if at_beginning else points[-2:]
-        return Mark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
+        return DiagramMark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
 
     def signs(self) -> Iterator[SignMark]:
         """Yield the signs at the junctions."""

@@ -9,13 +9,13 @@ from xml.sax.saxutils import escape
 
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import without_sign
-from symobs.formula import Literal, Quotient, Relation, Together
+from symobs.formula import Conjunction, Literal, Quotient, Relation
 from symobs.phrases import PHRASES
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.plots.scene import coordinate
-from symobs.render.plots.svg_text import BELOW, DOT, FONTS, Piece, spans, width_of
+from symobs.render.plots.svg_text import BELOW, DOT, FONTS, TextRun, spans, width_of
 from symobs.render.printers.glyphs import Level
-from symobs.render.printers.scalars import spelled
+from symobs.render.printers.scalar_formula import formula_of
 from symobs.render.printers.text_printer import TextBox, TextPrinter, text_box
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.block_diagram import Label
     from symobs.formula import Formula
-    from symobs.render.diagrams.diagram_layout import Box, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, DiagramMark, Line, Point, SignMark
     from symobs.render.page.blocks import Drawing
 
 #: Units of an em, pixels of a unit.
@@ -103,7 +103,7 @@ def _letters(printer: TextPrinter) -> TextPrinter:
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[_Row]:
-    if isinstance(label, Together):
+    if isinstance(label, Conjunction):
         return [_Row(_text(relation, printer)) for relation in label.relations]
     return [_row(label, printer)]
 
@@ -112,7 +112,7 @@ def _row(formula: Formula, printer: TextPrinter) -> _Row:
     """Return a formula, as a fraction where it is one."""
     negative, body = without_sign(formula)
     if isinstance(body, Literal) and isinstance(body.value, Scalar):
-        is_written_negative, body = without_sign(spelled(body.value, printer.variable))
+        is_written_negative, body = without_sign(formula_of(body.value, printer.variable))
         negative = negative != is_written_negative
     if isinstance(body, Quotient):
         return _Row(_text(body.numerator, printer), _text(body.denominator, printer), "−" if negative else "")
@@ -126,7 +126,7 @@ def _text(item: Formula | Relation, printer: TextPrinter) -> str:
 
 
 def _width(text: str) -> float:
-    return width_of([Piece(text, is_math=True)], 1.0)
+    return width_of([TextRun(text, is_math=True)], 1.0)
 
 
 # -- elements ---------------------------------------------------------------------------------------------------------
@@ -149,7 +149,7 @@ def _drawn(arrangement: Arrangement, printer: TextPrinter) -> Iterator[str]:
         yield _sign(sign)
 
 
-def _rectangle(box: Box) -> str:
+def _rectangle(box: DiagramBox) -> str:
     (x, y), (width, height) = box.centre, box.size
     corner = f'x="{_length(x - width / 2)}" y="{_length(y - height / 2)}"'
     return f'<rect {corner} width="{_length(width)}" height="{_length(height)}"/>'
@@ -191,7 +191,7 @@ def _written_row(row: _Row, centre: Point, anchor: str) -> Iterator[str]:
         yield _written(row.lead, (x - half - _width(row.lead) / 2, y))
 
 
-def _mark(mark: Mark, printer: TextPrinter) -> Iterator[str]:
+def _mark(mark: DiagramMark, printer: TextPrinter) -> Iterator[str]:
     x, y = mark.place
     if mark.side == "right":
         return _label(mark.label, (x + 0.4, y), printer, "start")
@@ -206,7 +206,7 @@ def _sign(sign: SignMark) -> str:
 
 def _written(text: str, centre: Point, anchor: str = "middle", size: float = 1.0) -> str:
     """A line of text with its middle at a height."""
-    inside = spans([Piece(text, is_math=True)], size * _EM)
+    inside = spans([TextRun(text, is_math=True)], size * _EM)
     place = f'x="{_length(centre[0])}" y="{_length(centre[1] + 0.32 * size)}"'
     font = f' font-size="{_length(size)}"' if size != 1 else ""
     return f'<text {place} text-anchor="{anchor}" fill="currentColor" stroke="none"{font}>{inside}</text>'

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import floor, inf
 from typing import TYPE_CHECKING
 
-from symobs.formula import Together
+from symobs.formula import Conjunction
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.printers.text_printer import text_width
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.render.diagrams.diagram_layout import Box, Line, Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramBox, DiagramMark, Line, Point, SignMark
     from symobs.render.page.blocks import Drawing
     from symobs.render.printers.text_printer import TextPrinter
 
@@ -43,7 +43,7 @@ def sketch(drawing: Drawing, printer: TextPrinter, width: int) -> str:
 
 
 def _rows(label: Label, printer: TextPrinter) -> list[str]:
-    if isinstance(label, Together):
+    if isinstance(label, Conjunction):
         return [printer.inline(relation) for relation in label.relations]
     return [printer.inline(label)]
 
@@ -110,7 +110,7 @@ class _Canvas:
             if index == last and line.is_arrow:
                 self.cells[cells[-1]] = _HEADS[step]
 
-    def draw_box(self, box: Box) -> None:
+    def draw_box(self, box: DiagramBox) -> None:
         """Draw a box with its lines in the middle."""
         (x, y), (width, height) = box.centre, box.size
         left, right = floor(x - width / 2), floor(x + width / 2) - 1
@@ -138,7 +138,7 @@ class _Canvas:
             else:
                 self.cells[column - 1, row] += character
 
-    def write_mark(self, mark: Mark) -> None:
+    def write_mark(self, mark: DiagramMark) -> None:
         """Write a signal at its wire."""
         column, row = _cell(mark.place)
         if mark.side == "right":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.formula import Together
+from symobs.formula import Conjunction
 from symobs.render.diagrams.diagram_layout import Arrangement, Metrics, arranged
 from symobs.render.printers.latex_escape import centred
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.render.diagrams.diagram_layout import Mark, Point, SignMark
+    from symobs.render.diagrams.diagram_layout import DiagramMark, Point, SignMark
     from symobs.render.page.blocks import Drawing
     from symobs.render.printers.latex_printer import LatexPrinter
 
@@ -34,8 +34,8 @@ def metrics_for(printer: LatexPrinter) -> Metrics:
     """Return the measures of a page."""
 
     def measure(label: Label) -> Point:
-        rows = label.relations if isinstance(label, Together) else (label,)
-        boxes = [printer.relation(row) if isinstance(label, Together) else printer.typeset(row) for row in rows]  # type: ignore[arg-type]
+        rows = label.relations if isinstance(label, Conjunction) else (label,)
+        boxes = [printer.relation(row) if isinstance(label, Conjunction) else printer.typeset(row) for row in rows]  # type: ignore[arg-type]
         heights = [_FRACTION if b.height == 1 else _ROW * b.height if b.height else _LINE for b in boxes]
         return max(box.width for box in boxes), sum(heights) + 0.4 * (len(rows) - 1)
 
@@ -62,13 +62,13 @@ def _written(arrangement: Arrangement, printer: LatexPrinter) -> Iterator[str]:
 
 
 def _mathematics(label: Label, printer: LatexPrinter) -> str:
-    if not isinstance(label, Together):
+    if not isinstance(label, Conjunction):
         return rf"$\displaystyle {printer.unbroken(label)}$"
     rows = r"\\[2pt]".join(printer.unbroken(relation) for relation in label.relations)
     return rf"$\begin{{gathered}}{rows}\end{{gathered}}$"
 
 
-def _mark(mark: Mark, printer: LatexPrinter) -> str:
+def _mark(mark: DiagramMark, printer: LatexPrinter) -> str:
     side = {"above": "[above=0.25em]", "right": "[right=0.35em]"}.get(mark.side, "")
     return rf"\node{side} at {_place(mark.place)} {{${printer.unbroken(mark.label)}$}};"  # type: ignore[arg-type]
 

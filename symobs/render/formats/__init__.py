@@ -1,1 +1,1 @@
-"""TODO symobs/render/formats."""
+"""The output formats, one a module."""

@@ -1,1 +1,1 @@
-"""TODO symobs/render/page."""
+"""The narrator: from the steps of a checked derivation to blocks of text and formulas."""

@@ -20,9 +20,9 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import (
-    Exactly,
+    Conjunction,
+    HoldsExactlyWhere,
     Letter,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -30,7 +30,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
     Turned,
     letters,
 )
@@ -102,7 +102,7 @@ def _formulas(step: Step) -> Iterator[Formula]:
         case Diagram(labels=labels, sentence=sentence):
             yield from _in_sentence(sentence)
             for _, label in labels:
-                yield from _in_facts((label,)) if isinstance(label, Together) else (label,)
+                yield from _in_facts((label,)) if isinstance(label, Conjunction) else (label,)
 
 
 def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
@@ -112,17 +112,17 @@ def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
                 yield from members
             case Predicate(subject=subject) | Roots(polynomial=subject):
                 yield subject
-            case Exactly(property=Predicate(subject=subject), where=where):
+            case HoldsExactlyWhere(property=Predicate(subject=subject), where=where):
                 yield from (subject, *_in_facts(where))
-            case Together(relations=relations):
+            case Conjunction(relations=relations):
                 yield from _in_facts(relations)
 
 
 def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
-        if isinstance(value, Relation | Predicate | Roots | Exactly | Together):
+        if isinstance(value, Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction):
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value
-        elif not isinstance(value, str | Names):
+        elif not isinstance(value, str | SymbolList):
             yield value

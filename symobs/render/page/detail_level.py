@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Note, Plot, Section, Solve, Survey, Tabulate
 from symobs.errors import UsageError
-from symobs.formula import Exactly, Predicate, Relation, Together, Transpose, children
+from symobs.formula import Conjunction, HoldsExactlyWhere, Predicate, Relation, Transpose, children
 from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def conditions(sentence: Sentence | None) -> bool:
         return False
     slots = [slot for _, slot in sentence.slots]
     return sentence.key in ASSERTS or any(
-        isinstance(slot, Together | Exactly | Predicate)
+        isinstance(slot, Conjunction | HoldsExactlyWhere | Predicate)
         or (isinstance(slot, Relation) and any(operator != "=" for operator in slot.operators))
         for slot in slots
     )

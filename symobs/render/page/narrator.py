@@ -27,7 +27,7 @@ from symobs.derivation import (
     Tabulate,
     Where,
 )
-from symobs.formula import Together
+from symobs.formula import Conjunction
 from symobs.notation.theorems import THEOREMS
 from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
 from symobs.render.page.blocks import (
@@ -83,7 +83,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
         derivation.check()
     parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
     numbers = numbered(parts)
-    page = _Page(document.convention, numbers=numbers)
+    page = _PageBlocks(document.convention, numbers=numbers)
     page.blocks.append(_title(document))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
@@ -175,7 +175,7 @@ def _letters(document: Document) -> Mapping[str, LetterForm]:
     return document.convention.forms(reduced=not letters_used(steps).isdisjoint(OF_REDUCED_ORDER))
 
 
-class _Page:
+class _PageBlocks:
     """The blocks written so far, and what the next ones depend on."""
 
     def __init__(
@@ -300,7 +300,7 @@ class _Page:
         """Yield sections beside each other, each cell written on a page of its own."""
         rows: list[tuple[tuple[Block, ...], ...]] = []
         for row in in_rows([column.steps for column in columns]):
-            cells = [_Page(self.convention, given=self.given, numbers=self.theorems) for _ in row]
+            cells = [_PageBlocks(self.convention, given=self.given, numbers=self.theorems) for _ in row]
             for cell, steps in zip(cells, row, strict=True):
                 for step in steps:
                     cell.tell_step(step)
@@ -316,13 +316,13 @@ class _Page:
         for part in step.parts:
             self.blocks.append(Display(part))
 
-    def tell_case(self, when: Relation | Together, steps: Sequence[Step], sentence: Sentence | None) -> None:
+    def tell_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
-        inner = _Page(self.convention, given=self.given, numbered=False, numbers=self.theorems)
+        inner = _PageBlocks(self.convention, given=self.given, numbered=False, numbers=self.theorems)
         inner.say(sentence)
         inner.tell(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
-        for place, relation in enumerate(when.relations if isinstance(when, Together) else (when,)):
+        for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
             label += [", ", relation] if place else [relation]
         self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
 

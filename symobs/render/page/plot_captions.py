@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation import Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
-from symobs.formula import Apply, At, Letter, Literal, Relation, Together
+from symobs.formula import Apply, At, Conjunction, Letter, Literal, Relation
 from symobs.render.page.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if picture.drawn_for:
         values = tuple(_equation(name, value) for name, value in picture.drawn_for)
-        sentences.append(_say("drawn_for", values=Together(values)))
+        sentences.append(caption_sentence("drawn_for", values=Conjunction(values)))
     words: list[Inline] = []
     for sentence in sentences:
         words += [" ", *filled(sentence)] if words else filled(sentence)
@@ -60,34 +60,35 @@ def _equation(name: str, value: Scalar) -> Relation:
     return Relation((symbol(name), number(value)), ("=",))
 
 
-def _say(key: str, **slots: Formula | Fact) -> Sentence:
+def caption_sentence(key: str, **slots: Formula | Fact) -> Sentence:
+    """Return the sentence of a caption, its slots filled."""
     return Sentence(f"picture_{key}", tuple(slots.items()))
 
 
 def _sentences(picture: Picture) -> Iterator[Sentence]:
     match picture:
         case RegionPicture(axes=(first, second)):
-            yield _say(f"region{_extent(picture)}", first=symbol(first), second=symbol(second))
-            yield from (_say(kind) for kind in _kinds(mark.kind for mark in picture.marks))
+            yield caption_sentence(f"region{_extent(picture)}", first=symbol(first), second=symbol(second))
+            yield from (caption_sentence(kind) for kind in _kinds(mark.kind for mark in picture.marks))
             if any(not curve.boundary for curve in drawn(picture)):
-                yield _say("dashed")
+                yield caption_sentence("dashed")
         case LinePicture(axis=axis):
-            yield _say(f"line{_length(picture)}", parameter=symbol(axis))
-            yield from (_say(kind) for kind in _kinds(kind for _, kind in picture.marks))
+            yield caption_sentence(f"line{_length(picture)}", parameter=symbol(axis))
+            yield from (caption_sentence(kind) for kind in _kinds(kind for _, kind in picture.marks))
         case PoleMap(moved=moved, values=(begin, end)):
-            yield _say("poles", parameter=symbol(moved), begin=number(begin), end=number(end))
+            yield caption_sentence("poles", parameter=symbol(moved), begin=number(begin), end=number(end))
             if picture.discrete:
-                yield _say("disc", radius=number(radius_of(picture)))
+                yield caption_sentence("disc", radius=number(radius_of(picture)))
             else:
                 edge = number(-(picture.margin or 0))
-                yield _say("half_plane", where=Relation((part("Re"), edge), ("<",)))
+                yield caption_sentence("half_plane", where=Relation((part("Re"), edge), ("<",)))
         case TimeResponse(states=states, starts=starts):
             begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
-            yield _say("response", start=Together(begun))
-            if any(course.dashed for course in picture.courses):
-                yield _say("estimates")
+            yield caption_sentence("response", start=Conjunction(begun))
+            if any(course.dashed for course in picture.responses):
+                yield caption_sentence("estimates")
             if picture.discrete:
-                yield _say("samples_only")
+                yield caption_sentence("samples_only")
 
 
 def _beginning(name: str, start: Sequence[Fraction]) -> Relation:

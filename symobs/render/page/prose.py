@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from symobs.convention import STANDARD, Convention
 from symobs.exact import Scalar
 from symobs.formula import (
-    Exactly,
+    Conjunction,
+    HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -24,7 +24,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
     Transpose,
     Turned,
 )
@@ -96,11 +96,11 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             yield subject
         case Shown(value=value):
             yield value
-        case Names(names):
+        case SymbolList(names):
             for place, name in enumerate(names):
                 between = "" if not place else " and " if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
-        case Exactly(where=where) | Together(relations=where):
+        case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
             for place, relation in enumerate(where):
                 yield from (", ", relation) if place else (relation,)
         case _:

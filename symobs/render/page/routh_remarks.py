@@ -1,4 +1,4 @@
-"""TODO symobs/render/page/routh_remarks.py."""
+"""Remarks beside the rows of the Routh array."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ WITHOUT_CONTENTS = 6
 
 
 @dataclass(frozen=True)
-class Entry:
+class SheetEntry:
     """One problem of a sheet; a part that could not be made is None where the sheet has such parts."""
 
     number: int
@@ -35,7 +35,7 @@ class Sheet:
     """Problems under one title: all questions first, then all solutions, as far as it has either."""
 
     title: str
-    entries: tuple[Entry, ...]
+    entries: tuple[SheetEntry, ...]
     has_questions: bool = True
     has_solutions: bool = True
     templates: Path | None = None
@@ -45,7 +45,7 @@ class Sheet:
         """Whether it needs a table of contents."""
         return len(self.entries) > WITHOUT_CONTENTS
 
-    def chapters(self) -> tuple[tuple[str, tuple[tuple[Entry, Any], ...]], ...]:
+    def chapters(self) -> tuple[tuple[str, tuple[tuple[SheetEntry, Any], ...]], ...]:
         """Return its chapters, `questions` and `solutions`, each with its entries and their parts."""
         asked = ("questions", tuple((entry, entry.question) for entry in self.entries))
         solved = ("solutions", tuple((entry, entry.solution) for entry in self.entries))

@@ -1,1 +1,1 @@
-"""TODO symobs/render/plots."""
+"""Plots of regions, root loci and time responses: their layout, and a writer for each format."""

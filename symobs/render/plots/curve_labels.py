@@ -8,7 +8,7 @@ from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs._dataclass import dataclass
-from symobs.render.plots.scene import Box, Text, segment_in
+from symobs.render.plots.scene import Rectangle, TextLabel, segment_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,7 +24,7 @@ _SEGMENTS = 6
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
 
 
-#: What is written at a curve: its equation, or what it is the course of.
+#: What is written at a curve: its equation, or what it is the response of.
 Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
@@ -33,19 +33,21 @@ Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 class Surroundings:
     """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
 
-    frame: Box
+    frame: Rectangle
     lines: Lines
-    taken: tuple[Box, ...]
+    taken: tuple[Rectangle, ...]
     pale: Lines
     shades: Lines
 
 
-def labelled(curves: Mapping[Name, Lines], around: Surroundings, measure: Measure) -> tuple[list[Text], list[Name]]:
+def labelled(
+    curves: Mapping[Name, Lines], around: Surroundings, measure: Measure
+) -> tuple[list[TextLabel], list[Name]]:
     """Return the equations beside their curves, and those that found no place: these stand there as numbers.
 
     The longest is placed first, and numbers last.  A number may stand over a sample if need be, or over anything.
     """
-    written: list[Text] = []
+    written: list[TextLabel] = []
     left: list[Name] = []
     for equation in sorted(curves, key=lambda equation: -measure(equation)[0]):
         text = _best(equation, curves[equation], _beside(around, written, measure), measure)
@@ -62,13 +64,13 @@ def labelled(curves: Mapping[Name, Lines], around: Surroundings, measure: Measur
     return written, numbered
 
 
-def _beside(around: Surroundings, written: Sequence[Text], measure: Measure) -> Surroundings:
+def _beside(around: Surroundings, written: Sequence[TextLabel], measure: Measure) -> Surroundings:
     """Return surroundings in which some texts have their places."""
     boxes = (text.box(measure(text.content)).grown(_CLEAR) for text in written)
     return replace(around, taken=(*around.taken, *boxes))
 
 
-def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> Text | None:
+def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> TextLabel | None:
     """Return a label where it is farthest from everything that is not its own."""
     (width, height), taken = measure(content), around.taken
     own = set(lines)
@@ -82,7 +84,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         right, top = left + width, bottom + height
         if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
-        box = Box(left, bottom, right, top)
+        box = Rectangle(left, bottom, right, top)
         if any(box.meets(other) for other in taken) or _is_crossed(box.grown(_CLEAR), pieces):
             continue
         value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
@@ -92,7 +94,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         value += _distance(box, others, worth - value)
         if value > worth:
             best, worth = (x, y), value
-    return None if best is None else Text(content, best)
+    return None if best is None else TextLabel(content, best)
 
 
 def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, float]]:
@@ -127,7 +129,7 @@ def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float,
         yield min(xs), min(ys), max(xs), max(ys), points
 
 
-def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
+def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
     """Whether one of the pieces of lines meets a box."""
     left, bottom, right, top = box.left, box.bottom, box.right, box.top
     for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
@@ -137,7 +139,7 @@ def _is_crossed(box: Box, pieces: Sequence[tuple[float, float, float, float, Seq
     return False
 
 
-def _crosses(line: Sequence[Point], box: Box) -> bool:
+def _crosses(line: Sequence[Point], box: Rectangle) -> bool:
     """Whether a line meets a box."""
     return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
@@ -147,7 +149,7 @@ def _places(line: Sequence[Point]) -> list[Point]:
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
-def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
+def _distance(box: Rectangle, places: Iterable[Point], enough: float) -> float:
     """Return how far places keep from a box, up to _FAR; no further is looked once that is not more than enough."""
     left, right, bottom, top = box.left, box.right, box.bottom, box.top
     nearest = _FAR
@@ -162,7 +164,7 @@ def _distance(box: Box, places: Iterable[Point], enough: float) -> float:
     return nearest
 
 
-def _apart(box: Box, other: Box) -> float:
+def _apart(box: Rectangle, other: Rectangle) -> float:
     return hypot(
         max(box.left - other.right, 0.0, other.left - box.right),
         max(box.bottom - other.top, 0.0, other.bottom - box.top),

@@ -11,7 +11,7 @@ from symobs.render.page.plot_captions import caption
 from symobs.render.plots.caption_rows import ABOVE, NARROWEST, ROW, rows_of, words_of
 from symobs.render.plots.numbered_caption import below
 from symobs.render.plots.plot_layout import scene_of
-from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Box, Scene, Sign, Stroke, arrow_head
+from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Rectangle, Scene, Sign, Stroke, arrow_head
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -55,7 +55,7 @@ def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: 
     rows = [_joined(row) for row in _caption(picture, scene, write, room)]
     box = scene.whole
     right = max([box.right, *(box.left + 6 + _size(row)[0] for row in rows)])
-    whole = Box(box.left, box.bottom - ABOVE - ROW * len(rows), right, box.top)
+    whole = Rectangle(box.left, box.bottom - ABOVE - ROW * len(rows), right, box.top)
     figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))

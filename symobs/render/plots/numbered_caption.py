@@ -1,11 +1,11 @@
-"""TODO symobs/render/plots/numbered_caption.py."""
+"""Captions of plots with numbered curves."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from symobs.phrases import PHRASES
-from symobs.render.page.plot_captions import _say
+from symobs.render.page.plot_captions import caption_sentence
 from symobs.render.page.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def numbered(equations: Sequence[Formula | Relation]) -> Inlines:
     """Return the list of the equations of curves that carry numbers in the picture."""
     if len(equations) == 1:
-        return filled(_say("curve", curve=equations[0]))
+        return filled(caption_sentence("curve", curve=equations[0]))
     words: list[Inline] = [PHRASES["picture_curves"]]
     for place, equation in enumerate(equations, 1):
         words += [f"{',' if place > 1 else ''} ({place}) ", equation]

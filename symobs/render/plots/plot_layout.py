@@ -15,11 +15,11 @@ from symobs.render.plots import time_axis
 from symobs.render.plots.curve_labels import Surroundings, labelled, walk
 from symobs.render.plots.scene import (
     RADIUS,
-    Box,
+    Rectangle,
     Scene,
     Sign,
     Stroke,
-    Text,
+    TextLabel,
     chained,
     clipped,
     clipped_area,
@@ -56,7 +56,7 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
         case PoleMap():
             return _poles(picture, measure)
         case TimeResponse():
-            return _courses(picture, measure)
+            return _responses(picture, measure)
         case _:
             assert_never(picture)
 
@@ -71,8 +71,8 @@ class _Frame:
     height: float
 
     @property
-    def box(self) -> Box:
-        return Box(0.0, 0.0, self.width, self.height)
+    def box(self) -> Rectangle:
+        return Rectangle(0.0, 0.0, self.width, self.height)
 
     def at(self, x: float | Fraction, y: float | Fraction) -> Point:
         """Return the point on paper of a place in the plane."""
@@ -118,7 +118,7 @@ def _region(picture: RegionPicture, measure: Measure) -> Scene:
     return Scene(frame.box, whole, shades, (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
 
 
-def _between(line: tuple[Point, Point], boxes: Iterable[Box]) -> list[tuple[Point, Point]]:
+def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tuple[Point, Point]]:
     """Return what is left of a line that goes right or up outside boxes."""
     pieces = [line]
     for box in boxes:
@@ -139,28 +139,28 @@ def _frame_of(window: tuple[Interval, Interval]) -> _Frame:
     return _Frame(horizontal, vertical, width, width / ratio)
 
 
-def _box(sign: Sign) -> Box:
+def _box(sign: Sign) -> Rectangle:
     x, y = sign.place
-    return Box(x, y, x, y).grown(RADIUS.get(sign.kind, 0.0) + 1.0)
+    return Rectangle(x, y, x, y).grown(RADIUS.get(sign.kind, 0.0) + 1.0)
 
 
 # -- axes -------------------------------------------------------------------------------------------------------------
 
 
-def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[Text]]:
+def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[TextLabel]]:
     """Return axes on the left and below, with ticks and names."""
     width, height = frame.width, frame.height
     strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
-    texts = [Text(names[0], (width + _BEYOND + _LETTER, 0), "west")]
-    texts += [Text(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
+    texts = [TextLabel(names[0], (width + _BEYOND + _LETTER, 0), "west")]
+    texts += [TextLabel(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
     for value, label in ticks(*frame.horizontal):
         x, _ = frame.at(value, 0)
         strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
-        texts.append(Text(label, (x, -_TICK - 3), "north"))
+        texts.append(TextLabel(label, (x, -_TICK - 3), "north"))
     for value, label in ticks(*frame.vertical, _fitting(height, measure)):
         _, y = frame.at(0, value)
         strokes.append(Stroke(((0, y), (-_TICK, y)), "tick"))
-        texts.append(Text(label, (-_TICK - 2, y), "east"))
+        texts.append(TextLabel(label, (-_TICK - 2, y), "east"))
     return strokes, texts
 
 
@@ -206,11 +206,11 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
         ends |= {at(found.place): _label(found, measure) for found in (begin, end) if found is not None}
     signs = [Sign(_SIGNS[kind], (at(place), 7.0)) for place, kind in picture.marks if kind != "excluded"]
     signs += [Sign("ring", (x, 0)) for x in {*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")}]
-    texts = [Text(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
+    texts = [TextLabel(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
     strokes += [Stroke((text.place, (text.place[0], 0)), "zero") for text in texts[1:] if text.place[1] < -3 * _TICK]
     covered = [text.box(measure(text.content)) for text in texts]
     for value, number in ticks(low, high):
-        text = Text(number, (at(value), -_TICK - 2), "north")
+        text = TextLabel(number, (at(value), -_TICK - 2), "north")
         box = text.box(measure(number))
         if all(abs(at(value) - x) > RADIUS["ring"] for x in ends):
             strokes.append(Stroke(((at(value), 1.5), (at(value), -1.5)), "tick"))
@@ -228,7 +228,7 @@ def _label(end: End, measure: Measure) -> Content:
     return exact if measure(exact)[0] <= _LONGEST_END * _LINE else f"≈{float(end.place):.4g}"
 
 
-def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
+def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[TextLabel]:
     """Yield the labels of ends below the line, each on the first row where it is clear of the others."""
     rows: list[float] = []
     row_height = measure("0")[1] + 2.0
@@ -236,7 +236,7 @@ def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[Text]:
         width, height = measure(content)
         row = next((row for row, right in enumerate(rows) if right + _LETTER <= x - width / 2), len(rows))
         rows[row:] = [x + width / 2] if row == len(rows) or row == len(rows) - 1 else [x + width / 2, *rows[row + 1 :]]
-        yield Text(content, (x, -_TICK - 2 - row * max(row_height, height)), "north")
+        yield TextLabel(content, (x, -_TICK - 2 - row * max(row_height, height)), "north")
 
 
 # -- poles ------------------------------------------------------------------------------------------------------------
@@ -263,31 +263,33 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
         strokes += [Stroke(run, "path") for run in runs]
         signs += [arrow for run in runs for arrow in _arrows(run)]
         ends = ((kind, frame.at(*place)) for kind, place in (("cross", path[0]), ("ring", path[-1])))
-        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Box(*place, *place))]
+        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Rectangle(*place, *place))]
     whole = whole_of(strokes, texts, measure)
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
 
 
-# -- courses ----------------------------------------------------------------------------------------------------------
+# -- responses ----------------------------------------------------------------------------------------------------------
 
 
-def _courses(picture: TimeResponse, measure: Measure) -> Scene:
+def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     """Signals over time, each with its name beside it."""
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
-        tuple(replace(counted, horizontal=(0.0, len(course.heights) - 1.0)).lines(enumerate(course.heights)))
-        for course in picture.courses
+        tuple(replace(counted, horizontal=(0.0, len(response.heights) - 1.0)).lines(enumerate(response.heights)))
+        for response in picture.responses
     ]
     pale = tuple(_zero_lines(frame))
     every = tuple(line for parts in lines for line in parts)
-    names = {time_axis.name_of(course): parts for course, parts in zip(picture.courses, lines, strict=True)}
+    names = {time_axis.name_of(response): parts for response, parts in zip(picture.responses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
     axes, written = _axes(frame, (symbol(time_axis.axis_of(picture)),), measure)
-    styles = ["zero" if picture.discrete else time_axis.style_of(course) for course in picture.courses]
-    sampled = picture.courses if picture.discrete else ()
+    styles = ["zero" if picture.discrete else time_axis.style_of(response) for response in picture.responses]
+    sampled = picture.responses if picture.discrete else ()
     signs = tuple(
-        Sign(time_axis.sign_of(course), frame.at(*place)) for course in sampled for place in picture.points(course)
+        Sign(time_axis.sign_of(response), frame.at(*place))
+        for response in sampled
+        for place in picture.points(response)
     )
     strokes = [Stroke(line, style) for style, parts in zip(styles, lines, strict=True) for line in parts]
     texts = (*written, *labels)

@@ -26,7 +26,7 @@ FONT_SIZE = 9.0
 
 
 @dataclass(frozen=True)
-class Box:
+class Rectangle:
     """A rectangle."""
 
     left: float
@@ -34,17 +34,17 @@ class Box:
     right: float
     top: float
 
-    def grown(self, by: float) -> Box:
+    def grown(self, by: float) -> Rectangle:
         """Return the rectangle with a margin added."""
-        return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
+        return Rectangle(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
-    def meets(self, other: Box) -> bool:
+    def meets(self, other: Rectangle) -> bool:
         """Whether two rectangles overlap."""
         return (
             self.left < other.right and other.left < self.right and self.bottom < other.top and other.bottom < self.top
         )
 
-    def holds(self, other: Box) -> bool:
+    def holds(self, other: Rectangle) -> bool:
         """Whether another rectangle lies inside."""
         return (
             self.left <= other.left
@@ -60,19 +60,19 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Text:
+class TextLabel:
     """Something written: the `anchor` of its box (center, north, south, east or west) lies at `place`."""
 
     content: Content
     place: Point
     anchor: str = "center"
 
-    def box(self, size: tuple[float, float]) -> Box:
+    def box(self, size: tuple[float, float]) -> Rectangle:
         """Return the rectangle that it takes up."""
         (x, y), (width, height) = self.place, size
         left = {"west": x, "east": x - width}.get(self.anchor, x - width / 2)
         bottom = {"south": y, "north": y - height}.get(self.anchor, y - height / 2)
-        return Box(left, bottom, left + width, bottom + height)
+        return Rectangle(left, bottom, left + width, bottom + height)
 
 
 @dataclass(frozen=True)
@@ -119,12 +119,12 @@ ARROW = 5.0
 class Scene:
     """A picture on paper; `numbered` are the equations of curves that carry numbers."""
 
-    frame: Box
-    whole: Box
+    frame: Rectangle
+    whole: Rectangle
     shades: tuple[tuple[Point, ...], ...]
     strokes: tuple[Stroke, ...]
     signs: tuple[Sign, ...]
-    texts: tuple[Text, ...]
+    texts: tuple[TextLabel, ...]
     numbered: tuple[Formula | Relation, ...] = ()
 
 
@@ -141,20 +141,20 @@ def arrow_head(sign: Sign) -> tuple[Point, Point, Point]:
     return (x, y), (x - ux - 0.38 * uy, y - uy + 0.38 * ux), (x - ux + 0.38 * uy, y - uy - 0.38 * ux)
 
 
-def whole_of(strokes: Iterable[Stroke], texts: Iterable[Text], measure: Measure, margin: float = 3.0) -> Box:
+def whole_of(strokes: Iterable[Stroke], texts: Iterable[TextLabel], measure: Measure, margin: float = 3.0) -> Rectangle:
     """Return the rectangle that everything fits into."""
     corners = [point for stroke in strokes for point in stroke.points]
     for text in texts:
         box = text.box(measure(text.content))
         corners += [(box.left, box.bottom), (box.right, box.top)]
     xs, ys = zip(*corners, strict=True)
-    return Box(min(xs), min(ys), max(xs), max(ys)).grown(margin)
+    return Rectangle(min(xs), min(ys), max(xs), max(ys)).grown(margin)
 
 
 # -- clipping ---------------------------------------------------------------------------------------------------------
 
 
-def clipped(points: Sequence[Point], frame: Box) -> Iterator[tuple[Point, ...]]:
+def clipped(points: Sequence[Point], frame: Rectangle) -> Iterator[tuple[Point, ...]]:
     """Yield the parts of a line that lie in a rectangle."""
     run: list[Point] = []
     for a, b in pairwise(points):
@@ -200,7 +200,7 @@ def _next(
     return None
 
 
-def segment_in(a: Point, b: Point, box: Box) -> tuple[Point, Point] | None:
+def segment_in(a: Point, b: Point, box: Rectangle) -> tuple[Point, Point] | None:
     """Return the part of a segment in a rectangle, None where there is none."""
     (x0, y0), (x1, y1), left, right, bottom, top = a, b, box.left, box.right, box.bottom, box.top
     if left <= x0 <= right and left <= x1 <= right and bottom <= y0 <= top and bottom <= y1 <= top:
@@ -225,7 +225,7 @@ def segment_in(a: Point, b: Point, box: Box) -> tuple[Point, Point] | None:
     return first, last
 
 
-def clipped_area(points: Sequence[Point], frame: Box) -> tuple[Point, ...]:
+def clipped_area(points: Sequence[Point], frame: Rectangle) -> tuple[Point, ...]:
     """Return the part of a polygon that lies in a rectangle, side after side cut off; counter-clockwise."""
     area = list(points)
     for axis, edge, sign in ((0, frame.left, 1), (0, frame.right, -1), (1, frame.bottom, 1), (1, frame.top, -1)):

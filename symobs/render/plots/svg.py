@@ -14,8 +14,8 @@ from symobs.render.page.plot_captions import caption
 from symobs.render.plots.caption_rows import ABOVE, NARROWEST, ROW, rows_of, spaced, words_of
 from symobs.render.plots.numbered_caption import below
 from symobs.render.plots.plot_layout import scene_of
-from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Box, Sign, arrow_head, coordinate
-from symobs.render.plots.svg_text import FONTS, Piece, spans, width_of
+from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Rectangle, Sign, arrow_head, coordinate
+from symobs.render.plots.svg_text import FONTS, TextRun, spans, width_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -56,7 +56,7 @@ def svg_file(picture: Picture, printer: TextPrinter) -> str:
     lines = _caption_rows(words, scene.whole, printer)
     box = scene.whole
     right = max([box.right, *(box.left + 3 + _width(line) for line in lines)])
-    whole = Box(box.left, box.bottom - ABOVE - ROW * len(lines), right, box.top)
+    whole = Rectangle(box.left, box.bottom - ABOVE - ROW * len(lines), right, box.top)
     under = [
         _written((box.left + 3, box.bottom - ABOVE - ROW * (place + 0.5)), "start", line)
         for place, line in enumerate(lines)
@@ -74,18 +74,18 @@ def measure_for(printer: TextPrinter) -> Measure:
     return measure
 
 
-def _piece(content: Content, printer: TextPrinter) -> Piece:
-    return Piece(content.replace("-", "−"), False) if isinstance(content, str) else _mathematics(content, printer)  # noqa: FBT003
+def _piece(content: Content, printer: TextPrinter) -> TextRun:
+    return TextRun(content.replace("-", "−"), False) if isinstance(content, str) else _mathematics(content, printer)  # noqa: FBT003
 
 
-def _mathematics(content: Formula | Relation, printer: TextPrinter) -> Piece:
-    return Piece(printer.inline(content).replace("-", "−"), True)  # noqa: FBT003
+def _mathematics(content: Formula | Relation, printer: TextPrinter) -> TextRun:
+    return TextRun(printer.inline(content).replace("-", "−"), True)  # noqa: FBT003
 
 
 # -- elements ---------------------------------------------------------------------------------------------------------
 
 
-def _element(whole: Box, parts: Iterable[str], title: str, style: str) -> str:
+def _element(whole: Rectangle, parts: Iterable[str], title: str, style: str) -> str:
     width, height = whole.right - whole.left, whole.top - whole.bottom
     box = " ".join(map(coordinate, (whole.left, -whole.top, width, height)))
     size = f'width="{coordinate(_PIXELS * width)}" height="{coordinate(_PIXELS * height)}"'
@@ -153,25 +153,25 @@ def _path(points: Iterable[Point]) -> str:
 # -- text -------------------------------------------------------------------------------------------------------------
 
 
-def _written(place: Point, anchor: str, pieces: Iterable[Piece]) -> str:
+def _written(place: Point, anchor: str, pieces: Iterable[TextRun]) -> str:
     """A text at its baseline."""
     x, y = coordinate(place[0]), coordinate(0.3 * FONT_SIZE - place[1])
     return f'<text x="{x}" y="{y}" text-anchor="{anchor}" fill="currentColor">{spans(pieces, FONT_SIZE)}</text>'
 
 
-def _width(pieces: Iterable[Piece]) -> float:
+def _width(pieces: Iterable[TextRun]) -> float:
     return width_of(pieces, FONT_SIZE)
 
 
-def _caption_rows(words: Inlines, whole: Box, printer: TextPrinter) -> list[list[Piece]]:
+def _caption_rows(words: Inlines, whole: Rectangle, printer: TextPrinter) -> list[list[TextRun]]:
     """Return the caption in rows as wide as the picture, or a little wider."""
     room = max(whole.right - whole.left, NARROWEST)
-    space = Piece(" ", False)  # noqa: FBT003
+    space = TextRun(" ", False)  # noqa: FBT003
 
-    def mathematics(content: Formula | Relation) -> list[Piece]:
+    def mathematics(content: Formula | Relation) -> list[TextRun]:
         piece = _mathematics(content, printer)
-        return [piece] if _width([piece]) <= room / 2 else [Piece(part, True) for part in piece.text.split(" ")]  # noqa: FBT003
+        return [piece] if _width([piece]) <= room / 2 else [TextRun(part, True) for part in piece.text.split(" ")]  # noqa: FBT003
 
-    pieces = words_of(words, lambda text: Piece(text, False), mathematics)  # noqa: FBT003
+    pieces = words_of(words, lambda text: TextRun(text, False), mathematics)  # noqa: FBT003
     rows = rows_of(pieces, lambda piece: _width([piece]), _width([space]), room)
     return [spaced(row, space) for row in rows]

@@ -29,14 +29,14 @@ _SPECIAL_WIDTHS = {
 }
 
 
-class Piece(NamedTuple):
+class TextRun(NamedTuple):
     """A part of a line of text; letters of mathematics are set in italics."""
 
     text: str
     is_math: bool
 
 
-def width_of(pieces: Iterable[Piece], size: float) -> float:
+def width_of(pieces: Iterable[TextRun], size: float) -> float:
     """Return how wide text is, guessed generously: the reader's fonts are not known.  Accents stand on their letters."""
     return size * sum(
         (_SCRIPT if level else 1.0) * _SPECIAL_WIDTHS.get(character, 0.56)
@@ -46,7 +46,7 @@ def width_of(pieces: Iterable[Piece], size: float) -> float:
     )
 
 
-def spans(pieces: Iterable[Piece], size: float) -> str:
+def spans(pieces: Iterable[TextRun], size: float) -> str:
     """Return the inside of a text element; scripts are lowered or raised and the rest of the line put back."""
     written: list[str] = []
     before = 0.0
@@ -63,7 +63,7 @@ def spans(pieces: Iterable[Piece], size: float) -> str:
     return "".join(written)
 
 
-def _characters(piece: Piece) -> Iterator[tuple[str, str, bool]]:
+def _characters(piece: TextRun) -> Iterator[tuple[str, str, bool]]:
     """Yield every character, whether it is a sub- or superscript, and whether it is set in italics."""
     words = {place for word in _WORDS.finditer(piece.text) for place in range(*word.span())}
     is_italic = False

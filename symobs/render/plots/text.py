@@ -36,7 +36,7 @@ def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
         case PoleMap():
             return _poles(picture, printer)
         case TimeResponse():
-            return _courses(picture, printer)
+            return _responses(picture, printer)
         case _:
             assert_never(picture)
 
@@ -95,17 +95,17 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
     return _framed(grid, picture.window, [part("Re"), part("Im")], printer)
 
 
-def _courses(picture: TimeResponse, printer: TextPrinter) -> str:
-    """A character for each course, which the line above explains."""
+def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
+    """A character for each response, which the line above explains."""
     grid = _grid(picture.window, lambda _x, _y: " ")
     zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
     if picture.window[1][0] < 0 < picture.window[1][1]:
         grid[min(zero, _ROWS - 1)] = ["┈"] * _COLUMNS
-    marks = list(zip(picture.courses, CHARACTERS, strict=False))
-    for course, mark in reversed(marks):
-        for place in picture.points(course):
+    marks = list(zip(picture.responses, CHARACTERS, strict=False))
+    for response, mark in reversed(marks):
+        for place in picture.points(response):
             _put(grid, picture.window, place, mark)
-    told = "   ".join(f"{mark} {printer.inline(name_of(course))}" for course, mark in marks)
+    told = "   ".join(f"{mark} {printer.inline(name_of(response))}" for response, mark in marks)
     return f"{told}\n{_framed(grid, picture.window, [symbol(axis_of(picture))], printer)}"
 
 

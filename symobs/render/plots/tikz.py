@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import Picture
     from symobs.render.page.blocks import Inline
-    from symobs.render.plots.scene import Content, Measure, Point, Scene, Sign, Stroke, Text
+    from symobs.render.plots.scene import Content, Measure, Point, Scene, Sign, Stroke, TextLabel
     from symobs.render.printers.latex_printer import LatexPrinter
 
 _COLOURS = {"ink": "ink", "text": "black", "pale": "black!25"}
@@ -107,7 +107,7 @@ def _sign(sign: Sign) -> str:
             return rf"\draw[ink,line width=0.8pt] {strokes};"
 
 
-def _text(text: Text, printer: LatexPrinter) -> str:
+def _text(text: TextLabel, printer: LatexPrinter) -> str:
     content = text.content
     written = (
         escape(content) if isinstance(content, str) and not _is_number(content) else _mathematics(content, printer)

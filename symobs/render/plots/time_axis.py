@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING
 from symobs.formula import Letter
 
 if TYPE_CHECKING:
-    from symobs.figures.plot import Course, TimeResponse
+    from symobs.figures.plot import Response, TimeResponse
     from symobs.formula import Formula
 
 #: Height of the frame, in points.
 HEIGHT = 90.0
-#: What a terminal draws with, course by course.
+#: What a terminal draws with, response by response.
 CHARACTERS = "*o+x#@"
 
 
-def name_of(course: Course) -> Formula:
-    """Return what a course is called: the letter of its signal, with the number of its component."""
-    return Letter(f"{course.signal}[{course.component}" if course.component else course.signal)
+def name_of(response: Response) -> Formula:
+    """Return what a response is called: the letter of its signal, with the number of its component."""
+    return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
 
 
-def style_of(course: Course) -> str:
+def style_of(response: Response) -> str:
     """Return the style of its line."""
-    return "estimate" if course.dashed else "path"
+    return "estimate" if response.dashed else "path"
 
 
-def sign_of(course: Course) -> str:
+def sign_of(response: Response) -> str:
     """Return the sign of its values in discrete time: a ring for an estimate."""
-    return "ring" if course.dashed else "dot"
+    return "ring" if response.dashed else "dot"
 
 
 def axis_of(picture: TimeResponse) -> str:

@@ -1,1 +1,1 @@
-"""TODO symobs/render/printers."""
+"""Printers of formulas: LaTeX, Unicode text and MathML, with line breaking."""

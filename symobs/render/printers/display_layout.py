@@ -28,7 +28,7 @@ _WIDEST_HEAD = 8
 
 
 @dataclass(frozen=True)
-class Row(Generic[B]):
+class DisplayRow(Generic[B]):
     """A line of a display, aligned where `right` begins; a centred line has no `left`."""
 
     left: B | None
@@ -46,7 +46,7 @@ class Layout(Generic[B]):
         self.end = end
         self.breaker = Breaker(printer)
 
-    def rows(self, relations: Sequence[Relation]) -> tuple[list[Row[B]], bool]:
+    def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
         if self.boxed and not any("=" in relation.operators for relation in relations):
             return self._inequalities(relations)
@@ -54,15 +54,15 @@ class Layout(Generic[B]):
         whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
         packed = self._packed(whole, self.width)
         if all(row.width <= self.width for row in packed) and (len(packed) == 1 or 2 * len(packed) <= len(whole)):
-            return [Row(None, row) for row in packed], False
+            return [DisplayRow(None, row) for row in packed], False
         lefts = [self.printer.typeset(relation.members[0]).width for relation in relations]
         margin = max((left for left in lefts if left <= _WIDEST_LEFT * self.width), default=0.0)
-        rows: list[Row[B]] = []
+        rows: list[DisplayRow[B]] = []
         for index, relation in enumerate(relations):
             rows += self._aligned(relation, margin, is_last=index == last)
         return rows, True
 
-    def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[Row[B]], bool]:
+    def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """The rows of an answer that is inequalities: one frame around all of them where they fit."""
         plain = Layout(self.printer, self.width - self._frame(), boxed=False, end="")
         last = len(relations) - 1
@@ -70,7 +70,7 @@ class Layout(Generic[B]):
         lines = self._packed(whole, plain.width)
         if all(line.width <= plain.width for line in lines):
             box = lines[0] if len(lines) == 1 else self.printer.stacked(lines)
-            return [Row(None, self.printer.framed(box))], False
+            return [DisplayRow(None, self.printer.framed(box))], False
         return plain.rows(relations)
 
     # -- one line -------------------------------------------------------------------------------------------------
@@ -103,7 +103,7 @@ class Layout(Generic[B]):
 
     # -- aligned --------------------------------------------------------------------------------------------------
 
-    def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[Row[B]]:
+    def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[DisplayRow[B]]:
         """The rows of one relation, then those of what it left out."""
         printer, told = self.printer, len(self.breaker.named)
         framed = self.boxed and is_last
@@ -114,14 +114,14 @@ class Layout(Generic[B]):
         if left.width <= margin:
             rights, has_frame = self._links(links, room, head, framed=framed)
             left = left if has_frame or not framed else printer.framed(left)
-            rows = [Row(left, rights[0]), *(Row(None, right) for right in rights[1:])]
+            rows = [DisplayRow(left, rights[0]), *(DisplayRow(None, right) for right in rights[1:])]
         else:
             indent = printer.indent()
             space = room - indent.width
             lines = self.breaker.lines(self.breaker.pieces(relation.members[0], space), room, space)
             rights, _ = self._links(links, space, head, framed=framed)
             followers = [printer.joined([indent, line], Level.SUM) for line in [*lines[1:], *rights]]
-            rows = [Row(None, line) for line in [lines[0], *followers]]
+            rows = [DisplayRow(None, line) for line in [lines[0], *followers]]
         return self._told(rows, told, room, is_last=is_last)
 
     def _frame(self) -> float:
@@ -166,7 +166,7 @@ class Layout(Generic[B]):
         first, *rest = lines
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
-    def _told(self, rows: list[Row[B]], told: int, room: float, *, is_last: bool) -> list[Row[B]]:
+    def _told(self, rows: list[DisplayRow[B]], told: int, room: float, *, is_last: bool) -> list[DisplayRow[B]]:
         """Add what the new names stand for, short ones side by side, and the punctuation."""
         is_framed = self.boxed and is_last
         mark = self.end if is_last else ","
@@ -185,7 +185,7 @@ class Layout(Generic[B]):
             lines = [line for group in run for line in group]
             added += self._packed(lines, room + self.printer.punctuation(",").width) if are_short else lines
         first = rows[-1] if is_framed else self._marked(rows[-1], ",")
-        return [*rows[:-1], first, *(Row(None, line) for line in added)]
+        return [*rows[:-1], first, *(DisplayRow(None, line) for line in added)]
 
     def _definition(self, name: B, entry: Formula, room: float) -> list[B]:
         """The lines of name = entry."""
@@ -195,7 +195,7 @@ class Layout(Generic[B]):
         first, *rest = self.breaker.lines(self.breaker.pieces(entry, space), space, space)
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
-    def _marked(self, row: Row[B], mark: str) -> Row[B]:
+    def _marked(self, row: DisplayRow[B], mark: str) -> DisplayRow[B]:
         """A row closed by a punctuation mark."""
         if not mark:
             return row

@@ -25,17 +25,17 @@ class Level(IntEnum):
 
 
 @dataclass(frozen=True)
-class Box:
+class GlyphBox:
     """A printed part; formats add what is written."""
 
     width: float
     level: Level
 
 
-B = TypeVar("B", bound=Box)
+B = TypeVar("B", bound=GlyphBox)
 
 
-class Glyphs(ABC, Generic[B]):
+class FormulaWriter(ABC, Generic[B]):
     """The glyphs of one format; boxes go in, a box comes out."""
 
     #: Whether a broken fraction is always (a)/(b), never 1/b before (a).

@@ -13,9 +13,9 @@ from symobs.formula import Formula, Relation
 from symobs.notation import OPERATORS, symbol_latex
 from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import Box, Level
+from symobs.render.printers.glyphs import GlyphBox, Level
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.scalars import decimal
+from symobs.render.printers.rational_formula import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ _PAGE_OF_ROWS = 8
 
 
 @dataclass(frozen=True)
-class LatexBox(Box):
+class LatexBox(GlyphBox):
     """LaTeX source; `height` is 0 for a line of letters, 1 for a fraction, else about the number of rows."""
 
     source: str

@@ -28,7 +28,8 @@ from symobs.formula import (
 )
 from symobs.render.printers.glyphs import B, Level
 from symobs.render.printers.printer import factors, shifted, signed_terms
-from symobs.render.printers.scalars import decimal, is_leaf, spelled, spelled_matrix
+from symobs.render.printers.rational_formula import decimal, is_leaf
+from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,7 +46,7 @@ _WIDEST_DENOMINATOR = 0.7
 
 
 @dataclass(frozen=True)
-class Piece(Generic[B]):
+class LinePiece(Generic[B]):
     """What is not broken, with what goes before it inside a line (`within`) and at a line's start (`at_start`)."""
 
     box: B
@@ -61,7 +62,7 @@ class Breaker(Generic[B]):
         self.printer = printer
         self.named: dict[Formula, B] = {}
 
-    def lines(self, pieces: Sequence[Piece[B]], first: float, rest: float) -> list[B]:
+    def lines(self, pieces: Sequence[LinePiece[B]], first: float, rest: float) -> list[B]:
         """Fill lines, the first of width `first`, all others of width `rest`, so that no short end is left over."""
         filled = self._filled(pieces, first, rest)
         for part in (1.0, 0.9, 0.8, 0.7, 0.6) if len(filled) in _FEW_LINES else ():
@@ -70,7 +71,7 @@ class Breaker(Generic[B]):
                 return narrower
         return filled
 
-    def _filled(self, pieces: Sequence[Piece[B]], first: float, rest: float) -> list[B]:
+    def _filled(self, pieces: Sequence[LinePiece[B]], first: float, rest: float) -> list[B]:
         finished: list[list[B]] = []
         line: list[B] = []
         for piece in pieces:
@@ -85,18 +86,18 @@ class Breaker(Generic[B]):
 
     # -- pieces ---------------------------------------------------------------------------------------------------
 
-    def pieces(self, formula: Formula, room: float, head: B | None = None) -> list[Piece[B]]:
+    def pieces(self, formula: Formula, room: float, head: B | None = None) -> list[LinePiece[B]]:
         """Return what the formula falls into when a line has width `room`.
 
         Where it is a matrix, its entries are named after `head`.
         """
         box = self.printer.typeset(formula)
         if box.width <= room:
-            return [Piece(box)]
+            return [LinePiece(box)]
         written = self._written(formula)
         return self._matrix(written, room, head) if _is_table(written) else self._opened(formula, room)
 
-    def _opened(self, formula: Formula, room: float) -> list[Piece[B]]:
+    def _opened(self, formula: Formula, room: float) -> list[LinePiece[B]]:
         match self._written(formula):
             case Literal(Scalar() as value):
                 return self._digits(value)
@@ -121,7 +122,7 @@ class Breaker(Generic[B]):
             case Derivative(operand, name):
                 first, *body = self._operand(operand, Level.FRACTION, room - 2)
                 return [replace(first, box=self.printer.rate(first.box, name)), *body]
-        return [Piece(self.printer.typeset(formula))]
+        return [LinePiece(self.printer.typeset(formula))]
 
     def _written(self, formula: Formula) -> Formula:
         """The formula, an exact value spelled out."""
@@ -131,42 +132,42 @@ class Breaker(Generic[B]):
             case Derivative(operand) if self.printer.discrete and not isinstance(operand, Letter):
                 return self._written(shifted(operand))
             case Literal(Scalar() as value):
-                return formula if is_leaf(value) else spelled(value, self.printer.variable)
+                return formula if is_leaf(value) else formula_of(value, self.printer.variable)
             case Literal(Matrix() as table):
-                return spelled_matrix(table, self.printer.variable)
+                return formula_of_matrix(table, self.printer.variable)
         return formula
 
-    def _operand(self, formula: Formula, level: Level, room: float) -> list[Piece[B]]:
+    def _operand(self, formula: Formula, level: Level, room: float) -> list[LinePiece[B]]:
         """The pieces of an operand, between parentheses where it binds too loosely."""
         if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and level == Level.ATOM:
             box = self.printer.base(formula)
-            return [Piece(box)] if box.width <= room else self._matrix(formula, room)
+            return [LinePiece(box)] if box.width <= room else self._matrix(formula, room)
         inner = self.printer.typeset(formula)
         box = self.printer.at_least(level, inner)
         if box.width <= room:
-            return [Piece(box)]
+            return [LinePiece(box)]
         if inner.level >= level:
             return self._opened(formula, room)
         return self._between_parentheses(self._opened(formula, room - 2))
 
-    def _argument(self, formula: Formula, room: float) -> list[Piece[B]]:
+    def _argument(self, formula: Formula, room: float) -> list[LinePiece[B]]:
         if isinstance(formula, Block) or (isinstance(formula, Literal) and isinstance(formula.value, Matrix)):
             return self._operand(formula, Level.ATOM, room)
         return self._between_parentheses(self.pieces(formula, room - 2))
 
-    def _between_parentheses(self, pieces: list[Piece[B]]) -> list[Piece[B]]:
+    def _between_parentheses(self, pieces: list[LinePiece[B]]) -> list[LinePiece[B]]:
         opening, closing = self.printer.parentheses([piece.box for piece in pieces])
         return self._enclosed(pieces, opening, closing)
 
-    def _enclosed(self, pieces: list[Piece[B]], opening: B, closing: B) -> list[Piece[B]]:
+    def _enclosed(self, pieces: list[LinePiece[B]], opening: B, closing: B) -> list[LinePiece[B]]:
         first, *rest = pieces
         *body, last = [replace(first, box=self.printer.joined([opening, first.box], Level.ATOM)), *rest]
         return [*body, replace(last, box=self.printer.joined([last.box, closing], Level.ATOM))]
 
     # -- sums, products, fractions, numbers -----------------------------------------------------------------------
 
-    def _sum(self, formula: Formula, room: float) -> list[Piece[B]]:
-        pieces: list[Piece[B]] = []
+    def _sum(self, formula: Formula, room: float) -> list[LinePiece[B]]:
+        pieces: list[LinePiece[B]] = []
         for negative, term in signed_terms(formula, self.printer.variable):
             first, *rest = self._operand(term, Level.PRODUCT, room - 2)
             if pieces:
@@ -175,15 +176,15 @@ class Breaker(Generic[B]):
             pieces += [self._negated(first) if negative and not pieces else first, *rest]
         return pieces
 
-    def _product(self, formula: Formula, room: float) -> list[Piece[B]]:
+    def _product(self, formula: Formula, room: float) -> list[LinePiece[B]]:
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
-        pieces: list[Piece[B]] = []
+        pieces: list[LinePiece[B]] = []
         is_after_fraction = False
         parts = factors(body, self.printer.variable)
         for index, factor in enumerate(parts):
             whole = self.printer.factor(factor, last=index + 1 == len(parts))
             fits = whole.width <= room - 2
-            first, *rest = [Piece(whole)] if fits else self._operand(factor, Level.FRACTION, room - 2)
+            first, *rest = [LinePiece(whole)] if fits else self._operand(factor, Level.FRACTION, room - 2)
             first = self._following(pieces, first)
             joined = self._together(pieces[-1], first) if is_after_fraction else None
             if joined is not None and joined.box.width <= room - 2:
@@ -193,12 +194,12 @@ class Breaker(Generic[B]):
             is_after_fraction = isinstance(self._written(factor), Quotient) and not rest
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
 
-    def _together(self, front: Piece[B], piece: Piece[B]) -> Piece[B]:
+    def _together(self, front: LinePiece[B], piece: LinePiece[B]) -> LinePiece[B]:
         """Two pieces as one: 1/d stays on the line of what follows it."""
         boxes = [front.box, piece.within, piece.box] if piece.within else [front.box, piece.box]
         return replace(front, box=self.printer.joined(boxes, Level.PRODUCT))
 
-    def _quotient(self, formula: Quotient, room: float) -> list[Piece[B]]:
+    def _quotient(self, formula: Quotient, room: float) -> list[LinePiece[B]]:
         """1/denominator · (numerator); a denominator that is wide as well gets a name."""
         printer = self.printer
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
@@ -209,31 +210,31 @@ class Breaker(Generic[B]):
             above = printer.typeset(body.numerator)
             if printer.fraction(above, printer.star(1)).width > room - 2:
                 above = self._name(self.named, body.numerator)
-            pieces = [Piece(printer.fraction(above, self._name(self.named, body.denominator)))]
+            pieces = [LinePiece(printer.fraction(above, self._name(self.named, body.denominator)))]
         elif printer.slashes:
             pieces = self._operand(body.numerator, Level.PRODUCT, room - 2)
             slash = printer.slash()
-            pieces.append(Piece(printer.at_least(Level.POWER, below), slash, slash))
+            pieces.append(LinePiece(printer.at_least(Level.POWER, below), slash, slash))
         else:
-            pieces = [Piece(printer.fraction(printer.leaf(Scalar.of(1)), below))]
+            pieces = [LinePiece(printer.fraction(printer.leaf(Scalar.of(1)), below))]
             first, *rest = self._operand(body.numerator, Level.FRACTION, room - 2)
             pieces += [self._following(pieces, first), *rest]
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
 
-    def _digits(self, value: Scalar) -> list[Piece[B]]:
+    def _digits(self, value: Scalar) -> list[LinePiece[B]]:
         """A number in runs of digits; the next line begins with a sign that it goes on."""
         if not value.is_constant:
-            return [Piece(self.printer.scalar(value))]
+            return [LinePiece(self.printer.scalar(value))]
         digits = decimal(value.fraction().numerator)
         runs = [digits[start : start + _DIGITS_TOGETHER] for start in range(0, len(digits), _DIGITS_TOGETHER)]
-        first, *rest = [Piece(self.printer.digits(run)) for run in runs]
+        first, *rest = [LinePiece(self.printer.digits(run)) for run in runs]
         return [first, *(replace(piece, at_start=self.printer.continued()) for piece in rest)]
 
-    def _negated(self, piece: Piece[B]) -> Piece[B]:
+    def _negated(self, piece: LinePiece[B]) -> LinePiece[B]:
         minus = self.printer.sign(negative=True, leading=True)
         return replace(piece, box=self.printer.joined([minus, piece.box], Level.SUM))
 
-    def _following(self, pieces: Sequence[Piece[B]], piece: Piece[B]) -> Piece[B]:
+    def _following(self, pieces: Sequence[LinePiece[B]], piece: LinePiece[B]) -> LinePiece[B]:
         """A factor after those before it."""
         if not pieces:
             return piece
@@ -241,7 +242,7 @@ class Breaker(Generic[B]):
 
     # -- matrices -------------------------------------------------------------------------------------------------
 
-    def _matrix(self, formula: Formula, room: float, head: B | None = None) -> list[Piece[B]]:
+    def _matrix(self, formula: Formula, room: float, head: B | None = None) -> list[LinePiece[B]]:
         """The matrix with its widest entries named; a table that cannot fit even so is listed row by row."""
         if isinstance(formula, Block):
             rows = formula.rows
@@ -252,7 +253,7 @@ class Breaker(Generic[B]):
         if len(rows) <= _ROWS_TOGETHER:
             narrow = self._narrowed(rows, room, head)
             if narrow is not None:
-                return [Piece(narrow)]
+                return [LinePiece(narrow)]
         return self._listed(rows, room)
 
     def _narrowed(self, rows: Sequence[Sequence[Formula]], room: float, head: B | None) -> B | None:
@@ -286,10 +287,10 @@ class Breaker(Generic[B]):
         """The name of an entry, the same for equal entries: its place, or a star."""
         return named.setdefault(entry, place or self.printer.star(len(named) + 1))
 
-    def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[Piece[B]]:
+    def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[LinePiece[B]]:
         """[a, b; c, d], its entries broken where they must be."""
         comma, semicolon = self.printer.separators()
-        pieces: list[Piece[B]] = []
+        pieces: list[LinePiece[B]] = []
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
                 *body, last = self.pieces(entry, room - 2)

@@ -1,7 +1,7 @@
 """The printer: one walk over a formula with its precedences; a format supplies the glyphs.
 
 A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
-`A - L C` is printed as its author wrote it; only exact values are spelled out (`scalars.spelled`).
+`A - L C` is printed as its author wrote it; only exact values are spelled out (`formula_of`).
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from abc import abstractmethod
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar, written
+from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -36,8 +36,9 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
-from symobs.render.printers.glyphs import B, Glyphs, Level
-from symobs.render.printers.scalars import is_leaf, spelled, spelled_matrix
+from symobs.render.printers.glyphs import B, FormulaWriter, Level
+from symobs.render.printers.rational_formula import is_leaf
+from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -77,7 +78,7 @@ def _with_index(latex: str, index: str) -> str:
     return f"{stem}_{{{own.strip('{}')},{index}}}" if below else f"{stem}_{index}"
 
 
-class Printer(Glyphs[B]):
+class Printer(FormulaWriter[B]):
     """Formula → mathematics of one format."""
 
     def __init__(
@@ -137,7 +138,7 @@ class Printer(Glyphs[B]):
             case Literal(Scalar() as value):
                 return self.scalar(value)
             case Literal(Matrix() as value):
-                written = spelled_matrix(value, self.variable)
+                written = formula_of_matrix(value, self.variable)
                 return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
             case Decimals(Scalar() as value):
                 return self.decimals(value)
@@ -172,17 +173,17 @@ class Printer(Glyphs[B]):
         """An exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            function = known(next(iter(value.names))) if is_leaf(value) and value.names else None
+            function = function_named(next(iter(value.names))) if is_leaf(value) and value.names else None
             if function is not None:
                 box = self.function_of_time(function)
             else:
-                box = self.leaf(value) if is_leaf(value) else self.typeset(spelled(value, self.variable))
+                box = self.leaf(value) if is_leaf(value) else self.typeset(formula_of(value, self.variable))
             self.known[value] = box
         return box
 
     def decimals(self, value: Scalar) -> B:
         """A number with its digits after the point."""
-        box = self.digits(written(value))
+        box = self.digits(decimal_digits(value))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
 
@@ -195,13 +196,13 @@ class Printer(Glyphs[B]):
         if isinstance(function, RealRoot):
             return self.named(rf"{function.number.truncated()}\ldots")
         if isinstance(function, RootSum):
-            q, below = (self.typeset(spelled(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
+            q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
             return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
         argument = self.scalar(function.argument)
         if function.kind == "sqrt":
             return self.root(argument)
-        is_plain = argument.level >= Level.PRODUCT and not isinstance(spelled(function.argument, ""), Quotient)
+        is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
         return replace(box, level=Level.POWER)
 
@@ -339,7 +340,7 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
         case Negative(operand):
             return [(True, operand)]
         case Literal(Scalar() as value) if not is_leaf(value):
-            written = spelled(value, variable)
+            written = formula_of(value, variable)
             return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
         case Product((first, *rest)):
             ((negative, body),) = signed_terms(first, variable, flat=False)
@@ -357,10 +358,10 @@ def factors(formula: Formula, variable: str) -> list[Formula]:
         case Product(parts):
             return [factor for part in parts for factor in factors(part, variable)]
         case Literal(Scalar() as value) if not is_leaf(value):
-            written = spelled(value, variable)
+            written = formula_of(value, variable)
             return factors(written, variable) if isinstance(written, Product) else [formula]
         case Literal(Matrix() as table):
-            opened = spelled_matrix(table, variable)
+            opened = formula_of_matrix(table, variable)
             return list(opened.factors) if isinstance(opened, Product) else [formula]
         case _:
             return [formula]

@@ -1,4 +1,4 @@
-"""TODO symobs/render/printers/text_columns.py."""
+"""Pieces of text in columns beside each other."""
 
 from __future__ import annotations
 

@@ -10,9 +10,9 @@ from symobs._dataclass import dataclass
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import Box, Level
+from symobs.render.printers.glyphs import GlyphBox, Level
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.scalars import decimal
+from symobs.render.printers.rational_formula import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ _BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
 
 
 @dataclass(frozen=True)
-class TextBox(Box):
+class TextBox(GlyphBox):
     """Lines of equal width; `baseline` is the one that stands on the line of its neighbours."""
 
     lines: tuple[str, ...]

@@ -1,1 +1,1 @@
-"""TODO symobs/render/tables."""
+"""The Routh array as a table, fitted to the line, in every format."""

@@ -14,7 +14,7 @@ from symobs.exact import Scalar
 from symobs.formula import Formula, Literal, Negative, Product, Quotient, Relation, Sum
 from symobs.notation import symbol_latex
 from symobs.render.printers.glyphs import B
-from symobs.render.printers.scalars import is_leaf
+from symobs.render.printers.rational_formula import is_leaf
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

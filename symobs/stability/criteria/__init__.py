@@ -1,1 +1,1 @@
-"""TODO symobs/stability/criteria."""
+"""Stability criteria: Liénard and Chipart, the Routh array, the Cauchy index, and critical polynomials."""

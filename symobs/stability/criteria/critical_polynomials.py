@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Boundary:
+class StabilityBoundary:
     """What stable means: Re s < −margin, or in discrete time |z| < radius."""
 
     variable: str
@@ -42,7 +42,7 @@ class Boundary:
         """The names in margin and radius."""
         return self.margin.names | self.radius.names
 
-    def substitute(self, values: Mapping[str, Scalar]) -> Boundary:
+    def substitute(self, values: Mapping[str, Scalar]) -> StabilityBoundary:
         """Return the boundary with symbols replaced."""
         return replace(self, margin=self.margin.substitute(values), radius=self.radius.substitute(values))
 
@@ -57,11 +57,11 @@ class Boundary:
 
 
 @dataclass(frozen=True)
-class Critical:
+class CriticalPolynomials:
     """The polynomial a₀ wⁿ + … + aₙ without denominators, and what may vanish where stability changes."""
 
     polynomial: Scalar
-    boundary: Boundary
+    boundary: StabilityBoundary
     signs: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     @cached_property

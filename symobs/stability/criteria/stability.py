@@ -24,7 +24,7 @@ _POINTS = 60
 
 
 @dataclass(frozen=True)
-class Stability:
+class StabilityVerdict:
     """`verdict` yes, no or conditional; `positive` are the polynomials that must be > 0 where it is conditional."""
 
     verdict: str
@@ -38,11 +38,11 @@ class Stability:
         return [f"{left} {operator} {right}" for left, operator, right in solved]
 
 
-def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> Stability:
+def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> StabilityVerdict:
     """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does."""
     found = polynomial.coefficients(variable)
     if len(found) == 1:
-        return Stability("yes")
+        return StabilityVerdict("yes")
     coefficients = [c / found[0] for c in found]  # the leading coefficient may be of any sign
     if discrete:
         coefficients = bilinear(coefficients)
@@ -52,7 +52,7 @@ def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, di
         if len(parts) > 1 and any(
             stability(part, variable, signs, discrete=discrete).verdict == "no" for part in parts
         ):
-            return Stability("no")
+            return StabilityVerdict("no")
     return whole
 
 
@@ -90,7 +90,7 @@ def lienard_chipart(coefficients: Sequence[Scalar], *, others: bool = False) -> 
     return conditions
 
 
-def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability:
+def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> StabilityVerdict:
     """Strip what the declared signs settle; a condition that can never be positive settles the whole."""
     needed: dict[Scalar, None] = {}
     for condition in conditions:
@@ -98,9 +98,9 @@ def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability
         if sign == "positive":
             continue
         if sign in {"negative", "nonpositive", "zero"}:
-            return Stability("no")
+            return StabilityVerdict("no")
         needed[essential(condition, signs)] = None
-    return Stability("conditional", tuple(needed)) if needed else Stability("yes")
+    return StabilityVerdict("conditional", tuple(needed)) if needed else StabilityVerdict("yes")
 
 
 def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:

@@ -1,1 +1,1 @@
-"""TODO symobs/stability/inequalities."""
+"""Polynomial inequalities: their simplification, proofs of implication, and sample points."""

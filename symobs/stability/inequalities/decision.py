@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.stability.inequalities.factors import State, cleared, in_parts, split_products
+from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import Equivalence, Step
 from symobs.stability.inequalities.simplify import failing_alone, nonempty_or_not, prove_value
 from symobs.stability.inequalities.z3_and_qepcad import Resources, names_of
@@ -69,10 +69,10 @@ def equivalence_of(raw: Sequence[Scalar], said: Sequence[Scalar], signs: Mapping
     return Equivalence(raw, said, there, back)
 
 
-def _in_parts(values: Sequence[Scalar], signs: Mapping[str, str], *, split: bool = False) -> State:
-    state = State(tuple(dict.fromkeys(map(cleared, values))))
+def _in_parts(values: Sequence[Scalar], signs: Mapping[str, str], *, split: bool = False) -> InequalitySystem:
+    state = InequalitySystem(tuple(dict.fromkeys(map(cleared, values))))
     for value in state.current:
-        state = in_parts(state, value, signs)
+        state = split_into_factors(state, value, signs)
     return split_products(state, signs) if split else state
 
 

@@ -23,7 +23,7 @@ def cleared(value: Scalar) -> Scalar:
 
 
 @dataclass(frozen=True)
-class State:
+class InequalitySystem:
     """The list as it stands, the steps from it to the first one, and the steps from the first one to it."""
 
     current: tuple[Scalar, ...]
@@ -32,7 +32,7 @@ class State:
 
     def replaced(
         self, old: Scalar, new: Sequence[Scalar], forward: Sequence[Step], backward: Sequence[Step] = ()
-    ) -> State:
+    ) -> InequalitySystem:
         """Replace one value: `forward` leads back to it from the new list, `backward` from it to the new values."""
         place = self.current.index(old)
         current = dict.fromkeys((*self.current[:place], *new, *self.current[place + 1 :]))
@@ -48,7 +48,7 @@ class State:
         return tuple(other for other in self.current if other != value)
 
 
-def in_parts(state: State, value: Scalar, signs: Mapping[str, str]) -> State:
+def split_into_factors(state: InequalitySystem, value: Scalar, signs: Mapping[str, str]) -> InequalitySystem:
     """Replace a value by what of it is open: a product of odd powers, squares, and factors that are never negative."""
     if sign_of(value, signs) == "positive":
         return state.replaced(value, (), (by_signs(value),))
@@ -92,7 +92,7 @@ def _odd_factors(value: Scalar) -> tuple[Scalar, ...]:
     return tuple(factor for factor, _ in factors) if all(power == 1 for _, power in factors) else ()
 
 
-def split_products(state: State, signs: Mapping[str, str], given: Sequence[Scalar] = ()) -> State:
+def split_products(state: InequalitySystem, signs: Mapping[str, str], given: Sequence[Scalar] = ()) -> InequalitySystem:
     """Split products, those given apart, as long as the others settle the sign of a factor."""
     waiting = _products(state, given)
     while waiting:
@@ -102,11 +102,11 @@ def split_products(state: State, signs: Mapping[str, str], given: Sequence[Scala
     return state
 
 
-def _products(state: State, given: Sequence[Scalar]) -> list[Scalar]:
+def _products(state: InequalitySystem, given: Sequence[Scalar]) -> list[Scalar]:
     return [value for value in state.current if value not in given and len(_odd_factors(value)) > 1]
 
 
-def _split_one(state: State, value: Scalar, signs: Mapping[str, str]) -> State | None:
+def _split_one(state: InequalitySystem, value: Scalar, signs: Mapping[str, str]) -> InequalitySystem | None:
     others, points = state.without(value), find_points(state.current, signs)
     either = [sign * factor for factor in _odd_factors(value) for sign in (1, -1)]
     oriented = [factor for factor in either if all(value_at(factor, point) > 0 for point in points)]

@@ -6,7 +6,7 @@ What is known is a set of values > 0 and the declared signs.  A step adds one va
   products πᵢ and ρⱼ are of values known to be positive, and some dⱼ is surely positive.  The right side is then above 0
   and the sum on the left is not below it, so the value is positive.
 - `Opposite`: were the value negative, 0 > 0 would follow; and it is not 0, since a multiple of it is positive.
-- `Asked`: z3 found no real point where the value is not positive.  The checker asks again.
+- `ProvedByZ3`: z3 found no real point where the value is not positive.  The checker asks again.
 
 The value 0 among what is known is a contradiction: everything follows from it, by 0 · anything = 0.
 """
@@ -48,14 +48,14 @@ class Opposite:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ProvedByZ3:
     """z3 says that the value is positive wherever the values of `given` are."""
 
     value: Scalar
     given: tuple[Scalar, ...]
 
 
-Step: TypeAlias = Combined | Opposite | Asked
+Step: TypeAlias = Combined | Opposite | ProvedByZ3
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def _follows(step: Step, known: set[Scalar], signs: Mapping[str, str]) -> bool:
         case Opposite(value, multiple, steps):
             divides = multiple in known and not value.is_zero and (multiple / value).denominator.is_constant
             return divides and refutes(steps, (*known, -value), signs)
-        case Asked(value, given):
+        case ProvedByZ3(value, given):
             return known.issuperset(given) and none_by_z3((*given,), signs, not_above=value)
         case _:
             assert_never(step)
@@ -125,7 +125,7 @@ def asks_z3(proof: Equivalence | None) -> bool:
 
 
 def _asks(step: Step) -> bool:
-    return isinstance(step, Asked) or (isinstance(step, Opposite) and any(map(_asks, step.steps)))
+    return isinstance(step, ProvedByZ3) or (isinstance(step, Opposite) and any(map(_asks, step.steps)))
 
 
 def by_signs(value: Scalar) -> Combined:

@@ -50,7 +50,7 @@ class Open:
 
 
 @dataclass()
-class _Budget:
+class _SearchBudget:
     """What is left to be tried for one goal."""
 
     views: int
@@ -89,7 +89,7 @@ def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tu
         return (by_signs(goal),)
     if not _is_manageable(goal):
         return None
-    budget = _Budget(_VIEWS, _PROGRAMS)
+    budget = _SearchBudget(_VIEWS, _PROGRAMS)
     return _prove_in(goal, goal, _first_view(known, signs), budget)
 
 
@@ -98,7 +98,7 @@ def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...
     for value in known:
         if sign_of(value, signs) in _DOWN:
             return (contradiction(value),)
-    budget = _Budget(_VIEWS, _PROGRAMS)
+    budget = _SearchBudget(_VIEWS, _PROGRAMS)
     return _prove_in(ZERO, ZERO, _first_view(known, signs), budget)
 
 
@@ -121,7 +121,7 @@ def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> View:
     return View(dict(signs), open=tuple(Open(value, value) for value in ordered))
 
 
-def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _Budget) -> tuple[Step, ...] | None:
+def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _SearchBudget) -> tuple[Step, ...] | None:
     """Return the steps to a goal whose form in the view is `image`."""
     budget.views -= 1
     if not goal.is_zero and sign_of(image, view.signs) == "positive":

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
-from symobs.stability.inequalities.factors import State, cleared, in_parts, split_products
+from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import (
     ZERO,
-    Asked,
     Equivalence,
+    ProvedByZ3,
     Step,
     contradiction,
     from_contradiction,
@@ -84,12 +84,12 @@ def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = 
     """
     given, asked_of = (tuple(dict.fromkeys(map(cleared, values))) for values in (beside, raw))
     polynomials = tuple(dict.fromkeys((*asked_of, *given)))
-    state = State(polynomials)
+    state = InequalitySystem(polynomials)
     for value in polynomials:
         if sign_of(value, signs) in _DOWN:
             return _nowhere(polynomials, (contradiction(value),))
         if value not in given:
-            state = in_parts(state, value, signs)
+            state = split_into_factors(state, value, signs)
     resources = Resources() if ask else Resources(0)
     point, impossible = nonempty_or_not(state.current, signs, resources)
     if impossible is not None:
@@ -117,7 +117,7 @@ def nonempty_or_not(
         return None, steps
     answer, model = point_by_z3(positive, signs, resources=resources)
     if answer == "no":
-        return None, (Asked(ZERO, tuple(positive)),)
+        return None, (ProvedByZ3(ZERO, tuple(positive)),)
     good = bool(model) and respects(model, signs) and holds_at(positive, model)
     return (dict(model) if good else None), None
 
@@ -126,8 +126,8 @@ def nonempty_or_not(
 
 
 def _without_implied(
-    state: State, signs: Signs, given: Sequence[Scalar], resources: Resources
-) -> tuple[State, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
+    state: InequalitySystem, signs: Signs, given: Sequence[Scalar], resources: Resources
+) -> tuple[InequalitySystem, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
     """Drop what the others imply, the longest first; return the points which show that the rest is needed too."""
     witnesses, dropped = list[tuple[Scalar, Point]](), list[tuple[Scalar, str]]()
     open_ = (value for value in state.current if value not in given)
@@ -139,7 +139,7 @@ def _without_implied(
             point, steps = _asked(value, others, signs, resources)
         if steps is not None:
             state = state.replaced(value, (), steps)
-            dropped.append((value, "z3" if any(isinstance(step, Asked) for step in steps) else "products"))
+            dropped.append((value, "z3" if any(isinstance(step, ProvedByZ3) for step in steps) else "products"))
         elif point is not None:
             witnesses.append((value, point))
     return state, tuple(witnesses), tuple(dropped)
@@ -172,6 +172,6 @@ def _asked(
     """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
     answer, model = point_by_z3(others, signs, not_above=value, resources=resources)
     if answer == "no":
-        return None, (Asked(value, tuple(others)),)
+        return None, (ProvedByZ3(value, tuple(others)),)
     fails = bool(model) and respects(model, signs) and holds_at(others, model) and value_at(value, model) <= 0
     return (dict(model) if fails else None), None

@@ -64,7 +64,7 @@ def _with_help(
 
 
 @dataclass(frozen=True)
-class Box:
+class IntervalBox:
     """A product of open intervals: a parameter lies above all its `lower` and below all its `upper` bounds.
 
     It is convex, so in one piece, and not empty exactly where all of `needs` are > 0; `sample` is a point of it, None
@@ -82,7 +82,7 @@ class Box:
         return all(self.lower[name] and self.upper[name] for name in self.lower)
 
 
-def box(conditions: Sequence[Scalar], parameters: Sequence[str], signs: Mapping[str, str]) -> Box | None:
+def box(conditions: Sequence[Scalar], parameters: Sequence[str], signs: Mapping[str, str]) -> IntervalBox | None:
     """Return the box which the conditions > 0 make, None where one of them couples parameters or is not linear."""
     lower: dict[str, list[Scalar]] = {name: [] for name in parameters}
     upper: dict[str, list[Scalar]] = {name: [] for name in parameters}
@@ -108,7 +108,7 @@ def box(conditions: Sequence[Scalar], parameters: Sequence[str], signs: Mapping[
     sample = {name: value for name, value in found.items() if value is not None}
     proven = len(sample) == len(found) and all(_holds(value, sample, open_, signs) for value in conditions)
     below, above = ({name: tuple(dict.fromkeys(v)) for name, v in side.items()} for side in (lower, upper))
-    return Box(below, above, open_, sample if proven else None)
+    return IntervalBox(below, above, open_, sample if proven else None)
 
 
 def _bound(value: Scalar, name: str, signs: Mapping[str, str]) -> tuple[str, Scalar] | None:

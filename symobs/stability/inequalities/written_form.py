@@ -1,4 +1,4 @@
-"""TODO symobs/stability/inequalities/written_form.py."""
+"""Inequalities as they are printed: solved for a parameter, squares as inequations."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact.kernel.generators import PI, known
+from symobs.exact.kernel.generators import PI, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,7 +38,7 @@ def names_of(values: Sequence[Scalar]) -> list[str]:
 
 def is_free(name: str) -> bool:
     """Tell whether a generator is a symbol that may take any value of its sign: not √2, not π."""
-    return name != PI and known(name) is None
+    return name != PI and function_named(name) is None
 
 
 def point_by_z3(

@@ -1,1 +1,1 @@
-"""TODO symobs/stability/plots."""
+"""Stability regions and root loci as plots."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import FIRST_BITS, RealNumber, real_roots
-from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Literal, Relation
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
     curves += _verticals(region, window)
     seen = [cell for cell in region.cells if cell.allowed and _inside(cell.sample, window)]
     shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
-    marks = [Mark(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
-    marks += [Mark(hole.near, "excluded") for hole in region.holes]
+    marks = [MarkedPoint(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
+    marks += [MarkedPoint(hole.near, "excluded") for hole in region.holes]
     return RegionPicture(region.names, window, tuple(areas), tuple(curves), tuple(marks))
 
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.stability.criteria.critical_polynomials import Critical
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 from symobs.stability.plots.region_plot import equation_of, oriented, picture_of_line, picture_of_plane
 from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.region_for import region_in
+from symobs.stability.regions.region_for import exact_region
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 _VALUES = ((1, 1, 1), (1, 2, 3), (2, 1, 3), (3, 1, 2))
 
 
-def picture_with_symbols(critical: Critical, parameters: Sequence[str], symbols: Sequence[str]) -> Picture | None:
+def picture_with_symbols(
+    critical: CriticalPolynomials, parameters: Sequence[str], symbols: Sequence[str]
+) -> Picture | None:
     """Return the picture of a region of one or two parameters at values of the symbols; None where there is none to see."""
     if not symbols or not 1 <= len(parameters) <= 2 or critical.never:
         return None
@@ -40,16 +42,18 @@ def _choices(symbols: Sequence[str], signs: Mapping[str, str]) -> Iterator[dict[
         }
 
 
-def _drawn(critical: Critical, parameters: Sequence[str], values: dict[str, Scalar]) -> Picture | None:
+def _drawn(critical: CriticalPolynomials, parameters: Sequence[str], values: dict[str, Scalar]) -> Picture | None:
     """Return the picture at these values, None where nothing is stable there."""
     try:
-        there = Critical(critical.polynomial.substitute(values), critical.boundary.substitute(values), critical.signs)
+        there = CriticalPolynomials(
+            critical.polynomial.substitute(values), critical.boundary.substitute(values), critical.signs
+        )
     except ZeroDivisionError:
         return None
     if there.never or there.parameters != tuple(sorted(parameters)):
         return None
     drawn_for = tuple(values.items())
-    region = region_in(there, tuple(parameters))
+    region = exact_region(there, tuple(parameters))
     if region is None or region.empty:
         return None
     if isinstance(region, LineRegion):
@@ -60,7 +64,9 @@ def _drawn(critical: Critical, parameters: Sequence[str], values: dict[str, Scal
     return replace(picture, curves=curves, drawn_for=drawn_for)
 
 
-def _general(factor: Scalar, values: Mapping[str, Scalar], critical: Critical, parameters: Sequence[str]) -> Relation:
+def _general(
+    factor: Scalar, values: Mapping[str, Scalar], critical: CriticalPolynomials, parameters: Sequence[str]
+) -> Relation:
     """Return the equation with symbols that becomes the one of this factor."""
     for polynomial in critical.proper:
         there = polynomial.substitute(values)

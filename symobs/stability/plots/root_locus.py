@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.figures.plot import Place
-    from symobs.stability.criteria.critical_polynomials import Boundary
+    from symobs.stability.criteria.critical_polynomials import StabilityBoundary
     from symobs.stability.regions.interval_region import LineRegion
 
 #: Nodes along the way, and how near to a double root, in parts of the way, further ones stand on both sides of it.
@@ -24,7 +24,7 @@ NODES = 120
 _BESIDE = (Fraction(1, 3000), Fraction(1, 600), Fraction(1, 200))
 
 
-def pole_map(region: LineRegion, polynomial: Scalar, boundary: Boundary) -> PoleMap | None:
+def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary) -> PoleMap | None:
     """Return the paths of the roots of a polynomial over the window of its region; None where a root goes to infinity."""
     name, variable = region.name, boundary.variable
     if not polynomial.coefficients(variable)[0].is_constant or not boundary.names <= {variable}:

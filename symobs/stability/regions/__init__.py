@@ -1,1 +1,1 @@
-"""TODO symobs/stability/regions."""
+"""Exact stability regions in one and two parameters, and their descriptions by inequalities."""

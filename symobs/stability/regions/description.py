@@ -42,7 +42,7 @@ class Edge:
 
 
 @dataclass(frozen=True)
-class Part:
+class CylindricalPart:
     """low < x < high and lower(x) < y < upper(x), None where there is no bound.
 
     `begins` and `reaches`: whether the lower and the higher end of x belong to it, with the bounds that stand there.
@@ -58,15 +58,15 @@ class Part:
     reaches: bool = False
 
 
-def parts(region: PlaneRegion) -> tuple[Part, ...]:
+def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
     """Return the parts of all components, from left to right."""
     component_of = {cell: k for k, component in enumerate(region.components) for cell in component.cells}
     meetings = meetings_of(region)
     goes_on = {m.right: m.left for m in meetings if m.left_alone and m.right_alone}
-    found: dict[int, Part] = {}
+    found: dict[int, CylindricalPart] = {}
     for number, component in sorted(component_of.items()):
         slab, lower, upper = edges_of(region, region.cells[number])
-        part = Part(component, slab.left, slab.right, lower, upper, (number,))
+        part = CylindricalPart(component, slab.left, slab.right, lower, upper, (number,))
         before = found.get(goes_on.get(number, -1))
         if before and (before.lower, before.upper) == (lower, upper) and is_regular(part, slab.left):
             del found[before.cells[-1]]
@@ -101,14 +101,14 @@ def meetings_of(region: PlaneRegion) -> list[Meeting]:
     return [Meeting(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
 
 
-def is_regular(part: Part, end: RealNumber | None) -> bool:
+def is_regular(part: CylindricalPart, end: RealNumber | None) -> bool:
     """Tell whether the bounds of a part have a meaning at one of its ends."""
     edges = [edge for edge in (part.lower, part.upper) if edge is not None]
     # the number of a root may be another one on the wall itself
     return end is not None and all(edge.closed is not None and edge.is_finite_at(end) for edge in edges)
 
 
-def are_whole(region: PlaneRegion, found: Sequence[Part]) -> bool:
+def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
     """Tell whether parts leave nothing out: where cells meet, the piece of the wall belongs to a part on one side."""
     part_of = {cell: part for part in found for cell in part.cells}
     return not region.holes and all(
@@ -131,7 +131,7 @@ def between(
     return None if high is None else Relation((symbol, Literal(high)), (closing,))
 
 
-def relations_of(part: Part, names: tuple[str, str]) -> tuple[Relation, ...]:
+def relations_of(part: CylindricalPart, names: tuple[str, str]) -> tuple[Relation, ...]:
     """Return the inequalities of a part whose bounds have closed forms: of x, then of y."""
     x, y = names
     ends = [None if number is None else number.scalar(x) for number in (part.low, part.high)]
@@ -140,7 +140,7 @@ def relations_of(part: Part, names: tuple[str, str]) -> tuple[Relation, ...]:
     return tuple(found for found in (first, between(y, bounds[0], bounds[1])) if found is not None)
 
 
-def is_written(part: Part) -> bool:
+def is_written(part: CylindricalPart) -> bool:
     """Tell whether every bound of y has a closed form."""
     return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 

@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.exact import RealNumber, Scalar
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 
 @dataclass(frozen=True)
-class Piece:
+class IntervalPiece:
     """An open interval between neighbouring critical points (None: none on that side), and whether it is stable."""
 
     low: RealNumber | None
@@ -32,7 +32,7 @@ class Piece:
 class LineRegion:
     """All values of one parameter at which the polynomial is stable."""
 
-    critical: Critical
+    critical: CriticalPolynomials
     name: str
 
     @cached_property
@@ -41,22 +41,22 @@ class LineRegion:
         return tuple(sorted({root for factor in self.critical.factors for root in roots_of_scalar(factor, self.name)}))
 
     @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
+    def pieces(self) -> tuple[IntervalPiece, ...]:
         """The intervals between them that the declared sign allows, from left to right."""
         return self._pieces(self.points)
 
-    def _pieces(self, points: Sequence[RealNumber]) -> tuple[Piece, ...]:
+    def _pieces(self, points: Sequence[RealNumber]) -> tuple[IntervalPiece, ...]:
         ends = [None, *points, None]
         found = []
         for low, high in itertools.pairwise(ends):
             sample = rational_between(low, high)
             point = {self.name: sample}
             if self.critical.allows(point):
-                found.append(Piece(low, high, sample, self.critical.is_stable(point)))
+                found.append(IntervalPiece(low, high, sample, self.critical.is_stable(point)))
         return tuple(found)
 
     @cached_property
-    def intervals(self) -> tuple[Piece, ...]:
+    def intervals(self) -> tuple[IntervalPiece, ...]:
         """The stable ones."""
         return tuple(piece for piece in self.pieces if piece.stable)
 

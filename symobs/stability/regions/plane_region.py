@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.exact import RealNumber, Scalar
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 #: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
 LARGEST_PROJECTION = 170
@@ -60,7 +60,7 @@ class Hole:
 class PlaneRegion:
     """All (x, y), `names`, at which the polynomial is stable, as cells of the plane divided by its critical curves."""
 
-    critical: Critical
+    critical: CriticalPolynomials
     names: tuple[str, str]
 
     @cached_property
@@ -281,7 +281,7 @@ def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
 
 
 @lru_cache(maxsize=64)
-def plane_region(critical: Critical, names: tuple[str, str]) -> PlaneRegion:
+def plane_region(critical: CriticalPolynomials, names: tuple[str, str]) -> PlaneRegion:
     """Return the region, its stacks standing over that name in whose place the other has the lower degree."""
 
     def height(name: str) -> tuple[int, int]:

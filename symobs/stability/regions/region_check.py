@@ -16,9 +16,9 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import integer_factor
-from symobs.exact.algebraic.root_location import sides
+from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
-from symobs.exact.kernel.generators import substitute, tidy
+from symobs.exact.kernel.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.description import is_regular, meetings_of
 from symobs.stability.regions.plane_region import PlaneRegion
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact.cad.decomposition import Slab
-    from symobs.stability.criteria.critical_polynomials import Critical
-    from symobs.stability.regions.description import Edge, Part
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
+    from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.interval_region import LineRegion
-    from symobs.stability.regions.short_list import Bound
+    from symobs.stability.regions.short_list import RegionInequality
 
 _POINTS = 3
 
 
-def are_critical(critical: Critical) -> bool:
+def are_critical(critical: CriticalPolynomials) -> bool:
     """Tell whether the coefficients are those of the moved polynomial, and the critical factors all there.
 
     At random points: (w − 1)ⁿ χ((w + 1)/(w − 1)) = Σ aₖ wⁿ⁻ᵏ in discrete time, else χ itself; a₀, aₙ and the determinant of the
@@ -66,7 +66,7 @@ def _is_product(value: Scalar, factors: Sequence[Scalar]) -> bool:
     return value.is_constant
 
 
-def _ratio(critical: Critical, a: Sequence[Fraction], point: Mapping[str, Fraction], w: Scalar) -> Scalar:
+def _ratio(critical: CriticalPolynomials, a: Sequence[Fraction], point: Mapping[str, Fraction], w: Scalar) -> Scalar:
     """Return Σ aₖ wⁿ⁻ᵏ divided by the polynomial at the number that w stands for, times (w − 1)ⁿ in discrete time."""
     boundary, value = critical.boundary, Scalar.of(0)
     for coefficient in a:
@@ -78,7 +78,7 @@ def _ratio(critical: Critical, a: Sequence[Fraction], point: Mapping[str, Fracti
 
 
 @lru_cache(maxsize=256)
-def is_region(region: LineRegion | PlaneRegion, bounds: tuple[Bound, ...] | None) -> bool:
+def is_region(region: LineRegion | PlaneRegion, bounds: tuple[RegionInequality, ...] | None) -> bool:
     """Tell whether a region is what it says, and these inequalities hold exactly on it (None: it is empty)."""
     critical = region.critical
     if critical.never:
@@ -99,12 +99,12 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
         factors = [integer_factor(f, region.name) for f in (*region.critical.factors, *further)]
         whole = is_line(region.divided(further), factors)
     return whole and all(
-        sample.stable == (sides(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
+        sample.stable == (count_roots_by_half_plane(region.critical.at(sample.point)) == (region.critical.order, 0, 0))
         for sample in region.samples(further)
     )
 
 
-def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
+def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
     """Tell whether parts are all stable cells, each once, and every bound in closed form is the branch it stands for.
 
     A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
@@ -123,7 +123,7 @@ def are_parts(region: PlaneRegion, parts: Sequence[Part]) -> bool:
     return all(_is_part(region, part, number) for part in parts for number in part.cells)
 
 
-def _is_part(region: PlaneRegion, part: Part, number: int) -> bool:
+def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
     cell = region.cells[number]
     slab, below, above = region.bounds(cell)
     ends = (region.cells[part.cells[0]], region.cells[part.cells[-1]])
@@ -145,7 +145,7 @@ def _is_part(region: PlaneRegion, part: Part, number: int) -> bool:
 def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
     """Tell whether a closed form solves its polynomial, and at the slab's point lies between the samples around it."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
-    left = tidy(edge.polynomial.substitute({names[1]: edge.closed}))
+    left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))
     at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
     low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
     return (

@@ -11,11 +11,11 @@ from symobs.stability.regions.plane_region import PlaneRegion, can_be_divided, p
 from symobs.stability.regions.short_list import short_list
 
 if TYPE_CHECKING:
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 
 @lru_cache(maxsize=64)
-def region_in(critical: Critical, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
+def exact_region(critical: CriticalPolynomials, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
     """Return the exact region in one or two parameters, None in more or where the plane is too much to divide.
 
     A parameter that may be 0 and not beyond has a boundary that belongs to it, which open cells do not see.

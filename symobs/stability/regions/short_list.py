@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
-    from symobs.stability.criteria.critical_polynomials import Critical
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
 
 
-class Bound(NamedTuple):
+class RegionInequality(NamedTuple):
     """polynomial > 0, or with the operator `!=` polynomial ≠ 0."""
 
     polynomial: Scalar
@@ -43,11 +43,11 @@ class Sample:
     stable: bool
 
 
-class Region(Protocol):
+class ExactRegion(Protocol):
     """What the two kinds of region have in common."""
 
     @property
-    def critical(self) -> Critical:
+    def critical(self) -> CriticalPolynomials:
         """The critical polynomials."""
 
     def samples(self, further: Sequence[Scalar]) -> list[Sample]:
@@ -61,13 +61,15 @@ class Region(Protocol):
 
 
 @lru_cache(maxsize=256)
-def short_list(region: Region) -> tuple[Bound, ...]:
+def short_list(region: ExactRegion) -> tuple[RegionInequality, ...]:
     """Return the inequalities; none where everything is stable.  The region must not be empty."""
     samples = region.samples(())
-    bounds = [Bound(factor, "!=") for factor in region.surrounded()]
+    bounds = [RegionInequality(factor, "!=") for factor in region.surrounded()]
     bounds += _oriented(region.critical.proper, samples)
     listed = {bound.polynomial for bound in bounds} | {-bound.polynomial for bound in bounds}
-    bounds += [Bound(through[0], "!=") for through in region.through_holes() if not listed.intersection(through)]
+    bounds += [
+        RegionInequality(through[0], "!=") for through in region.through_holes() if not listed.intersection(through)
+    ]
     waiting = _candidates(region.critical, samples)
     while True:
         missed = [sample for sample in samples if not sample.stable and _hold(bounds, sample)]
@@ -83,7 +85,7 @@ def short_list(region: Region) -> tuple[Bound, ...]:
     return _without_the_superfluous(bounds, samples, region.through_holes())
 
 
-def is_exact(region: Region, bounds: Sequence[Bound]) -> bool:
+def is_exact(region: ExactRegion, bounds: Sequence[RegionInequality]) -> bool:
     """Tell whether these inequalities hold exactly on the region."""
     factors = irreducible(bound.polynomial for bound in bounds)
     # these do not vanish anywhere in the region; of others a curve or a point inside might be left out by a list
@@ -96,23 +98,23 @@ def is_exact(region: Region, bounds: Sequence[Bound]) -> bool:
     return right and cuts and holes
 
 
-def _hold(bounds: Iterable[Bound], sample: Sample) -> bool:
+def _hold(bounds: Iterable[RegionInequality], sample: Sample) -> bool:
     return all(bound.at(sample.point) for bound in bounds)
 
 
-def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[Bound]:
+def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[RegionInequality]:
     """Return those polynomials of one sign at all stable samples, turned so that it is positive."""
     found = []
     for polynomial in polynomials:
         signs = {value_at(polynomial, sample.point) > 0 for sample in samples if sample.stable}
         if len(signs) == 1:
-            found.append(Bound(polynomial if signs.pop() else -polynomial))
+            found.append(RegionInequality(polynomial if signs.pop() else -polynomial))
     return found
 
 
-def _candidates(critical: Critical, samples: Sequence[Sample]) -> list[Bound]:
+def _candidates(critical: CriticalPolynomials, samples: Sequence[Sample]) -> list[RegionInequality]:
     """Return the conditions' factors of one sign on the region, and what is left of each condition, simple ones first."""
-    found: dict[Bound, None] = {}
+    found: dict[RegionInequality, None] = {}
     for condition in critical.conditions:
         if condition.is_constant:
             continue
@@ -126,7 +128,7 @@ def _candidates(critical: Critical, samples: Sequence[Sample]) -> list[Bound]:
             elif power % 2:
                 rest = rest * factor
         if not rest.is_constant:
-            found[Bound(rest)] = None
+            found[RegionInequality(rest)] = None
     return sorted(found, key=lambda bound: _length(bound.polynomial))
 
 
@@ -134,7 +136,7 @@ def _length(polynomial: Scalar) -> tuple[int, int]:
     return polynomial.degrees()[0], polynomial.size
 
 
-def _next(waiting: list[Bound], missed: Sequence[Sample], samples: Sequence[Sample]) -> Bound:
+def _next(waiting: list[RegionInequality], missed: Sequence[Sample], samples: Sequence[Sample]) -> RegionInequality:
     """Take out the simplest candidate that excludes a point which is missed and no stable one."""
     for bound in waiting:
         stable = all(bound.at(sample.point) for sample in samples if sample.stable)
@@ -146,8 +148,8 @@ def _next(waiting: list[Bound], missed: Sequence[Sample], samples: Sequence[Samp
 
 
 def _without_the_superfluous(
-    bounds: Sequence[Bound], samples: Sequence[Sample], holes: Sequence[tuple[Scalar, ...]]
-) -> tuple[Bound, ...]:
+    bounds: Sequence[RegionInequality], samples: Sequence[Sample], holes: Sequence[tuple[Scalar, ...]]
+) -> tuple[RegionInequality, ...]:
     """Drop what the others imply, the longest first; keep what alone excludes a curve or a point."""
     kept = list(bounds)
     unstable = [sample for sample in samples if not sample.stable]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from symobs.audit.equations.grammar import read_relation
-from symobs.audit.printed_entries import statements
+from symobs.audit.printed_entries import printed_entries
 from symobs.cli import main
 from symobs.convention.convention_file import of_file
 from symobs.errors import SymobsError
@@ -149,7 +149,7 @@ def _read_problem(raw: bytes) -> str:
     with patch.object(Problem, "solve", _unsolved):
         problem = validate(parse(_decoded(raw)))
     question_of(problem)
-    statements(problem.printed, problem.convention, problem.plant.symbols.signs)
+    printed_entries(problem.printed, problem.convention, problem.plant.symbols.signs)
     return "read"
 
 

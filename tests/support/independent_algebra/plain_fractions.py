@@ -31,7 +31,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.kernel.generators import PI, known, symbols_in
+from symobs.exact.kernel.generators import PI, function_named, symbols_in
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.figures.plot import TimeResponse
@@ -39,14 +39,14 @@ from symobs.formula import (
     Apply,
     At,
     Block,
+    Conjunction,
     Decimals,
     Derivative,
-    Exactly,
+    HoldsExactlyWhere,
     Identity,
     Integral,
     Letter,
     Literal,
-    Names,
     Negative,
     Power,
     Predicate,
@@ -56,13 +56,13 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
     Transpose,
 )
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
 from tests.support.independent_algebra import series
 from tests.support.independent_algebra.plain import coefficients_at, multiply, transposed
-from tests.support.independent_algebra.responses import untrue_courses
+from tests.support.independent_algebra.responses import untrue_responses
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -231,7 +231,7 @@ class World:
 
     def number(self, name: str) -> Fraction:
         """Return what a parameter is here: its meaning, or a random fraction of its sign."""
-        function = known(name)
+        function = function_named(name)
         if regions.is_number(name):
             return regions.number_of(name)
         if isinstance(function, RootSum):
@@ -401,7 +401,7 @@ class World:
                 case Diagram(figure, labels):
                     signs = {wire.gain for wire in figure_of(figure).wires}
                     for name, label in labels:
-                        if isinstance(label, Together):
+                        if isinstance(label, Conjunction):
                             yield from self.facts((label,))
                         elif name in signs:  # whatever it is, where a gain behind it is 0
                             yield f"label {name}", self.arriving(figure, dict(labels)) or self.value(label)
@@ -413,14 +413,14 @@ class World:
                     yield from self.facts((fact,))
                 case Survey():
                     yield from self.survey(step)
-                case Plot(TimeResponse() as courses, subject):
-                    yield "=", Fraction(len(untrue_courses(courses, self.value(subject))))
+                case Plot(TimeResponse() as responses, subject):
+                    yield "=", Fraction(len(untrue_responses(responses, self.value(subject))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
                 case Case(when, substitution, inside):
                     stratum = self.copy()
-                    relations = when.relations if isinstance(when, Together) else (when,)
+                    relations = when.relations if isinstance(when, Conjunction) else (when,)
                     if not substitution:
                         stratum.move_to([_equation(relation) for relation in relations if relation.operators == ("=",)])
                     stratum.meanings |= dict(substitution)
@@ -440,7 +440,7 @@ class World:
     def arriving(self, name: str, labels: Mapping[str, Any]) -> dict[str, Any]:
         """Return by which matrices signals reach the integrators of a diagram; nothing where boxes are whole systems."""
         figure = figure_of(name).without_missing(labels)
-        if figure.response or any(isinstance(label, Together) for label in labels.values()):
+        if figure.response or any(isinstance(label, Conjunction) for label in labels.values()):
             return {}
 
         def leaving(node: str) -> Any:
@@ -539,7 +539,7 @@ class World:
             raise ZeroDivisionError(point)
         return regions.is_stable(coefficients, discrete=self.is_discrete)
 
-    def region(self, fact: Exactly) -> Iterator[tuple[str, Any]]:
+    def region(self, fact: HoldsExactlyWhere) -> Iterator[tuple[str, Any]]:
         """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
         about = fact.property.subject
         wrong = 0
@@ -594,7 +594,7 @@ class World:
                             operator,
                             content if operator in {"=", "!=="} else Compared(content, members[index : index + 2]),
                         )
-                case Together(relations):
+                case Conjunction(relations):
                     yield from self.facts(relations)
                 case Shown(formula, value):
                     yield from self.facts((Relation((formula, value), ("=",)),))
@@ -604,7 +604,7 @@ class World:
                 case Roots(polynomial, values):
                     yield "condition", single(self.value(polynomial))
                     yield "roots", tuple(sorted(repr(self.root(root)) for root in values))
-                case Exactly(about, where):
+                case HoldsExactlyWhere(about, where):
                     yield f"property {about.name}", single(self.value(about.subject))
                     if about.name == "stable" and self.polynomial_of(about.subject) is not None:
                         yield from self.region(fact)
@@ -612,7 +612,7 @@ class World:
                     yield "region", [(relation.operators, single(self.difference(relation))) for relation in where]
                 case str():
                     yield "word", fact
-                case Names(names):
+                case SymbolList(names):
                     yield "word", names
                 case _:
                     yield "shown", self.value(fact)

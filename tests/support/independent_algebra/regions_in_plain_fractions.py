@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from flint import fmpz_poly
 
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import known
+from symobs.exact.kernel.generators import function_named
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
 from symobs.formula import Literal, Relation
 from tests.support.independent_algebra.plain import (
@@ -473,7 +473,7 @@ def _roots(coefficients: Sequence[Fraction]) -> list[complex]:
 
 def is_number(name: str) -> bool:
     """Tell whether a generator is a `CRootOf`."""
-    function = known(name)
+    function = function_named(name)
     return function is not None and function.kind == "CRootOf"
 
 

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import Course, Interval, TimeResponse
+    from symobs.figures.plot import Interval, Response, TimeResponse
 
 Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.
 _DIGITS = 60
 
 
-def untrue_courses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> tuple[str, ...]:
+def untrue_responses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> tuple[str, ...]:
     """Return the points that lie a thousandth of the window or more from where they should."""
     return _all_untrue(picture, tuple(map(tuple, matrix)))
 
@@ -31,24 +31,24 @@ def _all_untrue(picture: TimeResponse, matrix: Rows) -> tuple[str, ...]:
     if picture.discrete:
         return tuple(_untrue_samples(picture, matrix))
     start = tuple(part for start in picture.starts for part in start)
-    found = (_untrue(course, picture.window, picture.parts, start, matrix) for course in picture.courses)
+    found = (_untrue(response, picture.window, picture.parts, start, matrix) for response in picture.responses)
     return tuple(text for texts in found for text in texts)
 
 
 @lru_cache(maxsize=64)
 def _untrue(
-    course: Course, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
+    response: Response, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
 ) -> tuple[str, ...]:
-    """Return the points of one course: pictures that differ in another course have the same."""
+    """Return the points of one response: pictures that differ in another response have the same."""
     (begin, end), (bottom, top) = window
-    step = end / (len(course.heights) - 1)
+    step = end / (len(response.heights) - 1)
     assert begin == 0
     assert step <= end / 100
-    row, near = [float(part) for part in course.row], float(top - bottom) / 1000
-    states = _states(matrix, start, step, len(course.heights))
+    row, near = [float(part) for part in response.row], float(top - bottom) / 1000
+    states = _states(matrix, start, step, len(response.heights))
     return tuple(
-        f"{course.signal} at {k * step}"
-        for k, (height, state) in enumerate(zip(course.heights, states, strict=True))
+        f"{response.signal} at {k * step}"
+        for k, (height, state) in enumerate(zip(response.heights, states, strict=True))
         if abs(sum(map(mul, row, state)) - height / parts) > near
     )
 
@@ -68,11 +68,11 @@ def _untrue_samples(picture: TimeResponse, matrix: Rows) -> Iterator[str]:
     """Yield the values that are not row · Mᵏ · start, exactly."""
     start = sympy.Matrix([sympy.Rational(str(part)) for start in picture.starts for part in start])
     table = sympy.Matrix([[sympy.Rational(str(entry)) for entry in row] for row in matrix])
-    for course in picture.courses:
-        row = sympy.Matrix([[sympy.Rational(str(part)) for part in course.row]])
-        for place, (instant, height) in enumerate(picture.points(course)):
+    for response in picture.responses:
+        row = sympy.Matrix([[sympy.Rational(str(part)) for part in response.row]])
+        for place, (instant, height) in enumerate(picture.points(response)):
             if instant != place or (row * table**place * start)[0] != sympy.Rational(str(height)):
-                yield f"{course.signal} at {instant}"
+                yield f"{response.signal} at {instant}"
 
 
 def _real(value: Fraction) -> mpmath.mpf:

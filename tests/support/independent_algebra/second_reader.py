@@ -20,19 +20,19 @@ import sympy
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import known as function_named
+from symobs.exact.kernel.generators import function_named
 from symobs.formula import (
     Apply,
     At,
     Block,
+    Conjunction,
     Decimals,
     Derivative,
-    Exactly,
+    HoldsExactlyWhere,
     Identity,
     Integral,
     Letter,
     Literal,
-    Names,
     Negative,
     Power,
     Predicate,
@@ -42,7 +42,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
     Transpose,
 )
 from tests.support.independent_algebra.routh_by_hand import is_so, rows_of
@@ -66,7 +66,7 @@ def facts_in(item: object) -> Iterator[Fact | Tabulate]:
     if isinstance(item, Tabulate):
         yield item
         yield from facts_in(item.sentence)
-    elif isinstance(item, (Relation, Predicate, Roots, Exactly, Shown)):
+    elif isinstance(item, (Relation, Predicate, Roots, HoldsExactlyWhere, Shown)):
         yield item
     elif isinstance(item, (tuple, list)):
         for part in item:
@@ -196,7 +196,7 @@ class Reader:
                     self.fact(fact)
             case Diagram(_, labels):
                 for name, label in labels:
-                    if isinstance(label, Together):
+                    if isinstance(label, Conjunction):
                         self.fact(label)
                     elif step.name in {"loop", "unity_loop"} and name in {"P", "F"}:
                         drawn = label.operand if isinstance(label, Negative) else label
@@ -242,14 +242,14 @@ class Reader:
         if sentence is None:
             return
         for name, slot in sentence.slots:
-            if isinstance(slot, (Relation, Together, Predicate, Roots, Exactly)):
+            if isinstance(slot, (Relation, Conjunction, Predicate, Roots, HoldsExactlyWhere)):
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
-            elif not isinstance(slot, (str, Names)):
+            elif not isinstance(slot, (str, SymbolList)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
-    def case(self, when: Relation | Together, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
+    def case(self, when: Relation | Conjunction, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:
         """Read on with the parameters replaced; letters that have no value there are forgotten."""
         if not substitution and isinstance(when, Relation) and when.operators == ("=",):
             self.at_eigenvalues(when, steps)
@@ -266,7 +266,7 @@ class Reader:
             moved = value.subs(replaced)
             if not moved.has(sympy.zoo, sympy.nan, sympy.oo):
                 self.letters[name] = moved
-        for relation in when.relations if isinstance(when, Together) else (when,):
+        for relation in when.relations if isinstance(when, Conjunction) else (when,):
             if relation.operators == ("!=",):
                 assert not is_zero(scalar(self.value(relation.members[0])) - scalar(self.value(relation.members[1])))
                 self.tally.compared += 1
@@ -344,7 +344,7 @@ class Reader:
                     assert self.holds(left, operator, right), fact
                 self.tally.compared += len(operators)
                 return
-            case Together(relations):
+            case Conjunction(relations):
                 for relation in relations:
                     self.fact(relation)
                 return
@@ -355,7 +355,7 @@ class Reader:
                 parts = [sympy.Poly(part, self.symbol) for part in (above, below)]
                 whole = parts[1] if parts[1].degree() > 0 else parts[0]
                 assert is_zero(product - whole.as_expr() / whole.LC()), fact
-            case Exactly(Predicate("stable", subject), where):
+            case HoldsExactlyWhere(Predicate("stable", subject), where):
                 self.exactly(subject, where)
             case Predicate(name, subject):
                 self.predicate(name, subject)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symobs.exact import Scalar
-from symobs.figures.plot import Curve, End, LinePicture, Mark, PoleMap, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
 from symobs.formula import Literal, Relation
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def region(
     (_, _), (bottom, top) = window
     areas: list[tuple[Place, ...]] = []
     drawn: list[Curve] = []
-    marks: list[Mark] = [Mark(place, "excluded") for place in excluded]
+    marks: list[MarkedPoint] = [MarkedPoint(place, "excluded") for place in excluded]
     for left, right in pairwise(critical(list(curves), window)):
         nodes = [
             fraction(left + (right - left) * (1 - np.cos(np.pi * (j + 0.2) / (_NODES + 0.4))) / 2)
@@ -118,7 +118,7 @@ def region(
             if stable and any(low[1] != high[1] for low, high in zip(below, above, strict=True)):
                 areas.append((*below, *reversed(above)))
             if marked and y1 - y0 > Fraction(top - bottom, 12) and right - left > (window[0][1] - window[0][0]) / 12:
-                marks.append(Mark((middle, (2 * y0 + 3 * y1) / 5), "stable" if stable else "unstable"))
+                marks.append(MarkedPoint((middle, (2 * y0 + 3 * y1) / 5), "stable" if stable else "unstable"))
         for (points, place), low, high in zip(branches, verdicts, verdicts[1:], strict=False):
             if any(bottom < y < top for _, y in points):
                 drawn.append(Curve(tuple(points), list(curves.values())[place], boundary=low != high))

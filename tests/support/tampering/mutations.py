@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import Derivation, Section, Sentence
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.figures.plot import Course, Curve, Mark, PoleMap
+from symobs.figures.plot import Curve, MarkedPoint, PoleMap, Response
 from symobs.formula import (
     Apply,
     Block,
@@ -31,7 +31,7 @@ from symobs.formula import (
 )
 from symobs.phrases import slots_of
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
-from symobs.stability.regions.short_list import Bound
+from symobs.stability.regions.short_list import RegionInequality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -130,7 +130,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, Fraction):
         yield Change("+1", "number", item + 1)
         yield Change("*(-1)-1", "number", -item - 1)
-    elif isinstance(item, Bound):
+    elif isinstance(item, RegionInequality):
         yield Change(".operator", "structure", item._replace(operator="!=" if item.operator == ">" else ">"))
         for change in changes(item.polynomial):
             yield change.within(".polynomial", item._replace(polynomial=change.value))
@@ -163,10 +163,10 @@ def changes(item: Any) -> Iterator[Change]:
             rows = (*item.rows[:index], *item.rows[index + 1 :])
             yield Change(f".rows[{index}] left out", "structure", replace(item, rows=rows))
         yield from _of_parts(item)
-    elif isinstance(item, (Curve, Mark, PoleMap)):
+    elif isinstance(item, (Curve, MarkedPoint, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
-    elif isinstance(item, Course):
+    elif isinstance(item, Response):
         yield from _of_heights(item)
         for change in _of_parts(replace(item, heights=())):
             yield replace(change, value=replace(change.value, heights=item.heights))
@@ -195,25 +195,25 @@ def _of_counts(sentence: Sentence) -> Iterator[Change]:
                     yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
 
 
-def _of_drawn(item: Curve | Mark | PoleMap) -> Iterator[Change]:
+def _of_drawn(item: Curve | MarkedPoint | PoleMap) -> Iterator[Change]:
     """Yield what is drawn with another meaning: no boundary, another kind of point, the other kind of time."""
     if isinstance(item, Curve):
         yield Change(".boundary", "structure", replace(item, boundary=not item.boundary))
-    elif isinstance(item, Mark):
+    elif isinstance(item, MarkedPoint):
         kinds = {"stable", "unstable", "excluded"} - {item.kind}
         yield from (Change(f".kind {kind}", "structure", replace(item, kind=kind)) for kind in sorted(kinds))
     else:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
 
 
-def _of_heights(course: Course) -> Iterator[Change]:
-    """Yield a course with one height changed by the least there is, which none may see, and by what can be seen."""
-    heights = course.heights
+def _of_heights(response: Response) -> Iterator[Change]:
+    """Yield a response with one height changed by the least there is, which none may see, and by what can be seen."""
+    heights = response.heights
     step = max(2, max(map(abs, heights)) // 20)
     for index, height in enumerate(heights):
         for by in (1, -step if height >= 0 else step):
             changed = (*heights[:index], height + by, *heights[index + 1 :])
-            yield Change(f".heights[{index}]{by:+}", "number", replace(course, heights=changed))
+            yield Change(f".heights[{index}]{by:+}", "number", replace(response, heights=changed))
 
 
 def _of_scalar(value: Scalar) -> Iterator[Change]:

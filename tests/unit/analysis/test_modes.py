@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.errors import CertificateRejected, DerivationRejected, InputError
-from symobs.exact import EIGENVALUE, Extension, Matrix, Scalar, stable_roots
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Matrix, Scalar, stable_roots
 from symobs.result import render
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from tests.support.independent_algebra.second_reader import sympy_scalar
@@ -348,7 +348,7 @@ def test_what_lies_on_the_boundary_and_beyond(
 @given(st.lists(st.integers(-3, 3), min_size=3, max_size=3), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
 def test_inverses_in_a_cubic_field(left: list[int], right: list[int]) -> None:
     root = Scalar.symbol(EIGENVALUE)
-    field = Extension(root**3 - root - 1, EIGENVALUE)
+    field = AlgebraicExtension(root**3 - root - 1, EIGENVALUE)
     x, y = (sum((root**k * c for k, c in enumerate(part)), Scalar.of(0)) for part in (left, right))
     assert field.reduce(x * y) == field.reduce(field.reduce(x) * field.reduce(y))
     if any(left):

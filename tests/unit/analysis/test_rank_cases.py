@@ -22,7 +22,7 @@ from symobs.derivation import Case, Given
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.expression import parse_scalar
-from symobs.formula import Letter, Literal, Relation, Together
+from symobs.formula import Conjunction, Letter, Literal, Relation
 from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
 from tests.support.independent_algebra.plain import (
     has_sign,
@@ -405,7 +405,7 @@ def test_a_case_says_no_more_than_its_equations() -> None:
 
     def told(when: tuple[Relation, ...], substitution: dict[str, Scalar]) -> None:
         given = Given((Relation((Letter("A"), Literal(Matrix.of([[a, 0], [0, b]]))), ("=",)),), silent=True)
-        replace(page, steps=(given, Case(Together(when), tuple(substitution.items()), ()))).check()
+        replace(page, steps=(given, Case(Conjunction(when), tuple(substitution.items()), ()))).check()
 
     equal, zero = Relation((Literal(a), Literal(b)), ("=",)), Relation((Literal(b), Literal(Scalar.of(0))), ("=",))
     told((equal, zero), {"a": Scalar.of(0), "b": Scalar.of(0)})

@@ -25,7 +25,7 @@ from symobs.derivation.builder import relation
 from symobs.derivation.facts.properties import PREDICATES
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import EIGENVALUE, Scalar
-from symobs.formula import Environment, Together
+from symobs.formula import Conjunction, Environment
 from symobs.stability.criteria.stability import meetings
 from tests.programs.campaign.points import answer_at, holds
 from tests.support.problems.strategies import unimodular
@@ -321,7 +321,7 @@ def test_a_page_that_tells_a_rank_without_its_condition_is_rejected() -> None:
     written: Derivation = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]")).derivation
 
     def silenced(when: Any) -> Any:
-        return when.relations[0] if isinstance(when, Together) else when
+        return when.relations[0] if isinstance(when, Conjunction) else when
 
     steps = _with_cases(written.steps, silenced)
     assert steps != written.steps
@@ -333,7 +333,9 @@ def test_a_case_that_cannot_be_is_rejected() -> None:
     written: Derivation = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]")).derivation
 
     def impossible(when: Any) -> Any:
-        return Together((*when.relations, relation(Scalar.of(0), "!=", 0))) if isinstance(when, Together) else when
+        return (
+            Conjunction((*when.relations, relation(Scalar.of(0), "!=", 0))) if isinstance(when, Conjunction) else when
+        )
 
     with pytest.raises(DerivationRejected, match="can be"):
         Derivation(_with_cases(written.steps, impossible), written.start, written.symbols, written.discrete).check()

@@ -14,12 +14,12 @@ from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
 from symobs.exact.cad import decomposition_check
-from symobs.stability.criteria.critical_polynomials import Boundary, Critical
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.regions import region_check
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion, plane_region
 from symobs.stability.regions.region_check import is_region
-from symobs.stability.regions.short_list import Bound, short_list
+from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -80,7 +80,7 @@ def test_close_numbers_are_told_apart_and_many_digits_are_right() -> None:
     assert root.decimal(30) == "1.41421356237309504880168872421"
     near = (h1**2 - 2) * (10**18 * h1 - 1414213562373095048)
     assert len(roots_of_scalar(near, "h1")) == 3
-    assert len(LineRegion(Critical(s + near, Boundary("s")), "h1").intervals) == 2
+    assert len(LineRegion(CriticalPolynomials(s + near, StabilityBoundary("s")), "h1").intervals) == 2
 
 
 def _polynomial(coefficients: list[int]) -> Any:
@@ -91,21 +91,21 @@ def _polynomial(coefficients: list[int]) -> Any:
 
 def quadratic() -> PlaneRegion:
     """Return h1 > 0, h2 > 0."""
-    return plane_region(Critical(s**2 + h1 * s + h2, Boundary("s")), ("h1", "h2"))
+    return plane_region(CriticalPolynomials(s**2 + h1 * s + h2, StabilityBoundary("s")), ("h1", "h2"))
 
 
 @pytest.mark.parametrize(
     "more",
     [
-        Bound(h2 - h1, "!="),
-        Bound((h2 - h1) ** 2),
-        Bound((h1 - 1) ** 2 + (h2 - 1) ** 2),
-        Bound(h1 - 1),
-        Bound(-h1),
-        Bound(h1 + h2 + 1, "!="),
+        RegionInequality(h2 - h1, "!="),
+        RegionInequality((h2 - h1) ** 2),
+        RegionInequality((h1 - 1) ** 2 + (h2 - 1) ** 2),
+        RegionInequality(h1 - 1),
+        RegionInequality(-h1),
+        RegionInequality(h1 + h2 + 1, "!="),
     ],
 )
-def test_a_list_cannot_cut_a_curve_or_a_point_out_of_a_region(more: Bound) -> None:
+def test_a_list_cannot_cut_a_curve_or_a_point_out_of_a_region(more: RegionInequality) -> None:
     found = quadratic()
     bounds = short_list(found)
     assert is_region(found, bounds)
@@ -191,7 +191,7 @@ TWO_WAYS = [
 
 @pytest.mark.parametrize("polynomial", TWO_WAYS, ids=str)
 def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(polynomial: Scalar) -> None:
-    critical = Critical(polynomial, Boundary("s"))
+    critical = CriticalPolynomials(polynomial, StabilityBoundary("s"))
     one, other = (PlaneRegion(critical, names) for names in (("h1", "h2"), ("h2", "h1")))
     assert sorted(c.bounded for c in one.components) == sorted(c.bounded for c in other.components)
     assert len(one.holes) == len(other.holes)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from symobs.audit import audit, report
 from symobs.audit.equations.grammar import read_relation
 from symobs.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
-from symobs.exact.algebraic.rounded_decimals import Decimal
+from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 from symobs.expression.syntax_tree import every
 from symobs.problem import read
 from tests.support.problems.printed import finding, findings, problem
@@ -23,7 +23,7 @@ from tests.support.tools.command_line import ROOT, SERVO, inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.expression.syntax_tree import Node
+    from symobs.expression.syntax_tree import SyntaxNode
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [
@@ -183,9 +183,11 @@ def test_exactly_the_entry_that_is_spoiled_is_reported(data: st.DataObject) -> N
 )
 @settings(deadline=None, max_examples=60)
 def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int, power: int) -> None:
-    shifted = decimal.Context(prec=60).divide(decimal.Decimal(value.numerator), decimal.Decimal(value.denominator))
+    shifted = decimal.Context(prec=60).divide(
+        decimal.PrintedDecimal(value.numerator), decimal.PrintedDecimal(value.denominator)
+    )
     shifted = shifted.scaleb(-power)
-    unit = decimal.Decimal(1).scaleb(-places)
+    unit = decimal.PrintedDecimal(1).scaleb(-places)
     context = decimal.Context(prec=60)
     rounded = shifted.quantize(unit, decimal.ROUND_HALF_EVEN, context)
     truncated = shifted.quantize(unit, decimal.ROUND_DOWN, context)
@@ -194,7 +196,7 @@ def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int,
     if truncated != rounded and abs(shifted - truncated) * 2 != unit:  # of a half either neighbour will do
         (found,) = findings(f"[7 ({value})] = [7 {truncated:f}{dot}e{power}]")
         assert found.reason.endswith("truncated, not rounded")
-        assert decimal.Decimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
+        assert decimal.PrintedDecimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
 
 
 def test_both_neighbours_of_a_half_are_rounded() -> None:
@@ -205,7 +207,7 @@ def test_both_neighbours_of_a_half_are_rounded() -> None:
 @pytest.mark.parametrize("text", ["12", "1.", ".5", "0.50e-3", "3e2"])
 def test_a_decimal_is_a_number_with_a_point_or_a_power(text: str) -> None:
     ((node,),) = [read_relation(text, "")]
-    assert (Decimal.of(node.text) is not None) == any(sign in text for sign in ".e")
+    assert (PrintedDecimal.of(node.text) is not None) == any(sign in text for sign in ".e")
 
 
 # -- whatever is printed -----------------------------------------------------------------------------------------------
@@ -266,7 +268,7 @@ def test_what_would_build_too_much_is_refused(relation: str) -> None:
 
 
 def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPatch) -> None:
-    def lie(left: Node, _right: Node, *_: object) -> tuple[Node, Node, str]:
+    def lie(left: SyntaxNode, _right: SyntaxNode, *_: object) -> tuple[SyntaxNode, SyntaxNode, str]:
         return left, left.parts[0], "no reason"
 
     monkeypatch.setattr("symobs.audit.equation_auditor.found_slip", lie)

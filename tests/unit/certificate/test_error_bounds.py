@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symobs.certificate.error_bounds import Bound, Bounds
+from symobs.certificate.error_bounds import Bounds, SizeBound
 from symobs.exact import Matrix, Scalar
 from symobs.exact.kernel.modular import Point, VanishingDenominator
 from symobs.formula import (
@@ -128,7 +128,7 @@ def hold(formula: Formula, environment: Environment) -> None:
     except (VanishingDenominator, ZeroDivisionError):
         return
     point = {name: value for name, value in arithmetic.point.values.items() if name not in environment.coefficients}
-    bound: Bound = evaluate(formula, environment, Bounds(environment, arithmetic))
+    bound: SizeBound = evaluate(formula, environment, Bounds(environment, arithmetic))
     assert max(map(degree, entries_of(above))) <= bound.above
     assert degree(below) <= bound.below
     assert max(size_at(entry, point) for entry in entries_of(above)) <= bound.above_bits + 1e-6
@@ -184,7 +184,7 @@ def test_it_is_bounded_with_named_coefficients_too(formula: Formula, first: Scal
 def test_sizes_are_not_compared() -> None:
     bounds = Bounds(Environment(), Modular(Environment(), Point(NAMES, random.Random(0))))  # noqa: S311
     with pytest.raises(AssertionError, match="not compared"):
-        bounds.equal(Bound(0, 0, 0, 0), Bound(0, 0, 0, 0))
+        bounds.equal(SizeBound(0, 0, 0, 0), SizeBound(0, 0, 0, 0))
 
 
 def test_several_named_coefficients_with_denominators_of_their_own() -> None:

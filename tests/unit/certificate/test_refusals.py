@@ -22,7 +22,7 @@ from symobs.certificate.claims import (
     check_all,
     verify,
 )
-from symobs.certificate.error_bounds import Bound
+from symobs.certificate.error_bounds import SizeBound
 from symobs.errors import CertificateRejected, NotShown, WrongKind
 from symobs.exact import EIGENVALUE, Matrix, Scalar
 from symobs.exact.kernel.modular import Point, VanishingDenominator
@@ -402,7 +402,7 @@ def test_a_claim_has_a_point_of_its_own() -> None:
 
 def test_the_bound_follows_degrees_and_heights(monkeypatch: pytest.MonkeyPatch) -> None:
     """By Schwartz and Zippel with 2^61 values, and a number of so many bits with a random one of 2·10^17 primes > 2^63."""
-    left, right, huge = Bound(3, 5, 100, 20), Bound(7, 2, 50, 40), Bound(2.0**70, 0, 0, 0)
+    left, right, huge = SizeBound(3, 5, 100, 20), SizeBound(7, 2, 50, 40), SizeBound(2.0**70, 0, 0, 0)
 
     def error(*sizes: Any) -> float:
         found = iter(sizes)
@@ -418,7 +418,7 @@ def test_the_bound_follows_degrees_and_heights(monkeypatch: pytest.MonkeyPatch) 
     assert error(left, right, left) == pytest.approx(2 * once, rel=1e-12, abs=0)
     assert error(huge, left) == 0.5
     x_and_u, x_and_y = (SimpleNamespace(coefficients=c) for c in ({"x": left, "u": left}, {"x": right, "y": right}))
-    nothing = Bound(0, 0, 0, 0)
+    nothing = SizeBound(0, 0, 0, 0)
     pairs = [(left, right), (left, nothing), (nothing, right)]
     assert sorted(map(str, claims._paired(x_and_u, x_and_y))) == sorted(map(str, pairs))
     apart = [error(first, second) for first, second in pairs]

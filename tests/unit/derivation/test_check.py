@@ -25,9 +25,10 @@ from symobs.derivation import (
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Apply,
+    Conjunction,
     Derivative,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Identity,
     Letter,
     Literal,
@@ -40,7 +41,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
 )
 from symobs.result import Result
@@ -102,8 +102,8 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Solve(said(strange, 1), said(A, 1)),
         Conclude(None, (Predicate("stable", strange),)),
         Conclude(None, (Roots(strange, ()),)),
-        Conclude(None, (Exactly(Predicate("stable", strange), ()),)),
-        Conclude(None, (Together((one, said(strange, 1))),)),
+        Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
+        Conclude(None, (Conjunction((one, said(strange, 1))),)),
         Conclude(slot(strange)),
         Note(slot(Shown(strange, literal(1)))),
         Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
@@ -167,8 +167,8 @@ def test_an_assumption_holds_from_there_on() -> None:
 def test_an_assumption_is_the_one_that_is_said() -> None:
     first, second = said(c, "!=", 1), said(c, "!=", 2)
     checked(Given((first,), slot(first)))
-    checked(Given((first, second), slot(Together((first, second)))))
-    refused(Given((first,), slot(Together((first, second)))))
+    checked(Given((first, second), slot(Conjunction((first, second)))))
+    refused(Given((first,), slot(Conjunction((first, second)))))
     refused(Given((first, second), slot(first)))
     refused(Given((second,), Sentence("test_plain")))
 

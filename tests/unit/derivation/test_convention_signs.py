@@ -31,19 +31,19 @@ from symobs.derivation.convention_signs import set_apart
 from symobs.errors import DerivationRejected, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
+    Conjunction,
     Environment,
-    Exactly,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
     Transpose,
     Turned,
 )
@@ -135,8 +135,8 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
         (Sum((A, Negative(Product((L, C))))), Sum((A, Product((L, C))))),
         ((LAW, (LEFT,)), (TURNED_LAW, (TURNED_LEFT,))),
         (
-            Diagram("observer", (("L", L), ("C", C), ("P", Together((LAW,))))),
-            Diagram("observer", (("L", Negative(L)), ("C", C), ("P", Together((TURNED_LAW,))))),
+            Diagram("observer", (("L", L), ("C", C), ("P", Conjunction((LAW,))))),
+            Diagram("observer", (("L", Negative(L)), ("C", C), ("P", Conjunction((TURNED_LAW,))))),
         ),
     ],
 )
@@ -369,7 +369,7 @@ def test_symbols_are_replaced_wherever_they_stand() -> None:
         return convention_signs._substituted(item, meant)
 
     assert replaced(Literal(l1 + a)) == Literal(a - m1)
-    assert replaced(Names(("l1", "l2", "a"))) == Names(("m1", "m2", "a"))
+    assert replaced(SymbolList(("l1", "l2", "a"))) == SymbolList(("m1", "m2", "a"))
     assert replaced(Sum((Literal(l1), A))) == Sum((Literal(-m1), A))
     assert replaced((said(P, l2), "l1", l1)) == (said(P, m2), "l1", l1)
     define = Define(said(l1, 5, a, ">", "="), plain_words("test_slot", it=Literal(l2)))
@@ -406,15 +406,15 @@ MADE_OF: list[Any] = [
     Conclude(None, (ENTRY,)),
     Plot(None, literal(l1)),  # type: ignore[arg-type]
     Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
-    Where(Exactly(Predicate("stable", P), (ENTRY,))),
+    Where(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
     Survey(literal(l1), ("l1",)),
     Case(ENTRY, (), ()),
     Diagram("loop", (("P", literal(l1)),)),
     Shown(P, literal(l1)),
     Predicate("stable", literal(l1)),
     Roots(literal(l1), ()),
-    Exactly(Predicate("stable", literal(l1)), ()),
-    Together((ENTRY,)),
+    HoldsExactlyWhere(Predicate("stable", literal(l1)), ()),
+    Conjunction((ENTRY,)),
     Sum((A, Product((A, literal(l1))))),
 ]
 

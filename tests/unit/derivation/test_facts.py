@@ -12,9 +12,10 @@ from symobs.derivation.wording_check import OF_STABLE_LOOP
 from symobs.exact import Matrix, Root, Scalar, roots_of
 from symobs.formula import (
     Apply,
-    Exactly,
+    Conjunction,
     Fact,
     Formula,
+    HoldsExactlyWhere,
     Letter,
     Literal,
     Negative,
@@ -26,7 +27,6 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
     Transpose,
 )
 from symobs.phrases import ASSERTS, PHRASES
@@ -68,7 +68,7 @@ UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
     ("fact", "false"),
     [
         (said(Apply("det", A), 2), said(Apply("det", A), 3)),
-        (Together((said(1, 1), said(a, ">", 0))), Together((said(a, ">", 0), said(c, ">", 0)))),
+        (Conjunction((said(1, 1), said(a, ">", 0))), Conjunction((said(a, ">", 0), said(c, ">", 0)))),
         (Shown(Apply("det", A), literal(2)), Shown(Apply("det", A), literal(-2))),
         (Predicate("stable", Letter("chi")), Predicate("unstable", Letter("chi"))),
         (Predicate("stable", Power(Letter("chi"), -1)), Predicate("unstable", Power(Letter("chi"), -1))),
@@ -106,7 +106,7 @@ def test_a_property_belongs_to_a_letter() -> None:
         Predicate("stable", Literal(s + 1)),
         Predicate("stable", Sum((S, literal(1)))),
         Roots(Literal(s + 1), roots_of(s + 1, "s")),
-        Exactly(Predicate("stable", Literal(s + c)), (said(c, ">", 0),)),
+        HoldsExactlyWhere(Predicate("stable", Literal(s + c)), (said(c, ">", 0),)),
     ):
         refused(Conclude(None, (fact,)), match="no letter's")
 
@@ -127,7 +127,7 @@ def test_a_region_is_the_whole_region() -> None:
     stable = Predicate("stable", Letter("phi"))
 
     def where(*relations: Relation) -> Conclude:
-        return Conclude(slot(Exactly(stable, relations)))
+        return Conclude(slot(HoldsExactlyWhere(stable, relations)))
 
     checked(phi, where(said(c, ">", 1)))
     checked(phi, where(said(1, "<", c)))
@@ -137,7 +137,7 @@ def test_a_region_is_the_whole_region() -> None:
     refused(phi, where(said(b * c, ">", b)))
     refused(phi, where(said(c, ">", 1), said(c, ">", 0)))  # c is none of the criterion's: it might cut into a region
     refused(phi, where())
-    refused(phi, Conclude(slot(Exactly(replace(stable, name="unstable"), (said(c, ">", 1),)))))
+    refused(phi, Conclude(slot(HoldsExactlyWhere(replace(stable, name="unstable"), (said(c, ">", 1),)))))
     refused(Define(said(Letter("phi"), literal(s + 1))), where())
 
 
@@ -145,16 +145,16 @@ def test_a_region_may_be_said_in_another_form() -> None:
     phi = Define(said(Letter("phi"), literal(s**4 + 3 * s**3 + b * s**2 + c * s + 1)))
     stable = Predicate("stable", Letter("phi"))
     bound = (c**2 + 9) / (3 * c)
-    checked(phi, Conclude(slot(Exactly(stable, (said(c, ">", 0), said(b, ">", bound))))))
-    refused(phi, Conclude(slot(Exactly(stable, (said(b, ">", 0), said(b, ">", bound))))))
+    checked(phi, Conclude(slot(HoldsExactlyWhere(stable, (said(c, ">", 0), said(b, ">", bound))))))
+    refused(phi, Conclude(slot(HoldsExactlyWhere(stable, (said(b, ">", 0), said(b, ">", bound))))))
     square = Define(said(Letter("phi"), literal(s + c**2)))
-    checked(square, Conclude(slot(Exactly(stable, (said(c, "!=", 0),)))))
-    refused(square, Conclude(slot(Exactly(stable, (said(c, ">", 0),)))))
+    checked(square, Conclude(slot(HoldsExactlyWhere(stable, (said(c, "!=", 0),)))))
+    refused(square, Conclude(slot(HoldsExactlyWhere(stable, (said(c, ">", 0),)))))
 
 
 def test_a_fraction_has_the_region_and_the_roots_of_its_denominator() -> None:
     F_is = Define(said(F, literal(1 / (c * s + 1))))
-    checked(F_is, Conclude(slot(Exactly(Predicate("stable", F), (said(c, ">", 0),)))))
+    checked(F_is, Conclude(slot(HoldsExactlyWhere(Predicate("stable", F), (said(c, ">", 0),)))))
     checked(F_is, Conclude(None, (Roots(F, roots_of(c * s + 1, "s")),)))
     refused(F_is, Conclude(None, (Predicate("stable", F),)))
     refused(F_is, Conclude(None, (Predicate("unstable", F),)))

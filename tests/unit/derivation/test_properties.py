@@ -10,7 +10,7 @@ import pytest
 from symobs.derivation.exact_where import is_exactly
 from symobs.derivation.facts.properties import PREDICATES, is_criterion, needed, polynomial_of, subjects
 from symobs.exact import Matrix, Scalar
-from symobs.formula import Environment, Exactly, Letter, Predicate
+from symobs.formula import Environment, HoldsExactlyWhere, Letter, Predicate
 from tests.support.problems.steps import said
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def test_the_criterion_is_said_whole_and_up_to_positive_factors() -> None:
 
 
 def exactly(polynomial: Scalar, *where: Relation, name: str = "stable", known: Environment = IN_S, **more: Any) -> bool:
-    fact = Exactly(Predicate(name, Letter("chi")), where)
+    fact = HoldsExactlyWhere(Predicate(name, Letter("chi")), where)
     return is_exactly(fact, polynomial, known, discrete=more.get("discrete", False))
 
 

@@ -30,11 +30,11 @@ from symobs.exact import Matrix, Scalar, roots_of
 from symobs.exact.kernel.generators import square_root
 from symobs.formula import (
     Apply,
+    Conjunction,
     Environment,
-    Exactly,
+    HoldsExactlyWhere,
     Letter,
     Literal,
-    Names,
     Negative,
     Predicate,
     Product,
@@ -43,7 +43,7 @@ from symobs.formula import (
     Roots,
     Shown,
     Sum,
-    Together,
+    SymbolList,
 )
 from symobs.stability.criteria.routh_table import routh_table
 from tests.support.problems.steps import (
@@ -127,8 +127,8 @@ def test_every_relation_of_a_step_is_checked(relations: tuple[Relation, ...]) ->
         Equal(relations),
         Conclude(None, relations),
         Note(Sentence("test_plain"), relations),
-        Equal((one,), slot(Together(relations))),
-        Conclude(None, (Together(relations),)),
+        Equal((one,), slot(Conjunction(relations))),
+        Conclude(None, (Conjunction(relations),)),
     ):
         refused(step)
     refused(Section(Sentence("test_plain"), tuple(Equal((relation,)) for relation in relations)))
@@ -145,12 +145,12 @@ def test_every_relation_given_is_introduced() -> None:
 def test_every_slot_of_every_sentence_is_read() -> None:
     false: tuple[Any, ...] = (
         two,
-        Together((one, two)),
+        Conjunction((one, two)),
         Shown(literal(1), literal(2)),
         Predicate("stable", chi),
         Roots(chi, ()),
-        Exactly(Predicate("stable", chi), ()),
-        Names(("q",)),
+        HoldsExactlyWhere(Predicate("stable", chi), ()),
+        SymbolList(("q",)),
         Letter("absent"),
         Literal(Scalar.of(2)),
         Sum((chi, Literal(Scalar.of(2)))),
@@ -166,7 +166,7 @@ def test_every_slot_of_every_sentence_is_read() -> None:
             Note(slot(lie)),
             Section(slot(lie), ()),
         ):
-            if isinstance(lie, Names):
+            if isinstance(lie, SymbolList):
                 checked(step, start=start)
             else:
                 refused(step, start=start)
@@ -192,9 +192,9 @@ def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
             Define(replace(relation, members=(F, *relation.members), operators=("=", *relation.operators))),
             match=">= 0",
         )
-    refused(Note(slot(Names(("a", str(square_root(c)))))), match=">= 0")
-    refused(Note(slot(Names((str(square_root(c)), "a")))), match=">= 0")
-    checked(Note(slot(Names(("a", str(square_root(a)))))))
+    refused(Note(slot(SymbolList(("a", str(square_root(c)))))), match=">= 0")
+    refused(Note(slot(SymbolList((str(square_root(c)), "a")))), match=">= 0")
+    checked(Note(slot(SymbolList(("a", str(square_root(a)))))))
     real = Product((literal(0), *(Literal(square_root(k * a)) for k in range(1, 9) if k != 4)))
     checked(Equal((said(real, 0),)))
     refused(Equal((said(Product((real, Literal(square_root(c)))), 0),)), match=">= 0")
@@ -202,7 +202,7 @@ def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
 
 def test_a_sentence_may_name_a_value_only_where_it_claims_nothing_of_it() -> None:
     limit = Literal(Scalar.of(-2))
-    checked(Note(Sentence("sought_margin", (("names", Names(("h",))), ("limit", limit)))))
+    checked(Note(Sentence("sought_margin", (("names", SymbolList(("h",))), ("limit", limit)))))
     refused(Note(slot(limit)), match="a value in a sentence without what it is the value of")
     refused(Note(slot(Negative(Literal(a)))), match="a value in a sentence")
     checked(A_IS, Note(slot(A)))
@@ -223,7 +223,7 @@ def test_a_sentence_rests_on_its_facts() -> None:
 
 # -- what a boundary is moved by ----------------------------------------------------------------------------------------
 
-NAMES = ("names", Names(("h",)))
+NAMES = ("names", SymbolList(("h",)))
 
 
 def moving(key: str, by: Scalar, value: Scalar, *, at: Scalar) -> Define:
@@ -304,8 +304,8 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
     start = replace(START, values={"chi": s**2 + h * s + k, "phi": s + 1})
     stable = Predicate("stable", chi)
     where = (said(h, ">", 0), said(k, ">", 0))
-    checked(Where(Exactly(stable, where)), start=start)
-    checked(Conclude(None, (Exactly(stable, where),)), start=start)
+    checked(Where(HoldsExactlyWhere(stable, where)), start=start)
+    checked(Conclude(None, (HoldsExactlyWhere(stable, where),)), start=start)
     for other in (
         where[:1],
         where[1:],
@@ -314,12 +314,16 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
         (said(h, "<", 0), where[1]),
         (said(h, ">=", 0), where[1]),
     ):
-        refused(Where(Exactly(stable, other)), start=start)
-        refused(Conclude(None, (Exactly(stable, other),)), start=start)
-        refused(Note(slot(Exactly(stable, other))), start=start)
-    refused(Where(Exactly(Predicate("stable", Literal(s**2 + h * s + k)), where)), start=start, match="no letter's")
-    refused(Where(Exactly(stable, where), slot(two)), start=start)
-    refused(Where(Exactly(stable, (*where, said(phi, "=", s + 1)))), start=start)
+        refused(Where(HoldsExactlyWhere(stable, other)), start=start)
+        refused(Conclude(None, (HoldsExactlyWhere(stable, other),)), start=start)
+        refused(Note(slot(HoldsExactlyWhere(stable, other))), start=start)
+    refused(
+        Where(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
+        start=start,
+        match="no letter's",
+    )
+    refused(Where(HoldsExactlyWhere(stable, where), slot(two)), start=start)
+    refused(Where(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
 
 
 def test_a_region_is_that_of_its_letter() -> None:
@@ -399,7 +403,7 @@ def test_a_root_is_of_what_is_not_negative() -> None:
 
 
 def test_names_are_established_and_nothing_more() -> None:
-    checked(Note(slot(Names(("a", "c")))))
+    checked(Note(slot(SymbolList(("a", "c")))))
 
 
 # -- what is introduced -------------------------------------------------------------------------------------------------
@@ -474,7 +478,7 @@ def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
         checked(assumed, Case(when, (), ()), used)
 
 
-def case(when: Relation | Together, *steps: Step, **put_in: Scalar | int) -> Case:
+def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> Case:
     values = tuple((name, v if isinstance(v, Scalar) else Scalar.of(v)) for name, v in put_in.items())
     return Case(when, values, steps)
 
@@ -531,12 +535,12 @@ def test_a_verdict_rests_on_a_fact_of_its_step() -> None:
 
 def test_a_stratum_has_a_point() -> None:
     """Where nothing is everything is true."""
-    nowhere = Together((said(c, 1), said(c, 2)))
+    nowhere = Conjunction((said(c, 1), said(c, 2)))
     for steps in ((), (equal(said(1, 2)),)):
         refused(case(nowhere, *steps), start=ON, match="can be")
         refused(case(nowhere, *steps, c=1), start=ON, match="can be")
-    refused(case(Together((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
-    checked(case(Together((said(c, 1), said(b, "!=", 1)))), start=ON)
+    refused(case(Conjunction((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
+    checked(case(Conjunction((said(c, 1), said(b, "!=", 1)))), start=ON)
 
 
 def test_equations_of_cases_within_cases_hold_together() -> None:
@@ -547,9 +551,9 @@ def test_equations_of_cases_within_cases_hold_together() -> None:
     refused(case(said(c, 1), case(said(c, 2))), start=ON)
     different = (Given((said(b, "!=", 0),)), equal(said(b, "!=", 0)))
     checked(case(said(c, 1), case(said(c, 1), *different, c=1)), start=ON)
-    checked(case(Together((said(c, 1),)), *different, c=1), start=ON)
+    checked(case(Conjunction((said(c, 1),)), *different, c=1), start=ON)
     assumed = Given((said(b * c, "!=", 1),))
-    for where in (case(said(b, 2), *different[1:]), case(Together((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
+    for where in (case(said(b, 2), *different[1:]), case(Conjunction((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
         refused(assumed, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
 
 
@@ -560,7 +564,7 @@ def test_both_sides_of_a_case_are_read() -> None:
     for operator in ("=", ">"):
         checked(case(said(F, operator, 1), equal(said(c, operator, 1))), start=one_by_one)
     checked(case(said(F, 1), equal(said(c, 1)), c=1), start=one_by_one)
-    checked(case(Together((said(F, 1),)), equal(said(c, 1)), c=1), start=one_by_one)
+    checked(case(Conjunction((said(F, 1),)), equal(said(c, 1)), c=1), start=one_by_one)
 
 
 def test_named_coefficients_are_on_the_stratum_too() -> None:
@@ -575,7 +579,7 @@ def test_named_coefficients_are_on_the_stratum_too() -> None:
 
 
 def test_what_is_put_in_follows_from_the_equations() -> None:
-    both = Together((said(b, 1), said(c, 2)))
+    both = Conjunction((said(b, 1), said(c, 2)))
     checked(case(both, equal(said(b + c, 3)), b=1, c=2), start=ON)
     for wrong in ({"b": 2, "c": 2}, {"b": 1, "c": 3}, {"b": 1, "c": 2, "k": 0}):
         refused(case(both, **wrong), start=ON)
@@ -583,27 +587,27 @@ def test_what_is_put_in_follows_from_the_equations() -> None:
     checked(case(both, equal(said(b, 1), said(c, 2))), start=ON)
     refused(case(both, equal(said(c, 3)), b=1), start=ON)
     for operator in (">", "<", "~", "!=="):
-        refused(case(Together((said(b, 1), said(c, operator, 0))), b=1), start=ON)
-    apart = Together((said(b, 1), said(c, "!=", 2)))
+        refused(case(Conjunction((said(b, 1), said(c, operator, 0))), b=1), start=ON)
+    apart = Conjunction((said(b, 1), said(c, "!=", 2)))
     checked(case(apart, equal(said(c, "!=", 2)), b=1), start=ON)
     refused(case(apart, equal(said(c, "!=", 3)), b=1), start=ON)
-    moved = Together((said(b, 1), said(c, "!=", b)))
+    moved = Conjunction((said(b, 1), said(c, "!=", b)))
     checked(case(moved, equal(said(c, "!=", 1)), b=1), start=ON)
     refused(case(moved, equal(said(c, "!=", 2)), b=1), start=ON)
-    narrowed = Together((said(b * (c - 1), 0), said(c, "!=", 1)))
+    narrowed = Conjunction((said(b * (c - 1), 0), said(c, "!=", 1)))
     checked(case(narrowed, equal(said(b, 0)), b=0), start=ON)
-    refused(case(Together(narrowed.relations[:1]), b=0), start=ON)
-    checked(case(said(c, b), case(Together((said(b, 1),)), equal(said(c, 1)), b=1, c=1)), start=ON)
-    refused(case(Together((said(b, 1),)), b=1, c=1), start=ON)
+    refused(case(Conjunction(narrowed.relations[:1]), b=0), start=ON)
+    checked(case(said(c, b), case(Conjunction((said(b, 1),)), equal(said(c, 1)), b=1, c=1)), start=ON)
+    refused(case(Conjunction((said(b, 1),)), b=1, c=1), start=ON)
 
 
 def test_what_is_put_in_has_a_value_everywhere_there() -> None:
     product = said(b * c, h)
-    refused(case(Together((product,)), b=h / c), start=ON)
-    checked(case(Together((product, said(c, "!=", 0))), equal(said(c * h, c * h)), b=h / c), start=ON)
-    checked(case(Together((product, said(c * k, 1))), b=h / c), start=ON)
-    checked(case(Together((said(b * a, h),)), equal(said(h, h)), b=h / a), start=ON)
-    refused(case(Together((product, said(k, 1))), b=h / c), start=ON)
+    refused(case(Conjunction((product,)), b=h / c), start=ON)
+    checked(case(Conjunction((product, said(c, "!=", 0))), equal(said(c * h, c * h)), b=h / c), start=ON)
+    checked(case(Conjunction((product, said(c * k, 1))), b=h / c), start=ON)
+    checked(case(Conjunction((said(b * a, h),)), equal(said(h, h)), b=h / a), start=ON)
+    refused(case(Conjunction((product, said(k, 1))), b=h / c), start=ON)
 
 
 def test_properties_of_one_by_one_matrices_are_of_their_entry() -> None:

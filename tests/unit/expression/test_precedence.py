@@ -16,7 +16,7 @@ from symobs.expression import parse_matrix, parse_scalar, tokenizer
 from symobs.expression.names import Scope
 from symobs.expression.source import Source
 from symobs.expression.syntax_parser import parse
-from symobs.expression.syntax_tree import Node, every, operands_first
+from symobs.expression.syntax_tree import SyntaxNode, every, operands_first
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -136,7 +136,7 @@ def test_a_thousand_signs_are_read() -> None:
 
 
 def test_a_sign_before_a_product_is_that_of_the_product() -> None:
-    def tree(text: str) -> Node:
+    def tree(text: str) -> SyntaxNode:
         made = tokens_of(text)
         assert made is not None
         return parse(made, Source(text, ""))[0]

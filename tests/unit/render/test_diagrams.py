@@ -16,7 +16,7 @@ from symobs.derivation import Derivation, Diagram, Section
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
-from symobs.formula import Exact, Letter, Literal, Negative, Together, evaluate
+from symobs.formula import Conjunction, Exact, Letter, Literal, Negative, evaluate
 from symobs.render.diagrams.diagram_layout import arranged
 from symobs.render.diagrams.svg import metrics_of
 from symobs.render.diagrams.text import cells_of
@@ -290,15 +290,15 @@ def spoilt(step: Diagram) -> Iterator[Diagram]:
         label = labels[name]
         if is_named_only and name[0].islower() and name != "response":
             continue
-        if isinstance(label, Together):
+        if isinstance(label, Conjunction):
             first, *rest = label.relations
             wrong = replace(first, members=(first.members[0], Negative(first.members[1])))
-            yield replace(step, labels=tuple({**labels, name: Together((wrong, *rest))}.items()))
+            yield replace(step, labels=tuple({**labels, name: Conjunction((wrong, *rest))}.items()))
             continue
         yield replace(step, labels=tuple({**labels, name: Negative(label)}.items()))
         if name[0].isupper():
             yield replace(step, labels=tuple((other, text) for other, text in labels.items() if other != name))
-    gains = [name for name in names if name[0].isupper() and not isinstance(labels[name], Together)]
+    gains = [name for name in names if name[0].isupper() and not isinstance(labels[name], Conjunction)]
     for one, other in combinations(gains, 2):
         if labels[one] != labels[other]:
             yield replace(step, labels=tuple({**labels, one: labels[other], other: labels[one]}.items()))

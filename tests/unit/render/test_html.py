@@ -18,7 +18,7 @@ from symobs.phrases import PHRASES
 from symobs.render.formats.html import Html, HtmlFragment, HtmlWriter, page, plain, style
 from symobs.render.page.blocks import Display, Heading, Paragraph, Title, Verified, every
 from symobs.render.page.narrator import narrate
-from symobs.render.page.sheet import Entry, Sheet
+from symobs.render.page.sheet import Sheet, SheetEntry
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
@@ -208,8 +208,8 @@ def test_what_a_reader_cannot_see_is_told() -> None:
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_a_sheet_links_its_contents_to_its_parts(text: str) -> None:
     part = Html().part(document(*example.target_document().derivations, title=text, source=text))
-    entries = [Entry(k, f"{k}.toml", text, part, part) for k in range(1, 8)]
-    html = Html().sheet(Sheet(text, (*entries, Entry(8, "8.toml", text, None, None, text))))
+    entries = [SheetEntry(k, f"{k}.toml", text, part, part) for k in range(1, 8)]
+    html = Html().sheet(Sheet(text, (*entries, SheetEntry(8, "8.toml", text, None, None, text))))
     assert list(faults(html)) == []
     nodes = list(parsed(html).iter())
     ids = [node.get("id") for node in nodes if node.get("id")]

@@ -10,7 +10,7 @@ from symobs import StateSpace, observer
 from symobs.derivation import Conclude, Define, Derivation, Equal, Given, Note, Section, Sentence, Step
 from symobs.errors import DerivationRejected, ProblemErrors
 from symobs.exact import Matrix, Scalar
-from symobs.formula import Environment, Exactly, Letter, Literal, Predicate, Relation, Transpose
+from symobs.formula import Environment, HoldsExactlyWhere, Letter, Literal, Predicate, Relation, Transpose
 from symobs.phrases import PHRASES
 from symobs.problem.validation import validate
 from symobs.render.page.blocks import (
@@ -218,7 +218,7 @@ def test_a_slot_that_is_a_predicate_shows_its_subject() -> None:
 def test_a_slot_that_is_a_region_shows_its_inequalities() -> None:
     s = Scalar.symbol("s")
     where = (Relation((number(1), number(0)), (">",)), Relation((number(2), number(0)), (">",)))
-    region = Exactly(Predicate("stable", Literal(s**2 + 2 * s + 1)), where)
+    region = HoldsExactlyWhere(Predicate("stable", Literal(s**2 + 2 * s + 1)), where)
     sentence = Sentence("test_about", (("A", region),))
     assert filled(sentence) == ("with ", where[0], ", ", where[1], " as it is.")
 

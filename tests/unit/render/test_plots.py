@@ -16,7 +16,7 @@ import pytest
 import symobs
 from symobs.derivation import Derivation, Plot
 from symobs.errors import UsageError
-from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter, Relation, Roots
 from symobs.phrases import PHRASES
 from symobs.render.formats.latex import LatexArticle, LatexFragment
@@ -26,7 +26,7 @@ from symobs.render.plots.caption_rows import words_of
 from symobs.render.plots.matplotlib_writer import drawn_by_matplotlib
 from symobs.render.plots.numbered_caption import below
 from symobs.render.plots.plot_layout import ticks
-from symobs.render.plots.scene import Box, Scene, chained, clipped, clipped_area, thinned
+from symobs.render.plots.scene import Rectangle, Scene, chained, clipped, clipped_area, thinned
 from symobs.render.plots.svg import measure_for as measure_svg
 from symobs.render.plots.svg import svg, svg_file, svg_scene
 from symobs.render.plots.text import character_plot
@@ -92,7 +92,7 @@ def test_labels_stand_inside_the_frame_beside_every_line(name: str) -> None:
                 assert not any(_meets(line, box) for line in [stroke.points])
 
 
-def _meets(line: tuple[tuple[float, float], ...], box: Box) -> bool:
+def _meets(line: tuple[tuple[float, float], ...], box: Rectangle) -> bool:
     return any(clipped(line, box))
 
 
@@ -105,7 +105,7 @@ def test_every_area_and_every_boundary_is_there(name: str) -> None:
         labelled = {text.content for text in scene.texts if isinstance(text.content, Relation)}
         assert labelled | set(scene.numbered) == equations
         assert len(scene.shades) == len(picture.areas)
-        assert all(scene.frame.grown(0.01).holds(Box(x, y, x, y)) for area in scene.shades for x, y in area)
+        assert all(scene.frame.grown(0.01).holds(Rectangle(x, y, x, y)) for area in scene.shades for x, y in area)
         numbers = [text.content for text in scene.texts if str(text.content).startswith("(")]
         assert numbers == [f"({place})" for place in range(1, len(scene.numbered) + 1)]
         assert len(scene.signs) == len(picture.marks)
@@ -133,9 +133,9 @@ def test_a_scene_shows_the_window_only() -> None:
     window = ((Fraction(1), Fraction(2)), (Fraction(1), Fraction(2)))
     scene = latex_scene(replace(picture, window=window, marks=()), LatexPrinter())
     frame = scene.frame.grown(0.01)
-    assert all(frame.holds(Box(x, y, x, y)) for area in scene.shades for x, y in area)
+    assert all(frame.holds(Rectangle(x, y, x, y)) for area in scene.shades for x, y in area)
     curves = [stroke for stroke in scene.strokes if stroke.style == "boundary"]
-    assert all(frame.holds(Box(x, y, x, y)) for stroke in curves for x, y in stroke.points)
+    assert all(frame.holds(Rectangle(x, y, x, y)) for stroke in curves for x, y in stroke.points)
 
 
 def test_long_windows_are_not_strips() -> None:
@@ -160,7 +160,7 @@ def test_ticks_are_round(low: float, high: float, labels: list[str]) -> None:
 
 
 def test_lines_are_clipped_thinned_and_joined() -> None:
-    box = Box(0, 0, 10, 10)
+    box = Rectangle(0, 0, 10, 10)
     assert list(clipped([(-5, 5), (5, 5), (5, 20), (8, 20), (8, 5)], box)) == [
         ((0, 5), (5, 5), (5, 10)),
         ((8, 10), (8, 5)),
@@ -368,5 +368,5 @@ def test_marks_and_ends_may_be_anything_that_is_allowed() -> None:
         ((Fraction(1, 2), "excluded"),),
     )
     assert "$" in tikz_file(chi_line, LatexPrinter())
-    region = replace(hand.hyperbola(), marks=(Mark((Fraction(3), Fraction(3)), "excluded"),))
+    region = replace(hand.hyperbola(), marks=(MarkedPoint((Fraction(3), Fraction(3)), "excluded"),))
     assert "circle[radius=2.3]" in tikz_file(region, LatexPrinter())

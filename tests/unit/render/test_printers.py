@@ -31,7 +31,7 @@ from symobs.formula import (
 )
 from symobs.notation import symbol_latex, symbol_text
 from symobs.render.printers.latex_printer import LatexPrinter
-from symobs.render.printers.scalars import spelled
+from symobs.render.printers.scalar_formula import formula_of
 from symobs.render.printers.text_printer import TextPrinter, text_width
 
 if TYPE_CHECKING:
@@ -429,7 +429,7 @@ sources = st.integers(0, 2**64).map(random.Random)
 @settings(max_examples=300)
 def test_a_spelling_has_the_value_of_its_scalar(source: random.Random) -> None:
     value = rational(source, 6)
-    assert value_of(spelled(value, "s")) == value
+    assert value_of(formula_of(value, "s")) == value
 
 
 @given(sources)

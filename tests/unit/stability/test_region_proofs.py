@@ -18,10 +18,10 @@ from symobs.stability.inequalities import z3_and_qepcad
 from symobs.stability.inequalities.decision import decide_empty, equivalence_of, implies
 from symobs.stability.inequalities.proof import (
     UNIT,
-    Asked,
     Combined,
     Equivalence,
     Opposite,
+    ProvedByZ3,
     Step,
     contradiction,
     proves,
@@ -170,7 +170,7 @@ def spoiled(step: Step) -> Iterator[Step]:
         yield replace(step, steps=())
         yield replace(step, multiple=step.multiple + 1)
         return
-    if isinstance(step, Asked):
+    if isinstance(step, ProvedByZ3):
         yield replace(step, given=())
         yield replace(step, given=(*step.given, unknown))
         yield replace(step, value=step.value - unknown)
@@ -239,7 +239,7 @@ def test_a_tampered_proof_is_refused() -> None:
         Combined(x, ((y, ()),), ((one, (x * y,)),)),  # a multiplier of unknown sign
         Combined(zero, UNIT, ((one, ()),)),  # 0 = 1
         Opposite(x, x * y, ()),
-        Asked(x, ()),
+        ProvedByZ3(x, ()),
     ],
     ids=str,
 )
@@ -250,15 +250,15 @@ def test_lies_are_refused(lie: Step) -> None:
 def test_z3_is_asked_again() -> None:
     pytest.importorskip("z3")
     known = [x * y + 1, x**3 + 2 * x**2 + x * y**2 - x * y - 4 * x + 2 * y**2 - 9]
-    assert proves([Asked(x + 2, tuple(known))], known, [x + 2], {})
-    assert not proves([Asked(x + 2, tuple(known))], known[:1], [x + 2], {})
-    assert not proves([Asked(x + 1, tuple(known))], known, [x + 1], {})
+    assert proves([ProvedByZ3(x + 2, tuple(known))], known, [x + 2], {})
+    assert not proves([ProvedByZ3(x + 2, tuple(known))], known[:1], [x + 2], {})
+    assert not proves([ProvedByZ3(x + 1, tuple(known))], known, [x + 1], {})
 
 
 @pytest.mark.usefixtures("alone")
 def test_without_z3_nothing_is_believed() -> None:
     known = [x * y + 1, x**3 + 2 * x**2 + x * y**2 - x * y - 4 * x + 2 * y**2 - 9]
-    assert not proves([Asked(x + 2, tuple(known))], known, [x + 2], {})
+    assert not proves([ProvedByZ3(x + 2, tuple(known))], known, [x + 2], {})
     found = simplify([*known, x + 2], {})
     assert set(found.positive) == {*known, x + 2}
     assert found.dropped == ()

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
 from symobs.expression import parse_scalar
 from symobs.stability.criteria.stability import (
-    Stability,
+    StabilityVerdict,
     hurwitz_matrix,
     lienard_chipart,
     monic,
@@ -243,13 +243,13 @@ def test_the_pendulum_of_the_catalogue(polynomial: str, signs: dict[str, str], e
 )
 def test_one_unstable_factor_settles_what_the_coefficients_leave_open(polynomial: str, discrete: bool) -> None:  # noqa: FBT001
     value = parse_scalar(polynomial, variable="s")
-    assert stability(value, "s", {}, discrete=discrete) == Stability("no")
+    assert stability(value, "s", {}, discrete=discrete) == StabilityVerdict("no")
 
 
 def test_inequalities_of_settled_verdicts() -> None:
-    assert Stability("yes").inequalities({}) == []
-    assert Stability("no").inequalities({}) == ["False"]
-    assert Stability("conditional", (a * b - c,)).inequalities({"c": "positive"}) == ["c < a*b"]
+    assert StabilityVerdict("yes").inequalities({}) == []
+    assert StabilityVerdict("no").inequalities({}) == ["False"]
+    assert StabilityVerdict("conditional", (a * b - c,)).inequalities({"c": "positive"}) == ["c < a*b"]
 
 
 @pytest.mark.parametrize(

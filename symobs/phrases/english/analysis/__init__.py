@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english/analysis."""
+"""Sentences of the analysis tasks: rank tests, modes, realisations, time response and time-varying plants."""

@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english/design."""
+"""Sentences of the design tasks: gains, compensators, reduced-order observers, tracking and feedforward."""

@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english/page."""
+"""Sentences of every page: titles, questions of problem sheets, and captions."""

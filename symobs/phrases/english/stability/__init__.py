@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english/stability."""
+"""Sentences on stability regions and the Routh array."""

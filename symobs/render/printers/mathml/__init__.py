@@ -1,1 +1,1 @@
-"""TODO symobs/render/printers/mathml."""
+"""Formulas as MathML Core."""

@@ -73,7 +73,7 @@ _ALPHABETS = {
 
 
 @dataclass(frozen=True)
-class Part:
+class LatexPart:
     """One part of a form: an element, and what stands below and above at its right."""
 
     base: str
@@ -91,9 +91,9 @@ class Part:
 
 
 @lru_cache(maxsize=1024)
-def parts_of(form: str) -> tuple[Part, ...]:
+def parts_of(form: str) -> tuple[LatexPart, ...]:
     """Return the parts of a form, at least one."""
-    return tuple(_Reader(form).sequence()) or (Part("<mrow></mrow>"),)
+    return tuple(_Reader(form).sequence()) or (LatexPart("<mrow></mrow>"),)
 
 
 def elements_of(form: str) -> tuple[str, ...]:
@@ -101,12 +101,12 @@ def elements_of(form: str) -> tuple[str, ...]:
     return tuple(part.written for part in parts_of(form))
 
 
-def accented(part: Part, accent: str) -> Part:
+def accented(part: LatexPart, accent: str) -> LatexPart:
     """Return a part with an accent such as `dot` on the letter itself, not on its index."""
     return replace(part, base=_over(part.base, _ACCENTS[accent]))
 
 
-def indexed(part: Part, index: str) -> Part:
+def indexed(part: LatexPart, index: str) -> LatexPart:
     """Return a part with a further index."""
     further = elements_of(index)
     return replace(part, below=row((part.below, "<mo>,</mo>", *further) if part.below else further))
@@ -125,9 +125,9 @@ class _Reader:
         self.pieces: list[str] = _PIECE.findall(form)
         self.place = 0
 
-    def sequence(self, closing: str = "") -> list[Part]:
+    def sequence(self, closing: str = "") -> list[LatexPart]:
         """Return the parts up to a closing brace, or to the end."""
-        parts: list[Part] = []
+        parts: list[LatexPart] = []
         while self.place < len(self.pieces):
             piece = self.next()
             if piece in _SPACES or (piece == "}" and not closing):
@@ -146,14 +146,14 @@ class _Reader:
         self.place += 1
         return piece
 
-    def script(self, parts: list[Part], piece: str) -> None:
+    def script(self, parts: list[LatexPart], piece: str) -> None:
         """Put a script to the part before it."""
-        last = parts.pop() if parts else Part("<mrow></mrow>")
+        last = parts.pop() if parts else LatexPart("<mrow></mrow>")
         script = self.argument()
         if piece == "^":
-            parts.append(Part(last.written, "", script) if last.above else replace(last, above=script))
+            parts.append(LatexPart(last.written, "", script) if last.above else replace(last, above=script))
         else:
-            parts.append(Part(last.written, script) if last.below else replace(last, below=script))
+            parts.append(LatexPart(last.written, script) if last.below else replace(last, below=script))
 
     def argument(self) -> str:
         """Return what a command or a script takes, as one element: a piece, or what stands in braces."""
@@ -175,39 +175,39 @@ class _Reader:
             words += piece
         return words
 
-    def part(self, piece: str) -> list[Part]:
+    def part(self, piece: str) -> list[LatexPart]:
         """Return what a piece, with its argument, stands for."""
         name = piece[1:] if piece.startswith("\\") and len(piece) > 1 else ""
         if piece == "{":
             inside = self.sequence("}")
-            return inside if len(inside) == 1 else [Part(row(tuple(part.written for part in inside)))]
+            return inside if len(inside) == 1 else [LatexPart(row(tuple(part.written for part in inside)))]
         if name in _ACCENTS:
-            return [Part(_over(self.argument(), _ACCENTS[name]))]
+            return [LatexPart(_over(self.argument(), _ACCENTS[name]))]
         if name in {"mathrm", "text", "operatorname"}:
             return self.upright(name)
         if name in _ALPHABETS:
-            return [Part(_in_alphabet(name, self.raw()))]
+            return [LatexPart(_in_alphabet(name, self.raw()))]
         if name in _FUNCTIONS:
             return self.function(name)
         if name == "not":
-            return [Part(_sign("≢" if self.next() == r"\equiv" else "≠"))]
+            return [LatexPart(_sign("≢" if self.next() == r"\equiv" else "≠"))]
         if name in _LETTERS:
-            return [Part(f"<mi{_upright(_LETTERS[name])}>{_LETTERS[name]}</mi>")]
-        return [Part(_SIGN_ELEMENTS.get(piece) or _plain(name or piece))]
+            return [LatexPart(f"<mi{_upright(_LETTERS[name])}>{_LETTERS[name]}</mi>")]
+        return [LatexPart(_SIGN_ELEMENTS.get(piece) or _plain(name or piece))]
 
-    def upright(self, name: str) -> list[Part]:
+    def upright(self, name: str) -> list[LatexPart]:
         words = self.raw()
         if name == "operatorname":
             return self.function(words)
         if name == "text" or not words.isalpha():
-            return [Part(text(words))]
-        return [Part(f"<mi{_normal(words)}>{escape(words)}</mi>")]
+            return [LatexPart(text(words))]
+        return [LatexPart(f"<mi{_normal(words)}>{escape(words)}</mi>")]
 
-    def function(self, name: str) -> list[Part]:
+    def function(self, name: str) -> list[LatexPart]:
         """A function's name; a space where its argument has no parentheses."""
         follows = self.pieces[self.place] if self.place < len(self.pieces) else "("
-        space = [] if follows == "(" else [Part(APPLY), Part(THIN)]
-        return [Part(f"<mi{_normal(name)}>{escape(name)}</mi>"), *space]
+        space = [] if follows == "(" else [LatexPart(APPLY), LatexPart(THIN)]
+        return [LatexPart(f"<mi{_normal(name)}>{escape(name)}</mi>"), *space]
 
 
 def _plain(piece: str) -> str:

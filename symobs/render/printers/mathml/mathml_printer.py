@@ -15,7 +15,7 @@ from symobs.formula import Formula, Relation
 from symobs.notation import symbol_latex
 from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import Box, Level
+from symobs.render.printers.glyphs import GlyphBox, Level
 from symobs.render.printers.mathml.latex_to_mathml import accented, elements_of, indexed, parts_of
 from symobs.render.printers.mathml.mathml_elements import (
     APPLY,
@@ -44,7 +44,7 @@ from symobs.render.printers.mathml.mathml_elements import (
     text,
 )
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.scalars import decimal
+from symobs.render.printers.rational_formula import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,7 +63,7 @@ _SIZES = ("1.2em", "1.8em", "2.4em", "3em")
 
 
 @dataclass(frozen=True)
-class MathmlBox(Box):
+class MathmlBox(GlyphBox):
     """Elements side by side; `height` is 0 for a line of letters, 1 for a fraction, else about the number of rows.
 
     `indexed` is a letter apart from its index, so that an exponent can stand above the index.

@@ -1,4 +1,4 @@
-"""Pages of random compensators with numbers, their courses drawn and checked, from their text to LaTeX."""
+"""Pages of random compensators with numbers, their responses drawn and checked, from their text to LaTeX."""
 
 from __future__ import annotations
 

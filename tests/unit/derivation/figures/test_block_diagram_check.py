@@ -12,17 +12,28 @@ from symobs.derivation.figures.block_diagram_check import equations_of
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import Wire, figure_of
-from symobs.formula import Derivative, Environment, Formula, Letter, Literal, Negative, Product, Relation, Sum, Together
+from symobs.formula import (
+    Conjunction,
+    Derivative,
+    Environment,
+    Formula,
+    Letter,
+    Literal,
+    Negative,
+    Product,
+    Relation,
+    Sum,
+)
 from symobs.formula.plain_text import plain_relation
 
 A, B, C, D, F, G, H, K, L, M, P, Q, T = map(Letter, "ABCDFGHKLMPQT")
 x, x_hat, u, v, y, y_hat, z = (Letter(name) for name in ("x", "x_hat", "u", "v_r", "y", "y_hat", "z_o"))
 MINUS = Negative(Literal(Scalar.of(1)))
-Labels: TypeAlias = dict[str, Formula | Together]
+Labels: TypeAlias = dict[str, Formula | Conjunction]
 KNOWN = Environment(signals=dict.fromkeys(("x", "x_hat", "u", "y", "v_r", "e", "w"), None), sizes={"u": 2, "x": 2})
 
 
-def said(name: str, **labels: Formula | Together) -> list[str]:
+def said(name: str, **labels: Formula | Conjunction) -> list[str]:
     return [plain_relation(relation, "s") for relation in equations_of(name, labels, KNOWN)]
 
 
@@ -31,7 +42,7 @@ def equal(left: Formula, right: Formula) -> Relation:
 
 
 RATE = equal(Derivative(x), Sum((Product((A, x)), Product((B, u)))))
-PLANT = Together((RATE, equal(y, Product((C, x)))))
+PLANT = Conjunction((RATE, equal(y, Product((C, x)))))
 
 
 def test_a_loop_of_transfer_functions() -> None:
@@ -110,7 +121,7 @@ def test_a_whole_system_says_its_equations() -> None:
 def test_a_whole_system_speaks_of_the_signals_at_its_box(equations: tuple[Relation, ...]) -> None:
     observer: Labels = {"A": A, "B": B, "K": K, "L": L, "x": x_hat, "u": u, "y": y}
     with pytest.raises(ValueError, match="the box Plant, whose equations do not speak of the signals around it"):
-        said("observer_controller", Plant=Together(equations), **observer)
+        said("observer_controller", Plant=Conjunction(equations), **observer)
 
 
 def test_signals_at_a_whole_system_are_letters() -> None:
@@ -124,11 +135,11 @@ def test_signals_at_a_whole_system_are_letters() -> None:
 
 def test_two_systems_share_what_lies_between_them() -> None:
     equation = equal(Derivative(x_hat), Sum((Product((A, x_hat)), Product((B, u)), Product((L, y)))))
-    labels: Labels = {"Plant": PLANT, "Observer": Together((equation,)), "K": K, "v": v, "x": x_hat, "u": u, "y": y}
+    labels: Labels = {"Plant": PLANT, "Observer": Conjunction((equation,)), "K": K, "v": v, "x": x_hat, "u": u, "y": y}
     found = said("estimated_state_feedback", **labels)
     system = ["d/dt x = A*x + B*u", "y = C*x", "y = y", "d/dt x_hat = A*x_hat + B*u + L*y"]
     assert found == ["u = K*x_hat", *system]
-    deaf = Together((equal(Derivative(x_hat), Product((A, x_hat))),))
+    deaf = Conjunction((equal(Derivative(x_hat), Product((A, x_hat))),))
     with pytest.raises(ValueError, match="the box Observer, whose equations do not speak"):
         said("estimated_state_feedback", **{**labels, "Observer": deaf})
 

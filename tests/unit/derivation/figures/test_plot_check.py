@@ -19,7 +19,7 @@ from symobs.derivation.figures.root_locus_check import faults_of_poles
 from symobs.derivation.figures.time_response_check import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
 from symobs.exact import Matrix, Scalar
-from symobs.figures.plot import Course, End, LinePicture, Mark, PoleMap, RegionPicture, TimeResponse
+from symobs.figures.plot import End, LinePicture, MarkedPoint, PoleMap, RegionPicture, Response, TimeResponse
 from symobs.formula import Environment, Letter, Literal, Product
 from tests.support.problems.steps import said
 from tests.support.regions import drawn_by_hand as hand
@@ -130,7 +130,9 @@ def test_all_is_shaded_or_nothing() -> None:
     ],
 )
 def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> None:
-    picture = RegionPicture(("h1", "h2"), WINDOW, (WHOLE,) if shaded else (), (), (Mark(at("1/3", "1/5"), kind),))
+    picture = RegionPicture(
+        ("h1", "h2"), WINDOW, (WHOLE,) if shaded else (), (), (MarkedPoint(at("1/3", "1/5"), kind),)
+    )
     assert (f"(1/3, 1/5) is {kind}" not in told(picture, s + 1)) == expected
     unstable = replace(picture, areas=())
     assert (f"(1/3, 1/5) is {kind}" not in told(unstable, s - 1)) == (kind in {"unstable", "excluded"})
@@ -339,7 +341,7 @@ def test_discs_grow_with_the_degree() -> None:
         assert root_locus_check._are_all(drawn, s**3 - s, "s", 0) == are_all  # type: ignore[arg-type]
 
 
-# -- courses ------------------------------------------------------------------------------------------------------------
+# -- responses ------------------------------------------------------------------------------------------------------------
 
 
 def steps_within(steps: tuple[Step, ...]) -> Iterator[Step]:
@@ -362,13 +364,13 @@ WIDE = ((Fraction(0), Fraction(2)), (Fraction(-1), Fraction(3)))
 PARTS = 600_000
 
 
-def course(*values: Any, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> Course:
+def course(*values: Any, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> Response:
     heights = [Fraction(value) * PARTS for value in values]
     assert all(height.denominator == 1 for height in heights)
-    return Course(signal, component, tuple(map(Fraction, row)), tuple(map(int, heights)))
+    return Response(signal, component, tuple(map(Fraction, row)), tuple(map(int, heights)))
 
 
-def courses(*drawn: Course, subject: str = "A", start: tuple[int, ...] = (1,), **more: Any) -> list[str]:
+def responses(*drawn: Response, subject: str = "A", start: tuple[int, ...] = (1,), **more: Any) -> list[str]:
     response = TimeResponse(
         ("x",), (tuple(map(Fraction, start)),), drawn, more.get("window", WIDE), more.get("parts", PARTS)
     )
@@ -377,12 +379,12 @@ def courses(*drawn: Course, subject: str = "A", start: tuple[int, ...] = (1,), *
 
 def test_a_course_that_stays_is_drawn_so() -> None:
     """x′ = 0 keeps x, and y = 2 x."""
-    assert courses(course(1, 1, 1)) == []
-    assert courses(course(1, 1, 1), course(2, 2, 2, signal="y", row=(2,))) == []
-    assert courses(course(1, 1, 2)) == ["the course of x"]
-    assert courses(course(1, 1, 1), course(2, 2, 1, signal="y", row=(2,))) == ["the course of y"]
-    assert courses(course(1, 1, 1), subject="F") == ["an equation of x with this matrix"]
-    assert courses(course(1, 1, 1, row=(2,))) == ["an equation of x with this matrix"]
+    assert responses(course(1, 1, 1)) == []
+    assert responses(course(1, 1, 1), course(2, 2, 2, signal="y", row=(2,))) == []
+    assert responses(course(1, 1, 2)) == ["the response of x"]
+    assert responses(course(1, 1, 1), course(2, 2, 1, signal="y", row=(2,))) == ["the response of y"]
+    assert responses(course(1, 1, 1), subject="F") == ["an equation of x with this matrix"]
+    assert responses(course(1, 1, 1, row=(2,))) == ["an equation of x with this matrix"]
     for window in (
         ((Fraction(1), Fraction(2)), WIDE[1]),
         ((Fraction(0), Fraction(0)), WIDE[1]),
@@ -390,21 +392,21 @@ def test_a_course_that_stays_is_drawn_so() -> None:
         (WIDE[0], (Fraction(3), Fraction(3))),
         (WIDE[0], (Fraction(3), Fraction(-1))),
     ):
-        assert courses(course(1, 1, 1), window=window) == ["a window that begins at 0 and that courses fill"]
-    assert courses() == courses(course(1)) == ["a window that begins at 0 and that courses fill"]
+        assert responses(course(1, 1, 1), window=window) == ["a window that begins at 0 and that responses fill"]
+    assert responses() == responses(course(1)) == ["a window that begins at 0 and that responses fill"]
     for parts in (0, -PARTS):
-        assert courses(course(1, 1, 1), parts=parts) == ["a window that begins at 0 and that courses fill"]
+        assert responses(course(1, 1, 1), parts=parts) == ["a window that begins at 0 and that responses fill"]
     twice = course(2, 2, signal="y", row=(2,))
-    assert courses(course(1, 1, 1), twice) == ["a window that begins at 0 and that courses fill"]
-    assert courses(course(1, 1, 1), parts=PARTS // 2) == ["the course of x"]
-    assert courses(replace(course(1, 1, 1), heights=(1, 1, 1)), parts=1) == []
-    assert courses(course(1, 1, 1), start=(1, 1)) == ["a start of x"]
-    assert courses(course(1, 1, 1), start=()) == ["a start of x"]
-    assert courses(course(3, 3, 3), start=(3,)) == []
-    assert courses(course(4, 4, 4), start=(4,)) == ["x, which leaves the window,"]
-    assert courses(course(-2, -2, -2), start=(-2,)) == ["x, which leaves the window,"]
+    assert responses(course(1, 1, 1), twice) == ["a window that begins at 0 and that responses fill"]
+    assert responses(course(1, 1, 1), parts=PARTS // 2) == ["the response of x"]
+    assert responses(replace(course(1, 1, 1), heights=(1, 1, 1)), parts=1) == []
+    assert responses(course(1, 1, 1), start=(1, 1)) == ["a start of x"]
+    assert responses(course(1, 1, 1), start=()) == ["a start of x"]
+    assert responses(course(3, 3, 3), start=(3,)) == []
+    assert responses(course(4, 4, 4), start=(4,)) == ["x, which leaves the window,"]
+    assert responses(course(-2, -2, -2), start=(-2,)) == ["x, which leaves the window,"]
     with pytest.raises(ValueError, match="not all components of x"):
-        courses(course(1, 1, 1, component=1))
+        responses(course(1, 1, 1, component=1))
 
 
 def test_a_course_may_be_drawn_as_roughly_as_cannot_be_seen() -> None:
@@ -412,9 +414,9 @@ def test_a_course_may_be_drawn_as_roughly_as_cannot_be_seen() -> None:
     for off, is_near in (("0.008", True), ("-0.00799", True), ("0.00801", False), ("-0.00801", False)):
         for index in range(3):
             values = [1 + Fraction(off) * (t == index) for t in range(3)]
-            assert (courses(course(*values)) == []) == is_near
+            assert (responses(course(*values)) == []) == is_near
     high = (WIDE[0], (Fraction(-250), Fraction(250)))
-    assert courses(course(1, 1, 2), window=high) == []
+    assert responses(course(1, 1, 2), window=high) == []
     for bend, is_near in ((8, True), (-8, True), (Fraction("8.05"), False), (-Fraction("8.05"), False)):
         places = [(bend * Fraction(t * t) / 2, Fraction(bend * t), Fraction(bend)) for t in range(3)]
         rows = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -424,7 +426,7 @@ def test_a_course_may_be_drawn_as_roughly_as_cannot_be_seen() -> None:
             response = TimeResponse(("x",), (places[0],), tuple(drawn[j] for j in order), window, PARTS)
             assert (list(faults_of_response(response, Letter("A"), PARABOLA)) == []) == is_near
             with pytest.raises(ValueError, match="not all components of x"):
-                list(faults_of_response(replace(response, courses=tuple(drawn[:2])), Letter("A"), PARABOLA))
+                list(faults_of_response(replace(response, responses=tuple(drawn[:2])), Letter("A"), PARABOLA))
 
 
 def test_every_segment_of_a_course_is_looked_at() -> None:
@@ -432,7 +434,7 @@ def test_every_segment_of_a_course_is_looked_at() -> None:
     table = Matrix.of([[int(j == i + 1) for j in range(4)] for i in range(4)])
     known = replace(DECAY, values={"A": table}, sizes={"x": 4})
     values = [[Fraction(7 * t**3, 6), Fraction(7 * t * t, 2), Fraction(7 * t), Fraction(7)] for t in range(3)]
-    for height, expected in ((100, ["the course of x"]), (132, [])):
+    for height, expected in ((100, ["the response of x"]), (132, [])):
         rows = [tuple(int(i == j) for i in range(4)) for j in range(4)]
         drawn = tuple(course(*(v[j] for v in values), component=j + 1, row=rows[j]) for j in range(4))
         window = (WIDE[0], (Fraction(-height, 2), Fraction(height, 2)))
@@ -457,21 +459,21 @@ def test_no_point_of_a_course_leaves_the_window() -> None:
 
 
 def test_two_points_are_a_course() -> None:
-    assert courses(course(1, 1), window=((Fraction(0), Fraction(1)), WIDE[1])) == []
+    assert responses(course(1, 1), window=((Fraction(0), Fraction(1)), WIDE[1])) == []
 
 
 def test_every_signal_is_held_to_the_page() -> None:
     third = ["an equation of x with this matrix"]
-    assert courses(course(1, 1, 1), course(3, 3, 3, signal="y", row=(3,))) == third
-    assert courses(course(2, 2, 2, signal="y", row=(2,)), course(1, 1, 1, row=(3,))) == third
+    assert responses(course(1, 1, 1), course(3, 3, 3, signal="y", row=(3,))) == third
+    assert responses(course(2, 2, 2, signal="y", row=(2,)), course(1, 1, 1, row=(3,))) == third
     half = replace(course(1, 1, 1, signal="w"), row=(Fraction(1, 2),))
     known = replace(DECAY, signals={**DECAY.signals, "w": Product((Literal(Scalar.rational(1, 2)), Letter("x")))})
     response = TimeResponse(("x",), ((Fraction(2),),), (half,), WIDE, PARTS)
     assert list(faults_of_response(response, Letter("A"), known)) == []
     response = replace(response, starts=((Fraction(1),),))
-    assert list(faults_of_response(response, Letter("A"), known)) == ["the course of w"]
+    assert list(faults_of_response(response, Letter("A"), known)) == ["the response of w"]
     with pytest.raises(ValueError, match="not all components of A"):
-        courses(course(1, 1, 1, signal="A"))
+        responses(course(1, 1, 1, signal="A"))
 
 
 def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
@@ -513,16 +515,16 @@ TURNING = Environment(
 )
 
 
-def samples(*drawn: Course, end: int = 3, low: str = "-1", high: str = "11", count: int = 2) -> list[str]:
-    """What is wrong with courses that begin at (1, 1): x₁ is 1, 3, 5, 11 and x₂ is 1, −1, 1, −1."""
+def samples(*drawn: Response, end: int = 3, low: str = "-1", high: str = "11", count: int = 2) -> list[str]:
+    """What is wrong with responses that begin at (1, 1): x₁ is 1, 3, 5, 11 and x₂ is 1, −1, 1, −1."""
     window = ((Fraction(0), Fraction(end)), (Fraction(low), Fraction(high)))
     start = (Fraction(1), Fraction(1))
     response = TimeResponse(("x",), (start,), drawn, window, count, discrete=True)
     return list(faults_of_response(response, Letter("A"), TURNING))
 
 
-def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1, 0)) -> Course:
-    return Course(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
+def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1, 0)) -> Response:
+    return Response(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
 
 
 def test_courses_of_discrete_time_are_met_exactly() -> None:
@@ -540,17 +542,17 @@ def test_courses_of_discrete_time_are_met_exactly() -> None:
     for place in range(4):
         for off in (1, -1):  # half of one is seen
             heights = [height + off * (k == place) for k, height in enumerate(output.heights)]
-            assert samples(replace(output, heights=tuple(heights))) == ["the course of y"]
-    assert samples(output, count=3) == ["the course of y"]
-    assert samples(second, first, replace(output, heights=(8, 0, 16, 17))) == ["the course of y"]
+            assert samples(replace(output, heights=tuple(heights))) == ["the response of y"]
+    assert samples(output, count=3) == ["the response of y"]
+    assert samples(second, first, replace(output, heights=(8, 0, 16, 17))) == ["the response of y"]
 
 
 def test_courses_are_of_the_time_of_their_plant() -> None:
     response = TimeResponse(("x",), ((Fraction(1),),), (course(1, 1, 1),), WIDE, PARTS)
     assert list(faults(response, Letter("A"), replace(DECAY, variable="z"), discrete=True)) == ["another time"]
     assert list(faults(response, Letter("A"), DECAY, discrete=False)) == []
-    wrong = replace(response, courses=(course(1, 1, 2),))
-    assert list(faults(wrong, Letter("A"), DECAY, discrete=False)) == ["the course of x"]
+    wrong = replace(response, responses=(course(1, 1, 2),))
+    assert list(faults(wrong, Letter("A"), DECAY, discrete=False)) == ["the response of x"]
 
 
 def test_a_course_too_long_to_compute_is_refused() -> None:
@@ -566,7 +568,7 @@ def test_a_mode_that_turns_unseen_between_two_instants_is_refused() -> None:
         table = Matrix.of([[-1, turning], [-turning, -1]])
         known = replace(DECAY, values={"A": table}, sizes={"x": 2})
         falling = tuple(round(PARTS * exp(-k / 100)) for k in range(101))
-        drawn = [Course("x", j + 1, row, tuple(h * (1 - j) for h in falling)) for j, row in enumerate(UNITS)]
+        drawn = [Response("x", j + 1, row, tuple(h * (1 - j) for h in falling)) for j, row in enumerate(UNITS)]
         window = ((Fraction(0), Fraction(1)), (Fraction(-1), Fraction(2)))
         response = TimeResponse(("x",), ((Fraction(1), Fraction(0)),), tuple(drawn), window, PARTS)
         assert list(faults_of_response(response, Letter("A"), known)) == expected

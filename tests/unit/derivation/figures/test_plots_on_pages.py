@@ -12,7 +12,7 @@ from symobs.derivation import Derivation, Plot
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar
 from symobs.exact.kernel.generators import square_root
-from symobs.figures.plot import Curve, End, LinePicture, Mark, PoleMap, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
 from symobs.formula import Apply, Environment, Letter, Literal, Negative, Relation, Sum
 from tests.support.problems.steps import checked, refused
 from tests.support.regions import drawn_by_hand as hand
@@ -170,12 +170,12 @@ def test_what_is_shaded_is_stable() -> None:
 )
 def test_marks_say_what_is_so(place: Place, kind: str) -> None:
     picture = hand.hyperbola()
-    refuse(replace(picture, marks=(Mark(place, kind),)), hand.HYPERBOLA, f"is {kind}")
+    refuse(replace(picture, marks=(MarkedPoint(place, kind),)), hand.HYPERBOLA, f"is {kind}")
 
 
 def test_a_stable_sample_lies_in_the_shade_and_an_unstable_one_does_not() -> None:
     picture = hand.hyperbola()
-    refuse(replace(picture, areas=(), marks=(Mark(at(3, 3), "stable"),)), hand.HYPERBOLA, "is stable")
+    refuse(replace(picture, areas=(), marks=(MarkedPoint(at(3, 3), "stable"),)), hand.HYPERBOLA, "is stable")
 
 
 def test_a_hole_may_be_irrational() -> None:
@@ -183,9 +183,9 @@ def test_a_hole_may_be_irrational() -> None:
     chi = s**2 + s + (h1**2 - 2) ** 2 + h2**2
     window = ((Fraction(-1), Fraction(3)), (Fraction(-2), Fraction(2)))
     corners = at(-1, -2), at(3, -2), at(3, 2), at(-1, 2)
-    picture = RegionPicture(("h1", "h2"), window, (corners,), (), (Mark((near, Fraction(0)), "excluded"),))
+    picture = RegionPicture(("h1", "h2"), window, (corners,), (), (MarkedPoint((near, Fraction(0)), "excluded"),))
     accept(picture, chi)
-    refuse(replace(picture, marks=(Mark(at(1, 1), "excluded"),)), chi, "is excluded")
+    refuse(replace(picture, marks=(MarkedPoint(at(1, 1), "excluded"),)), chi, "is excluded")
 
 
 def test_a_window_has_an_inside() -> None:

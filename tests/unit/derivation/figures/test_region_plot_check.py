@@ -16,7 +16,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.rational_points import vanishes_near
 from symobs.exact.cad.decomposition import PlaneCurve
 from symobs.exact.kernel.generators import square_root
-from symobs.figures.plot import Curve, End, LinePicture, Mark, RegionPicture
+from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter
 from tests.support.problems.steps import said
 from tests.support.regions.drawn_by_hand import h1, h2, k, s
@@ -326,7 +326,9 @@ WINDOW = ((Fraction(-500), Fraction(500)), (Fraction(-1000), Fraction(1000)))
 RIGHT = (at(0, -1000), at(500, -1000), at(500, 1000), at(0, 1000))
 WALL = Curve((at(0, -1000), at(0, 1000)), said(h1, 0))
 #: s + h1 is stable on the right; what is near may be 2 off to the side and 4 up or down, between points 20 and 40.
-HALF = RegionPicture(AXES, WINDOW, (RIGHT,), (WALL,), (Mark(at(100, 3), "stable"), Mark(at(-100, 3), "unstable")))
+HALF = RegionPicture(
+    AXES, WINDOW, (RIGHT,), (WALL,), (MarkedPoint(at(100, 3), "stable"), MarkedPoint(at(-100, 3), "unstable"))
+)
 STABLE = s + h1 + 0 * h2
 
 
@@ -339,10 +341,17 @@ def test_a_half_plane_is_drawn_as_it_is() -> None:
     assert told(HALF, STABLE) == []
     assert told(replace(HALF, areas=()), STABLE)[0] == "(100, 3) is stable"
     assert "(-100, 3) is unstable" in told(HALF, s - h1)
-    other = replace(HALF, marks=(Mark(at(100, 3), "unstable"), Mark(at(-100, 3), "stable"), Mark(at(0, 3), "excluded")))
+    other = replace(
+        HALF,
+        marks=(
+            MarkedPoint(at(100, 3), "unstable"),
+            MarkedPoint(at(-100, 3), "stable"),
+            MarkedPoint(at(0, 3), "excluded"),
+        ),
+    )
     assert told(other, STABLE) == ["(100, 3) is unstable", "(-100, 3) is stable"]
-    assert told(replace(HALF, marks=(Mark(at(100, 3), "excluded"),)), STABLE) == ["(100, 3) is excluded"]
-    assert told(replace(HALF, marks=(Mark(at(100, 3), "other"),)), STABLE) == ["(100, 3) is other"]
+    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "excluded"),)), STABLE) == ["(100, 3) is excluded"]
+    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "other"),)), STABLE) == ["(100, 3) is other"]
 
 
 def test_a_curve_is_drawn_where_it_is() -> None:
@@ -475,7 +484,7 @@ def test_what_is_shaded_is_stable_and_what_is_stable_is_shaded() -> None:
 def test_a_mark_speaks_of_its_place_and_of_the_shade_there() -> None:
     whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
     for kind in ("stable", "unstable"):
-        marks = (Mark(at(-100, 3), kind),)
+        marks = (MarkedPoint(at(-100, 3), kind),)
         assert f"(-100, 3) is {kind}" in told(replace(HALF, areas=(whole,), marks=marks), STABLE)
 
 
@@ -499,16 +508,16 @@ def test_a_place_that_is_taken_out_is_not_asked_for() -> None:
     hole = at(0, height)
     chi = s + h1**2 + (h2 - Scalar.of(height)) ** 2
     whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
-    picture = RegionPicture(AXES, WINDOW, (whole,), (), (Mark(hole, "excluded"),))
+    picture = RegionPicture(AXES, WINDOW, (whole,), (), (MarkedPoint(hole, "excluded"),))
     assert told(picture, chi) == []
     assert told(replace(picture, marks=()), chi) == [f"({hole[0]}, {hole[1]}) is stable"]
-    assert told(replace(picture, marks=(Mark(hole, "unstable"),)), chi)[0].endswith("is stable")
+    assert told(replace(picture, marks=(MarkedPoint(hole, "unstable"),)), chi)[0].endswith("is stable")
 
 
 def test_a_hole_that_is_drawn_roughly_is_seen_from_around() -> None:
     """(h1 − x)² + (h2 − y)²/4 is at the place a 16th of what it is 2 to the sides and 4 up and down, or less."""
     whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
-    picture = RegionPicture(AXES, WINDOW, (whole,), (), (Mark(at(0, 0), "excluded"),))
+    picture = RegionPicture(AXES, WINDOW, (whole,), (), (MarkedPoint(at(0, 0), "excluded"),))
     for off in ("0.4", "-0.4", "0.41", "-0.41"):
         for x, y in ((Fraction(off), Fraction(0)), (Fraction(0), 2 * Fraction(off))):
             chi = s + (h1 - Scalar.of(x)) ** 2 + (h2 - Scalar.of(y)) ** 2 / 4

@@ -15,7 +15,7 @@ import symobs
 from symobs.derivation import Derivation, Plot, Section
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.time_functions.state_response import rates, response
+from symobs.exact.time_functions.state_response import spectral_abscissae, state_response
 from symobs.figures.plot import TimeResponse
 from symobs.formula import Exact, Literal, evaluate
 from symobs.render.plots.svg import svg, svg_scene
@@ -24,7 +24,7 @@ from symobs.render.plots.tikz import latex_scene, tikz
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
 from symobs.system import StateSpace
-from tests.support.independent_algebra.responses import untrue_courses
+from tests.support.independent_algebra.responses import untrue_responses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -73,7 +73,7 @@ def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
 def test_the_error_of_the_servo_by_its_formula() -> None:
     """The double pole -10: e(t) = exp(-10 t) (I + (A - LC + 10 I) t) e(0), worked out by hand for e(0) = (1, 1)."""
     ((_, picture),) = plots(PAGES["observer"]())
-    first, second = picture.courses
+    first, second = picture.responses
     assert (first.signal, first.component, second.component) == ("e", 1, 2)
     for (t, one), (_, two) in zip(picture.points(first), picture.points(second), strict=True):
         assert float(one) == pytest.approx(exp(-10 * t) * (1 - 8 * t), abs=1e-5)
@@ -86,14 +86,14 @@ def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Resu
     known = result.derivation.check()
     ((step, picture),) = plots(result)
     value = evaluate(step.subject, known, Exact(known))
-    assert list(untrue_courses(picture, [[entry.fraction() for entry in row] for row in value.rows])) == []
+    assert list(untrue_responses(picture, [[entry.fraction() for entry in row] for row in value.rows])) == []
 
 
 def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
     """A - LC = [-1 1; -1 1]: e(0) = (1, 1) is in its kernel, and the square is 0."""
     ((_, picture),) = plots(PAGES["deadbeat"]())
     assert picture.discrete
-    assert [[y for _, y in picture.points(course)] for course in picture.courses] == [[1, 0, 0, 0, 0, 0]] * 2
+    assert [[y for _, y in picture.points(course)] for course in picture.responses] == [[1, 0, 0, 0, 0, 0]] * 2
     assert "instants 0, 1, 2" in " ".join(str(PAGES["deadbeat"]().to("text")).split())
 
 
@@ -101,13 +101,13 @@ def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
     derivation = PAGES["sampled"]().derivation
     ((step, picture),) = plots(PAGES["sampled"]())
     (step,) = [other for other in within(derivation.steps) if other == step]
-    (course,) = picture.courses
+    (course,) = picture.responses
     finer = picture.parts * 10**30
     exact = [height * 10**30 for height in course.heights]
     exact[2] += 1
     near = replace(course, heights=tuple(exact))
     with pytest.raises(DerivationRejected):
-        replaced(derivation, step, replace(step, picture=replace(picture, courses=(near,), parts=finer))).check()
+        replaced(derivation, step, replace(step, picture=replace(picture, responses=(near,), parts=finer))).check()
     with pytest.raises(DerivationRejected):
         replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
 
@@ -115,7 +115,7 @@ def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
 def test_estimate_and_state_meet() -> None:
     for name in ("compensator", "minimal-order compensator"):
         ((_, picture),) = plots(PAGES[name]())
-        state, estimate = ([c for c in picture.courses if c.signal == signal] for signal in ("x", "x_hat"))
+        state, estimate = ([c for c in picture.responses if c.signal == signal] for signal in ("x", "x_hat"))
         assert [course.dashed for course in (*state, *estimate)] == [False, False, True, True]
         assert all(picture.points(course)[0] == (Fraction(0), Fraction(1)) for course in state)
         for one, other in zip(state, estimate, strict=True):
@@ -158,21 +158,21 @@ def test_no_spoiled_course_is_accepted(page: Callable[[], Result]) -> None:
 
 
 def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
-    course, *others = picture.courses
+    course, *others = picture.responses
     end, (bottom, top) = picture.window[0][1], picture.window[1]
     height = top - bottom
     middle = len(course.heights) // 2
     for moved in (height / 100, -height / 100):
         wrong = course.heights[middle] + (int(moved * picture.parts) or 1)
         heights = (*course.heights[:middle], wrong, *course.heights[middle + 1 :])
-        yield replace(picture, courses=(replace(course, heights=heights), *others))
+        yield replace(picture, responses=(replace(course, heights=heights), *others))
     for fewer in (course.heights[:-1], course.heights[1:], course.heights[:: len(course.heights) - 1], ()):
-        yield replace(picture, courses=(replace(course, heights=fewer), *others))
-        yield replace(picture, courses=(replace(course, heights=fewer),))
-    yield replace(picture, courses=(replace(course, row=tuple(-part for part in course.row)), *others))
-    yield replace(picture, courses=(replace(course, component=course.component + 1), *others))
-    yield replace(picture, courses=(replace(course, signal="u"), *others))
-    yield replace(picture, courses=())
+        yield replace(picture, responses=(replace(course, heights=fewer), *others))
+        yield replace(picture, responses=(replace(course, heights=fewer),))
+    yield replace(picture, responses=(replace(course, row=tuple(-part for part in course.row)), *others))
+    yield replace(picture, responses=(replace(course, component=course.component + 1), *others))
+    yield replace(picture, responses=(replace(course, signal="u"), *others))
+    yield replace(picture, responses=())
     yield replace(picture, starts=tuple(tuple(2 * part for part in start) for start in picture.starts))
     yield replace(picture, starts=(picture.starts[0][1:], *picture.starts[1:]))
     yield replace(picture, states=("u", *picture.states[1:]))
@@ -201,19 +201,19 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 
 def test_enclosures_are_rounded_to_the_nearest_part() -> None:
     spin = Matrix.of([[0, 1], [-1, 0]])
-    found = response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
+    found = state_response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
     assert len(found) == 7
     assert [found[k] for k in (0, 1, 6)] == [[0, 10**9], [479425539, 877582562], [141120008, -989992497]]
 
 
 def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
-    assert rates(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
-    assert rates(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
+    assert spectral_abscissae(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
+    assert spectral_abscissae(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
 
 
 def test_what_takes_too_many_bits_is_not_drawn() -> None:
     with pytest.raises(ArithmeticError):
-        response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
+        state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
     steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
     assert plots(symobs.observer(steep, L=[[0], [0]])) == []
 
@@ -221,7 +221,7 @@ def test_what_takes_too_many_bits_is_not_drawn() -> None:
 def test_errors_that_grow_on_the_way_are_not_seen() -> None:
     """A matrix whose powers are far larger than its exponential: (M + I)² = 0 with entries of a thousand."""
     shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
-    found = response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
+    found = state_response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
     for k in (100, 300, 600):
         decay = exp(-k / 100) * 10**6
         assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
@@ -249,7 +249,7 @@ def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     ones, step = (Fraction(1),) * 6, Fraction(1, 100)
     monkeypatch.setattr(writer, "_BITS", (128,))
     monkeypatch.setattr(trusted, "_KEPT", (256,))
-    found = response(loop, ones, step, 801, 10**6)
+    found = state_response(loop, ones, step, 801, 10**6)
     again = trusted._stepped(loop, ones, step, 801)
     with mpmath.workdps(60):
         table = mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in numbers(loop)])
@@ -281,15 +281,15 @@ def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -
         "x_hat": ("x̂", r"\hat x"),
         "e_2": ("e₂", "e_2"),
     }
-    for course in picture.courses:
+    for course in picture.responses:
         in_text, in_latex = names[course.signal]
         index = "₁₂₃"[course.component - 1] if course.component else ""
         comma = "," if course.signal == "e_2" and index else ""
         assert f" {in_text}{comma}{index}" in sketched
         below = f"_{{2,{course.component}}}" if comma else f"_{course.component}" if index else ""
         assert f"${in_latex.removesuffix('_2' if comma else '')}{below}$" in drawn
-    dashes = any(course.dashed for course in picture.courses) and not picture.discrete
+    dashes = any(course.dashed for course in picture.responses) and not picture.discrete
     if picture.discrete:
-        assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.courses)
+        assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.responses)
     assert ("stroke-dasharray" in written) == dashes
     assert ("dash" in drawn) == dashes

@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 import symobs
-from symobs.exact import EIGENVALUE, Extension, Scalar
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Scalar
 from symobs.exact.kernel.generators import derivative, substitute
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.exact.time_functions.root_sum import RootSum
@@ -73,7 +73,7 @@ def test_values_and_rates_of_the_sums() -> None:
 
 def test_traces_are_newtons_sums() -> None:
     """With e₁ = −2, e₂ = 1 the sums of powers of the roots are p₁ = −2 and p₂ = e₁² − 2 e₂ = 2."""
-    field = Extension(LAMBDA**3 + 2 * LAMBDA**2 + LAMBDA + 3, EIGENVALUE)
+    field = AlgebraicExtension(LAMBDA**3 + 2 * LAMBDA**2 + LAMBDA + 3, EIGENVALUE)
     assert [field.trace(LAMBDA**k) for k in range(3)] == [Scalar.of(3), Scalar.of(-2), Scalar.of(2)]
     assert field.norm(LAMBDA) == Scalar.of(-3)
 

@@ -18,8 +18,8 @@ from symobs import problem
 from symobs.derivation import Case, Section
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative, function, identities, square_root, substitute, tidy
-from symobs.exact.time_functions.quasipolynomial import Key, Quasi, quasi_of
+from symobs.exact.kernel.generators import derivative, function, identities, normal_form, square_root, substitute
+from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.result.conversions import to_sympy
 from tests.support.paths import ROOT
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME
@@ -456,8 +456,8 @@ def test_wrong_questions_are_refused() -> None:
 terms = st.tuples(st.integers(0, 2), st.integers(-2, 2), st.sampled_from(["", "cos", "sin"]), st.integers(1, 3), entry)
 
 
-def quasi(drawn: list[tuple[int, int, str, int, int]]) -> Quasi:
-    return Quasi.of(
+def quasi(drawn: list[tuple[int, int, str, int, int]]) -> Quasipolynomial:
+    return Quasipolynomial.of(
         (Key(n, Scalar.of(rate), wave, Scalar.of(w if wave else 0)), Scalar.of(c)) for n, rate, wave, w, c in drawn
     )
 
@@ -493,8 +493,8 @@ def test_generators_know_each_other() -> None:
     assert all(abs(sympy.N(to_sympy(r, {}).subs(numbers), 30)) < 1e-20 for r in relations)
     assert substitute(values[0], {"t": Scalar.of(0)}).is_one
     root = square_root(Scalar.of(12))
-    assert tidy(root * root) == Scalar.of(12)
-    assert tidy(1 / (root + 1)) * 11 == tidy(root - 1)
+    assert normal_form(root * root) == Scalar.of(12)
+    assert normal_form(1 / (root + 1)) * 11 == normal_form(root - 1)
 
 
 # -- lengths -------------------------------------------------------------------------------------------------------------

@@ -1,60 +1,100 @@
-"""How a function of time is spelled: as sums of coefficients times functions, an exponential before what it multiplies.
+"""Scalars and matrices as formulas; functions of time as sums of coefficients times functions, exponentials in front.
 
-T − 1 + e^{−T};  1/(2b) (ω² − e^{−bT}(…)).  The spelling always has the scalar's value.
+T − 1 + e^{−T};  1/(2b) (ω² − e^{−bT}(…)).  The formula always has the value of the scalar.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
-from symobs.exact.kernel.generators import known
-from symobs.formula import Formula, Literal, Negative, Power, Quotient, Sum
-from symobs.render.printers import scalars
+from symobs.exact import Matrix, Scalar
+from symobs.exact.kernel.generators import function as function_of
+from symobs.exact.kernel.generators import function_named
+from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
+from symobs.render.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+#: A common denominator of more terms, or more bits, is not put in front of a matrix.
+FRONT_UP_TO = 40
+FRONT_BITS = 200
 
 #: A function of time as a monomial: (name, exponent), the exponentials apart from the rest.
 Part = tuple[tuple[str, int], ...]
 _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 
 
-def moves(name: str) -> bool:
+def is_time_function(name: str) -> bool:
     """Whether a generator is an exponential, a sine or a cosine."""
-    found = known(name)
+    found = function_named(name)
     return found is not None and found.kind not in {"sqrt", "CRootOf"}
 
 
-def spelled_moving(value: Scalar) -> Formula:
-    """Return the formula of a value with functions of time in it."""
+@lru_cache(maxsize=4096)
+def formula_of(value: Scalar, variable: str) -> Formula:
+    """Return the formula of a scalar, collected in the powers of `variable`."""
+    if not is_leaf(value) and any(is_time_function(name) for name in value.names):
+        return _time_function(value)
+    return rational_formula(value, variable)
+
+
+@lru_cache(maxsize=1024)
+def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
+    """Return the matrix, or 1/d times one without fractions where d is the denominator of most of its entries."""
+    denominators = [entry.denominator for entry in matrix.entries if not entry.is_zero]
+    if len(denominators) < 2 or any(below.is_one for below in denominators):
+        return Literal(matrix)
+    common = _least_common_multiple(dict.fromkeys(denominators))
+    if common is None or 2 * denominators.count(common) < len(denominators):
+        return Literal(matrix)
+    front, cleared = formula_of(Scalar.of(1) / common, variable), matrix * common
+    inside = sum(size(formula_of(entry, variable)) for entry in cleared.entries)
+    kept = sum(size(formula_of(entry, variable)) for entry in matrix.entries)
+    return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
+
+
+def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
+    """The least common multiple, unless it grows too long to be written."""
+    multiple = Scalar.of(1)
+    for value in values:
+        multiple = multiple * (value / multiple).numerator
+        largest = max(abs(coefficient) for coefficient, _ in multiple.terms())
+        if multiple.size > FRONT_UP_TO or largest.bit_length() > FRONT_BITS:
+            return None
+    return multiple
+
+
+def _time_function(value: Scalar) -> Formula:
+    """Return the formula of a value that contains functions of time."""
     below = value.denominator
-    if any(moves(name) for name in below.names):
+    if any(is_time_function(name) for name in below.names):
         above = value.numerator
         negative = above.terms()[0][0] < 0 and len(above.terms()) == 1
-        top = scalars.spelled(-above if negative else above, "")
-        fraction = Quotient(top, scalars.spelled(below, ""))
+        top = formula_of(-above if negative else above, "")
+        fraction = Quotient(top, formula_of(below, ""))
         return Negative(fraction) if negative else fraction
     separate = _grouped(_parts(value.numerator), below)
     if below.is_one:
         return separate
     whole = _over(value.numerator, below)
-    return whole if scalars.size(whole) < scalars.size(separate) else separate
+    return whole if size(whole) < size(separate) else separate
 
 
 def _over(above: Scalar, below: Scalar) -> Formula:
     """1/d (numerator): the numerator's common monomial in the parameters goes in front as well."""
     parts = _parts(above)
-    content = scalars.common_divisor([c for group in parts.values() for c in group.values()])
+    content = common_divisor([c for group in parts.values() for c in group.values()])
     if content.is_constant:
         content = Scalar.of(1)
     if content.terms()[0][0] < 0:
         content = -content
-    front = scalars.spelled(content / below, "")
+    front = formula_of(content / below, "")
     inside = _grouped({e: {w: c / content for w, c in group.items()} for e, group in parts.items()}, Scalar.of(1))
     if isinstance(inside, Negative):
-        return Negative(scalars.product((front, inside.operand)))
-    return scalars.product((front, inside))
+        return Negative(product((front, inside.operand)))
+    return product((front, inside))
 
 
 def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
@@ -65,8 +105,8 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
         fading: list[tuple[str, int]] = []
         turning: list[tuple[str, int]] = []
         for name, power in powers:
-            function = known(name)
-            if not moves(name):
+            function = function_named(name)
+            if not is_time_function(name):
                 rest = rest * Scalar.symbol(name) ** power
             else:
                 (fading if function is not None and function.kind == "exp" else turning).append((name, power))
@@ -77,7 +117,7 @@ def _parts(above: Scalar) -> dict[Part, dict[Part, Scalar]]:
 
 
 def _order(part: tuple[str, int]) -> tuple[int, str]:
-    function = known(part[0])
+    function = function_named(part[0])
     return (_RANK[function.kind] if function is not None else 0, part[0])
 
 
@@ -94,25 +134,25 @@ def _grouped(parts: dict[Part, dict[Part, Scalar]], below: Scalar) -> Formula:
             ((turning, coefficient),) = parts[fading].items()
             terms.append(_with_sign(_still(coefficient / below), [*factors, *(_power(*item) for item in turning)]))
         elif _is_pulled(inside):
-            terms.append(Negative(scalars.product((*factors, Sum(tuple(_turned(term) for term in inside))))))
+            terms.append(Negative(product((*factors, Sum(tuple(_turned(term) for term in inside))))))
         else:
             terms.append(_pulled(parts[fading], below, factors, inside))
     ordered = terms if not terms or not isinstance(terms[0], Negative) else _positive_first(terms)
-    return scalars.sum_of(ordered)
+    return sum_of(ordered)
 
 
 def _pulled(group: dict[Part, Scalar], below: Scalar, factors: Sequence[Formula], inside: list[Formula]) -> Formula:
     """An exponential times a sum; what all coefficients share goes in front of it where that is shorter."""
-    plain = scalars.product((*factors, Sum(tuple(inside))))
-    content = scalars.common_divisor(list(group.values()))
+    plain = product((*factors, Sum(tuple(inside))))
+    content = common_divisor(list(group.values()))
     if content.is_constant:
         return plain
     rest = _sum_of({key: c / content for key, c in group.items()}, Scalar.of(1))
     front = _still(content / below)
     if len(rest) < 2 or isinstance(front, Negative):
         return plain
-    shared = scalars.product((front, *factors, Sum(tuple(rest))))
-    return shared if scalars.size(shared) < scalars.size(plain) else plain
+    shared = product((front, *factors, Sum(tuple(rest))))
+    return shared if size(shared) < size(plain) else plain
 
 
 def _is_pulled(terms: Sequence[Formula]) -> bool:
@@ -149,7 +189,7 @@ def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
 
 def _still(coefficient: Scalar) -> Formula:
     """What multiplies a function: a polynomial in the time, or constant."""
-    return scalars.spelled(coefficient, "t" if "t" in coefficient.names else "T")
+    return formula_of(coefficient, "t" if "t" in coefficient.names else "T")
 
 
 def _with_sign(body: Formula, functions: Sequence[Formula]) -> Formula:
@@ -157,26 +197,20 @@ def _with_sign(body: Formula, functions: Sequence[Formula]) -> Formula:
     if isinstance(body, Negative):
         return Negative(_with_sign(body.operand, functions))
     if isinstance(body, Literal) and isinstance(body.value, Scalar) and body.value.is_one:
-        return scalars.product(functions)
+        return product(functions)
     if isinstance(body, Quotient) and isinstance(body.numerator, Literal) and body.numerator.value == Scalar.of(1):
-        return (
-            Quotient(scalars.product(functions), body.denominator)
-            if len(functions) == 1
-            else _in_front(body, functions)
-        )
+        return Quotient(product(functions), body.denominator) if len(functions) == 1 else _in_front(body, functions)
     return _in_front(body, functions)
 
 
 def _in_front(body: Formula, functions: Sequence[Formula]) -> Formula:
-    return scalars.product((body, *functions))
+    return product((body, *functions))
 
 
 def _power(name: str, exponent: int) -> Formula:
     """A power of a function; e^{x} to a power is one exponential again."""
-    function = known(name)
+    function = function_named(name)
     if function is not None and function.kind == "exp" and exponent != 1:
-        from symobs.exact.kernel.generators import function as applied  # noqa: PLC0415 - the name is used for values here
-
-        return Literal(applied("exp", function.argument * exponent))
+        return Literal(function_of("exp", function.argument * exponent))
     base = Literal(Scalar.symbol(name))
     return base if exponent == 1 else Power(base, exponent)

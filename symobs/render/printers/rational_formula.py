@@ -1,4 +1,4 @@
-"""How a scalar is spelled: its order and shape, as formulas whose leaves are whole numbers and single symbols.
+"""Rational functions as formulas, whose leaves are whole numbers and single symbols.
 
 Powers of the variable descend and their coefficients are collected; sums begin with a positive term where they have
 one; a coefficient is factored where that is shorter.  The spelling always has the scalar's value.
@@ -10,8 +10,8 @@ from functools import lru_cache
 from math import gcd
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import known, square_root_of
+from symobs.exact import Scalar
+from symobs.exact.kernel.generators import function_named, square_root_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:
@@ -19,10 +19,6 @@ if TYPE_CHECKING:
 
 #: Beyond this many terms a polynomial is not factored for the sake of its looks.
 FACTORED_UP_TO = 120
-
-#: A common denominator of more terms, or more bits, is not put in front of a matrix.
-FRONT_UP_TO = 40
-FRONT_BITS = 200
 
 _BITS_AT_ONCE = 10_000
 _CLEARLY = 0.85
@@ -43,15 +39,10 @@ def is_leaf(value: Scalar) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def spelled(value: Scalar, variable: str) -> Formula:
-    """Return the formula that writes `value` out."""
+def rational_formula(value: Scalar, variable: str) -> Formula:
+    """Return the formula of a rational function; square roots and other numbers in it are symbols like parameters."""
     if is_leaf(value):
         return Literal(value)
-    if any("(" in name for name in value.names):
-        from symobs.render.printers.time_functions import moves, spelled_moving  # noqa: PLC0415 - it spells with what is here
-
-        if any(moves(name) for name in value.names):
-            return spelled_moving(value)
     if value.denominator.degree(variable) > 0:
         return _rational_function(value, variable)
     if value.degree(variable) > 0:
@@ -66,21 +57,21 @@ def _rational_function(value: Scalar, variable: str) -> Formula:
     """Numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
     above, below = value.numerator, value.denominator
     negative = _leads_with_minus(above, variable)
-    fraction = Quotient(spelled(-above if negative else above, variable), _denominator(below, variable))
+    fraction = Quotient(rational_formula(-above if negative else above, variable), _denominator(below, variable))
     return Negative(fraction) if negative else fraction
 
 
 def _leads_with_minus(value: Scalar, variable: str) -> bool:
-    return isinstance(_terms_of(spelled(value, variable))[0], Negative)
+    return isinstance(_terms_of(rational_formula(value, variable))[0], Negative)
 
 
 def _denominator(value: Scalar, variable: str) -> Formula:
     """A whole number dividing all coefficients goes in front: 2(s² + s + 2)."""
     content = gcd(*(coefficient for coefficient, _ in value.terms()))
-    collected = spelled(value, variable)
+    collected = rational_formula(value, variable)
     if content == 1 or not isinstance(collected, Sum):
         return collected
-    return Product((Literal(Scalar.of(content)), spelled(value / content, variable)))
+    return Product((Literal(Scalar.of(content)), rational_formula(value / content, variable)))
 
 
 def _polynomial(value: Scalar, variable: str) -> Formula:
@@ -208,7 +199,7 @@ def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
 
 def _place(power: tuple[str, int]) -> tuple[int, str]:
     """Symbols by the alphabet, roots of numbers before them, the time and other roots behind."""
-    name, root = power[0], known(power[0])
+    name, root = power[0], function_named(power[0])
     if root is not None:
         return (0 if root.argument.is_constant else 2), name
     return (3 if name in {"t", "T"} else 1), name.lower()
@@ -216,7 +207,9 @@ def _place(power: tuple[str, int]) -> tuple[int, str]:
 
 def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, int]]:
     """Write √3 √5 as √15."""
-    roots = {name: f.argument for name, e in powers if e == 1 and (f := known(name)) and f.argument.is_constant}
+    roots = {
+        name: f.argument for name, e in powers if e == 1 and (f := function_named(name)) and f.argument.is_constant
+    }
     if len(roots) < 2:
         return powers
     together = square_root_of(roots.values())
@@ -310,31 +303,5 @@ def size(formula: Formula) -> float:
 
 def _size_of_symbol(value: Scalar) -> float:
     """A symbol, or a function with its argument."""
-    function = known(next(iter(value.names)))
-    return 1.0 if function is None else 1.0 + size(spelled(function.argument, ""))
-
-
-@lru_cache(maxsize=1024)
-def spelled_matrix(matrix: Matrix, variable: str) -> Formula:
-    """Return the matrix, or 1/d times one without fractions where d is the denominator of most of its entries."""
-    denominators = [entry.denominator for entry in matrix.entries if not entry.is_zero]
-    if len(denominators) < 2 or any(below.is_one for below in denominators):
-        return Literal(matrix)
-    common = _least_common_multiple(dict.fromkeys(denominators))
-    if common is None or 2 * denominators.count(common) < len(denominators):
-        return Literal(matrix)
-    front, cleared = spelled(Scalar.of(1) / common, variable), matrix * common
-    inside = sum(size(spelled(entry, variable)) for entry in cleared.entries)
-    kept = sum(size(spelled(entry, variable)) for entry in matrix.entries)
-    return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
-
-
-def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
-    """The least common multiple, unless it grows too long to be written."""
-    multiple = Scalar.of(1)
-    for value in values:
-        multiple = multiple * (value / multiple).numerator
-        largest = max(abs(coefficient) for coefficient, _ in multiple.terms())
-        if multiple.size > FRONT_UP_TO or largest.bit_length() > FRONT_BITS:
-            return None
-    return multiple
+    function = function_named(next(iter(value.names)))
+    return 1.0 if function is None else 1.0 + size(rational_formula(function.argument, ""))
