@@ -1,4 +1,4 @@
-"""What type checkers and editors know of `symobs`; written by `python -m tests.programs.typed_face`, held to it by a test."""
+"""What type checkers and editors know of `symobs`; `python -m tests.programs.typed_face` writes it."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction

@@ -34,7 +34,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.wording_check import fits, rests
+from symobs.derivation.wording_check import fits, formula_in, reject_other_map, rests, with_limit
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
@@ -48,7 +48,6 @@ from symobs.formula import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Negative,
     Predicate,
     Relation,
     Roots,
@@ -95,10 +94,6 @@ class Derivation:
         return known
 
 
-#: Sentences that move a boundary, and those that say to which limit.
-MOVES = {"moved_right": "sought_margin", "enlarged": "sought_radius"}
-
-
 def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
     for step in steps:
         try:
@@ -120,9 +115,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                     environment = _assume(relation, environment)
                 else:
                     environment = _with_domain(relation, _introduce(relation, environment))
-        case Define(relation, sentence):
+        case Define(relation):
             environment = _introduce(relation, environment)
-            _told_of(relation, sentence, environment)
         case Equal(relations):
             for relation in relations:
                 _fact(relation, environment, discrete)
@@ -132,8 +126,6 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Conclude(facts=facts) | Note(facts=facts):
             for fact in facts:
                 _fact(fact, environment, discrete)
-            _asserted(step.sentence, facts, environment)
-            environment = _sought(step.sentence, environment)
         case Diagram(name, labels):
             from symobs.derivation.figures.block_diagram_check import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
 
@@ -158,46 +150,16 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             _walk(inside, replace(stratum, values=kept), discrete)
         case Section(title, inside):
             _sentence(title, environment, discrete)
+            _owed(title, step, environment)
             environment = _walk(inside, environment, discrete)
         case _:
             assert_never(step)
-    _sentence(getattr(step, "sentence", None), environment, discrete)
-    return environment
-
-
-def _sought(sentence: Sentence | None, environment: Environment) -> Environment:
-    """Remember the limit that is asked for: where the boundary is moved from, it is this one."""
-    if sentence is None or sentence.key not in MOVES.values():
+    sentence = getattr(step, "sentence", None)
+    if sentence is None:
         return environment
-    limit = evaluate(_slot(sentence, "limit"), environment, Exact(environment))
-    return environment.having(values={sentence.key: limit})
-
-
-def _told_of(relation: Relation, sentence: Sentence | None, environment: Environment) -> None:
-    """Reject a map that is not the one applied in the relation, or does not move to the limit asked for."""
-    if sentence is None or sentence.key not in {*MOVES, "mapped"}:
-        return
-    told = _slot(sentence, "image" if sentence.key == "mapped" else "by")
-    if not any(told in _within(member) for member in relation.members):
-        reject(f"{sentence.key} by {plain(told, environment.variable)}")
-    if sentence.key in MOVES:
-        limit = told if sentence.key == "enlarged" else Negative(told)
-        wanted = environment.values.get(MOVES[sentence.key])
-        if wanted is None or wanted != evaluate(limit, environment, Exact(environment)):
-            reject(f"{sentence.key} by {plain(told, environment.variable)}")
-
-
-def _slot(sentence: Sentence, name: str) -> Formula:
-    found = dict(sentence.slots)[name]
-    if not isinstance(found, Formula):
-        reject(f"{found} in a sentence, where a formula stands,")
-    return found
-
-
-def _within(formula: Formula) -> Iterator[Formula]:
-    yield formula
-    for part in children(formula):
-        yield from _within(part)
+    _sentence(sentence, environment, discrete)
+    _owed(sentence, step, environment)
+    return with_limit(sentence, environment)
 
 
 def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
@@ -210,7 +172,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
     if not is_tabulated(step, value, environment):
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
     if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
-        _fact(Relation((_slot(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
+        _fact(Relation((formula_in(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
     return environment.having(values=last_determinant(value, variable))
 
 
@@ -227,9 +189,7 @@ def _drawn(picture: Picture, subject: Formula, environment: Environment, discret
         reject(f"{fault}, in a picture,")
 
 
-def _sentence(sentence: Sentence | None, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    if sentence is None:
-        return
+def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
@@ -241,14 +201,16 @@ def _sentence(sentence: Sentence | None, environment: Environment, discrete: boo
                 reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")
 
 
-def _asserted(sentence: Sentence | None, facts: tuple[Fact, ...], environment: Environment) -> None:
-    """Reject a sentence that asserts a property which is not among the facts of its step."""
-    checked = {fact.name for fact in facts if isinstance(fact, Predicate)}
-    if sentence is not None and not checked.issuperset(ASSERTS.get(sentence.key, ())):
-        reject(f"{sentence.key}, which rests on {', '.join(ASSERTS[sentence.key])},")
-    roots = [slot for _, slot in sentence.slots if isinstance(slot, Roots)] if sentence is not None else ()
-    if sentence is not None and not rests(sentence.key, (*facts, *roots), environment):
+def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
+    """Reject a sentence that asserts, rests on or applies what its step does not contain, whatever kind of step it is."""
+    facts = step.facts if isinstance(step, Conclude | Note) else ()
+    asserted = ASSERTS.get(sentence.key, ())
+    if not {fact.name for fact in facts if isinstance(fact, Predicate)}.issuperset(asserted):
+        reject(f"{sentence.key}, which rests on {', '.join(asserted)},")
+    roots = (slot for _, slot in sentence.slots if isinstance(slot, Roots))
+    if not rests(sentence.key, (*facts, *roots), environment):
         reject(f"{sentence.key}, which rests on another fact,")
+    reject_other_map(sentence, step.relation if isinstance(step, Define) else None, environment)
 
 
 def _has_values(formula: Formula) -> bool:

@@ -1,7 +1,8 @@
 """Whether the relation in a sentence is the one that its words speak of, not just any that is true (trusted).
 
 A pair of poles overshoots by exp(−π σ/ω), and by no other number below a bound; a pair is observable because the rank is
-that of a matrix of full rank, and not because of 1 = 1.
+that of a matrix of full rank, and not because of 1 = 1.  Which sentence owes what is declared beside its words, in the
+`DEMANDS` of `phrases`; what an obligation means is defined here, without a name of any phrase.
 """
 
 from __future__ import annotations
@@ -12,14 +13,31 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate.claims import as_scalar
 from symobs.certificate.pointwise import Pointwise
+from symobs.derivation.facts.rejection import reject
 from symobs.exact import Scalar, rank
 from symobs.exact.kernel.generators import PI, function
-from symobs.formula import Apply, Exact, Letter, Predicate, Product, Relation, Roots, agree, evaluate
+from symobs.formula import (
+    Apply,
+    Exact,
+    Formula,
+    Letter,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    agree,
+    children,
+    evaluate,
+)
+from symobs.formula.plain_text import plain
+from symobs.phrases import DEMANDS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.formula import Environment, Fact, Formula
+    from symobs.derivation.steps import Sentence
+    from symobs.formula import Environment, Fact
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -34,61 +52,33 @@ def _one_higher(value: Fraction) -> Fraction:
     return value + unit
 
 
-#: What e is raised to in the relations of sentences, from the values of the letters.
-EXPONENTS: dict[str, Callable[[Mapping[str, Any]], Scalar]] = {
-    "decayed": lambda of: -of["sigma_d"] * of["T_s"],
-    "overshoot_held": lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"],
-    "overshoot_close": lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction()),
-}
+def _exponential(exponent: Callable[[Mapping[str, Any]], Scalar]) -> Callable[[Relation, Environment], bool]:
+    """Return the check that a relation begins with e to this power, given by the values of the letters."""
 
-
-#: Sentences that say of a rank that it is full, and those that say that it is not.
-_RANKS_OF = {f"{key}_{of}" for key in ("full_rank", "generic_rank") for of in ("observability", "controllability")}
-FULL_RANK = _RANKS_OF | {"stack_yes", "case_stack_yes"}
-_LOW_EVERYWHERE = {"no_observability", "no_controllability"}
-_LOW_IN_GENERAL = {"generic_low_observability", "generic_low_controllability"}
-LOW_RANK = _LOW_EVERYWHERE | _LOW_IN_GENERAL | {"stack_no", "case_stack"}
-
-
-_KINDS, _VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
-#: Sentences that a fact of their step holds up: a full rank, a lower one, hidden modes that are stable or are not.
-OF_FULL_RANK = {f"{key}_{kind}" for key in ("pbh_yes", "no_fixed_modes") for kind in _KINDS} | {"no_feedforward_zero"}
-OF_LOW_RANK = {f"pbh_no_{kind}" for kind in _KINDS}
-OF_STABLE_MODES, OF_UNSTABLE_MODES = ({f"{answer}_{verdict}" for verdict in _VERDICTS} for answer in ("yes", "no"))
-OF_STABLE_LOOP = {"compensator_unstable_alone", "compensator_unstable_low_alone", "minimal_unstable_alone"}
-OF_DEFECTIVE_POLE = {"defective", "defective_instead"}
-
-
-def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
-    """Tell whether the facts of a step, which are true, are such as its sentence rests on."""
-
-    def is_rank(*, is_full: bool) -> bool:
-        return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
-
-    properties = {fact.name for fact in facts if isinstance(fact, Predicate)}
-    if key in OF_FULL_RANK | OF_LOW_RANK:
-        return is_rank(is_full=key in OF_FULL_RANK)
-    if key in OF_STABLE_LOOP:
-        return any(_is_of_loop(fact, environment) for fact in facts if isinstance(fact, Predicate))
-    if key in OF_DEFECTIVE_POLE:
-        return _is_defective(facts, environment)
-    if key in OF_STABLE_MODES:
-        return bool(properties & {"stable", "marginal"}) or is_rank(is_full=True)
-    return key not in OF_UNSTABLE_MODES or "unstable" in properties
-
-
-def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> bool:
-    """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
-    if key not in EXPONENTS.keys() | FULL_RANK | LOW_RANK:
-        return True
-    if not isinstance(relation, Relation):
-        return False
-    if key in EXPONENTS:
+    def is_said(relation: Relation, environment: Environment) -> bool:
         told = evaluate(relation.members[0], environment, Exact(environment))
-        return bool(told == function("exp", EXPONENTS[key](environment.values)))
-    if key in _LOW_EVERYWHERE and not _is_everywhere(relation, environment):
-        return False
-    return _is_of_rank(relation, environment, is_full=key in FULL_RANK)
+        return bool(told == function("exp", exponent(environment.values)))
+
+    return is_said
+
+
+def _rank(*, is_full: bool, everywhere: bool = False) -> Callable[[Relation, Environment], bool]:
+    """Return the check that a relation is of a rank that is full, or lower, and that it is the same everywhere."""
+
+    def is_said(relation: Relation, environment: Environment) -> bool:
+        if everywhere and not _is_everywhere(relation, environment):
+            return False
+        return _is_of_rank(relation, environment, is_full=is_full)
+
+    return is_said
+
+
+def _properties(facts: Sequence[Fact]) -> set[str]:
+    return {fact.name for fact in facts if isinstance(fact, Predicate)}
+
+
+def _has_rank(facts: Sequence[Fact], environment: Environment, *, is_full: bool) -> bool:
+    return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
 
 
 def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
@@ -146,3 +136,107 @@ def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) 
     if relation.operators == ("<",):
         return ranks == [full]
     return ranks[0] < full and (relation.operators, ranks[1:]) in [(("=",), []), (("=", "<"), [full])]
+
+
+#: What every slot of a sentence must be: a relation of which this is true.
+_OF_SLOTS: dict[str, Callable[[Relation, Environment], bool]] = {
+    "says_rank_full": _rank(is_full=True),
+    "says_rank_low": _rank(is_full=False),
+    "says_rank_low_everywhere": _rank(is_full=False, everywhere=True),
+    "says_decay": _exponential(lambda of: -of["sigma_d"] * of["T_s"]),
+    "says_overshoot": _exponential(lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"]),
+    "says_overshoot_above": _exponential(
+        lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction())
+    ),
+}
+
+#: What must be among the facts of the step in which a sentence stands.
+_OF_FACTS: dict[str, Callable[[Sequence[Fact], Environment], bool]] = {
+    "needs_rank_full": lambda facts, environment: _has_rank(facts, environment, is_full=True),
+    "needs_rank_low": lambda facts, environment: _has_rank(facts, environment, is_full=False),
+    "needs_modes_stable": lambda facts, environment: (
+        bool(_properties(facts) & {"stable", "marginal"}) or _has_rank(facts, environment, is_full=True)
+    ),
+    "needs_modes_unstable": lambda facts, _: "unstable" in _properties(facts),
+    "needs_loop_stable": lambda facts, environment: any(
+        _is_of_loop(fact, environment) for fact in facts if isinstance(fact, Predicate)
+    ),
+    "needs_pole_defective": _is_defective,
+}
+
+#: Sentences that set the limit to which a boundary is moved, and the name under which it is remembered.
+_SETS = {"sets_margin": "sought margin", "sets_radius": "sought radius"}
+
+#: What the definition in which a sentence stands must apply: the slot, and the limit that it must move the boundary to.
+_APPLIES: dict[str, tuple[str, str]] = {
+    "moves_by_margin": ("by", "sought margin"),
+    "scales_by_radius": ("by", "sought radius"),
+    "applies_image": ("image", ""),
+}
+
+#: Every obligation that a phrase may declare in its `DEMANDS`.
+OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_FACTS, *_SETS, *_APPLIES})
+
+
+def require_known(demands: Mapping[str, str]) -> None:
+    """Refuse obligations that nothing here checks; raises ValueError naming the phrases."""
+    unknown = {key: name for key, name in demands.items() if name not in OBLIGATIONS}
+    if unknown:
+        message = f"no check is known for what these phrases demand: {unknown}; write it in {__name__}"
+        raise ValueError(message)
+
+
+require_known(DEMANDS)
+
+
+def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> bool:
+    """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
+    is_said = _OF_SLOTS.get(DEMANDS.get(key, ""))
+    return is_said is None or (isinstance(relation, Relation) and is_said(relation, environment))
+
+
+def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
+    """Tell whether the facts of a step, which are true, are such as its sentence rests on."""
+    is_held = _OF_FACTS.get(DEMANDS.get(key, ""))
+    return is_held is None or is_held(facts, environment)
+
+
+def with_limit(sentence: Sentence, environment: Environment) -> Environment:
+    """Remember the limit that a sentence sets: where the boundary is moved, it is moved to this one."""
+    name = _SETS.get(DEMANDS.get(sentence.key, ""))
+    if name is None:
+        return environment
+    return environment.having(values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))})
+
+
+def reject_other_map(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:
+    """Reject a map that the definition does not apply, or that does not move the boundary to the limit set."""
+    applied = _APPLIES.get(DEMANDS.get(sentence.key, ""))
+    if applied is None:
+        return
+    slot, limit = applied
+    told = formula_in(sentence, slot)
+    is_there = relation is not None and any(told in _within(member) for member in relation.members)
+    if not is_there or (limit and not _moves_to(limit, told, environment)):
+        reject(f"{sentence.key} by {plain(told, environment.variable)}")
+
+
+def _moves_to(limit: str, told: Formula, environment: Environment) -> bool:
+    """Tell whether this is the limit remembered: a radius itself, a margin as the shift that takes it away."""
+    wanted = environment.values.get(limit)
+    moved = Negative(told) if limit == "sought margin" else told
+    return wanted is not None and wanted == evaluate(moved, environment, Exact(environment))
+
+
+def formula_in(sentence: Sentence, name: str) -> Formula:
+    """Return the formula in a slot; rejects what is none."""
+    found = dict(sentence.slots)[name]
+    if not isinstance(found, Formula):
+        reject(f"{found} in a sentence, where a formula stands,")
+    return found
+
+
+def _within(formula: Formula) -> Iterator[Formula]:
+    yield formula
+    for part in children(formula):
+        yield from _within(part)

@@ -1,5 +1,27 @@
 """Every sentence a derivation can say, in one place: the language of the prose lives here and nowhere else."""
 
-from symobs.phrases.catalogue import ASSERTS, BESIDE, EXPLAINS, NAMING, OPENS, PHRASES, RESTS_ON, SPELLS_OUT, slots_of
+from symobs.phrases.catalogue import (
+    ASSERTS,
+    BESIDE,
+    DEMANDS,
+    EXPLAINS,
+    NAMING,
+    OPENS,
+    PHRASES,
+    RESTS_ON,
+    SPELLS_OUT,
+    slots_of,
+)
 
-__all__ = ["ASSERTS", "BESIDE", "EXPLAINS", "NAMING", "OPENS", "PHRASES", "RESTS_ON", "SPELLS_OUT", "slots_of"]
+__all__ = [
+    "ASSERTS",
+    "BESIDE",
+    "DEMANDS",
+    "EXPLAINS",
+    "NAMING",
+    "OPENS",
+    "PHRASES",
+    "RESTS_ON",
+    "SPELLS_OUT",
+    "slots_of",
+]

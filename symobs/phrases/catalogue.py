@@ -55,12 +55,15 @@ _MODULES = (
 
 
 def _collected(name: str) -> dict[str, Any]:
-    """Return what the modules of this folder call `name`, joined; the same key twice is an error."""
+    """Return what the modules call `name`, joined; raises ValueError for the same key twice and for no phrase's key."""
     joined: dict[str, Any] = {}
     for module in _MODULES:
         for key, value in dict(getattr(module, name, {})).items():
             if key in joined:
                 message = f"the phrase {key!r} is written twice"
+                raise ValueError(message)
+            if name != "PHRASES" and key not in PHRASES:
+                message = f"{name} speaks of {key!r}, which is no phrase"
                 raise ValueError(message)
             joined[key] = value
     return joined
@@ -70,6 +73,10 @@ PHRASES: dict[str, str] = _collected("PHRASES")
 
 #: The properties that a phrase asserts: a step that says it must have them among its facts, and so have been checked.
 ASSERTS: dict[str, tuple[str, ...]] = _collected("ASSERTS")
+
+#: The obligation that the words of a phrase carry, by its name in `derivation.wording_check`: a step that says it is
+#: rejected where its relation, its facts or its definition do not meet it.
+DEMANDS: dict[str, str] = _collected("DEMANDS")
 
 #: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
 RESTS_ON: dict[str, str] = _collected("RESTS_ON")

@@ -54,7 +54,7 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
     open_factors = vanishing_factors([determinant], signs)
     if not open_factors:
         page.equal(relation(det, shown, "!=", 0))
-        page.conclude(f"yes_{kind}")
+        page.conclude(f"yes_{kind}", relation(page[letter].apply("rank"), order))
         return
     page.equal(relation(det, shown))
     page.assume(f"provided_{kind}", *open_factors)

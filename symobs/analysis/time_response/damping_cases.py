@@ -20,7 +20,7 @@ from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.kernel.generators import all_roots, function_named, identities, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
-from symobs.formula import Environment, Literal, Together
+from symobs.formula import Conjunction, Environment, Literal
 from symobs.formula.term import Term, letter
 from symobs.result import Case, Result
 
@@ -156,7 +156,7 @@ class Branched(Result):
             page.start, page.environment = (
                 replace(each, above=(*each.above, *beyond)) for each in (page.start, page.environment)
             )
-            page.conclude("declared", signs=Together(tuple(relation(value, ">", 0) for value in beyond)))
+            page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
 
     def write_branches(self, page: Page, write_branch: Callable[[Page, Any], None]) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
@@ -173,7 +173,7 @@ class Branched(Result):
         else:
             apart = relation(product_of(zeros), "!=", 0)
             # on a stratum what is told rests on what does not vanish: a basis is one outside of its own cases only
-            page.steps.append(CaseStep(Together((apart,)) if self.plant.equations else apart, (), steps))
+            page.steps.append(CaseStep(Conjunction((apart,)) if self.plant.equations else apart, (), steps))
         page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 
 

@@ -236,7 +236,7 @@ def test_a_boundary_is_moved_to_the_limit_that_is_sought() -> None:
     shift = Sum((Letter("s"), Negative(literal(2))))
     move = Define(said(Letter("q_s"), Apply("chi_at", shift), s + 1), Sentence("moved_right", (("by", literal(2)),)))
     known = checked(sought, move, start=start)
-    assert known.values["sought_margin"] == Scalar.of(-2)
+    assert known.values["sought margin"] == Scalar.of(-2)
     refused(move, start=start, match="moved_right by 2")
     elsewhere = replace(sought, sentence=Sentence("sought_margin", (NAMES, ("limit", Literal(Scalar.of(-1))))))
     refused(elsewhere, move, start=start, match="moved_right by 2")
@@ -258,7 +258,7 @@ def test_a_disc_is_enlarged_to_the_radius_that_is_sought() -> None:
     value = 2 * Scalar.symbol("z") + 3
     move = Define(said(Letter("q_s"), Apply("chi_at", scale), value), Sentence("enlarged", (("by", literal(2)),)))
     known = checked(sought, move, start=start, discrete=True)
-    assert known.values["sought_radius"] == Scalar.of(2)
+    assert known.values["sought radius"] == Scalar.of(2)
     refused(move, start=start, match="enlarged by 2", discrete=True)
     for limit in (-2, 3):
         other = Note(Sentence("sought_radius", (NAMES, ("limit", Literal(Scalar.of(limit))))))
@@ -269,14 +269,38 @@ def test_a_disc_is_enlarged_to_the_radius_that_is_sought() -> None:
     refused(sought, facts, start=start, match="where a formula stands", discrete=True)
 
 
-def test_a_map_is_the_one_applied() -> None:
+@pytest.mark.parametrize("key", ["mapped", "mapped_from_v"])
+def test_a_map_is_the_one_applied(key: str) -> None:
     start = replace(START, values={"chi": s + 3})
     image = Sum((Letter("s"), literal(1)))
-    move = Define(said(Letter("q_w"), Apply("chi_at", image), s + 4), Sentence("mapped", (("image", image),)))
+    move = Define(said(Letter("q_w"), Apply("chi_at", image), s + 4), Sentence(key, (("image", image),)))
     checked(move, start=start)
-    other = Sentence("mapped", (("image", Sum((Letter("s"), literal(2)))),))
-    refused(replace(move, sentence=other), start=start, match="mapped by")
+    other = Sentence(key, (("image", Sum((Letter("s"), literal(2)))),))
+    refused(replace(move, sentence=other), start=start, match=f"{key} by")
+    refused(Note(Sentence(key, (("image", image),))), start=start, match=f"{key} by")
     checked(Define(said(Letter("q_w"), s + 4), slot("words")), start=start)
+
+
+OWING = {
+    "asserts": (Sentence("only_stable"), "which rests on stable"),
+    "needs": (Sentence("yes_detectability"), "which rests on another fact"),
+}
+
+
+@pytest.mark.parametrize(("sentence", "why"), OWING.values(), ids=OWING)
+def test_a_sentence_owes_the_same_in_a_step_of_any_kind(sentence: Sentence, why: str) -> None:
+    start = replace(START, values={"chi": s + 3})
+    relation, fact = said(Letter("chi"), s + 3), Predicate("stable", Letter("chi"))
+    checked(Conclude(sentence, (fact,)), start=start)
+    for step in (
+        Conclude(sentence),
+        Note(sentence),
+        Equal((relation,), sentence),
+        Given((said(Letter("q_s"), s + 1),), sentence),
+        Define(said(Letter("q_s"), s + 1), sentence),
+        Section(sentence, (Conclude(None, (fact,)),)),
+    ):
+        refused(step, start=start, match=why)
 
 
 # -- tables, regions, pictures ------------------------------------------------------------------------------------------

@@ -61,6 +61,19 @@ PHRASES: dict[str, str] = {
     "boundary_undecided": "What is true on the boundary of this region is not decided here.",
 }
 
+DEMANDS: dict[str, str] = {
+    "pbh_yes_observability": "needs_rank_full",
+    "pbh_yes_controllability": "needs_rank_full",
+    "no_fixed_modes_observability": "needs_rank_full",
+    "no_fixed_modes_controllability": "needs_rank_full",
+    "pbh_no_observability": "needs_rank_low",
+    "pbh_no_controllability": "needs_rank_low",
+    "yes_detectability": "needs_modes_stable",
+    "yes_stabilizability": "needs_modes_stable",
+    "no_detectability": "needs_modes_unstable",
+    "no_stabilizability": "needs_modes_unstable",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {
     "only_stable": ("stable",),
     "marginal_continuous": ("marginal",),

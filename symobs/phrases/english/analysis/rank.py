@@ -38,6 +38,19 @@ PHRASES: dict[str, str] = {
     "modes_controllability": "The uncontrollable <mode is|modes are> {modes}.",
 }
 
+DEMANDS: dict[str, str] = {
+    "yes_observability": "needs_rank_full",
+    "yes_controllability": "needs_rank_full",
+    "full_rank_observability": "says_rank_full",
+    "full_rank_controllability": "says_rank_full",
+    "generic_rank_observability": "says_rank_full",
+    "generic_rank_controllability": "says_rank_full",
+    "no_observability": "says_rank_low_everywhere",
+    "no_controllability": "says_rank_low_everywhere",
+    "generic_low_observability": "says_rank_low",
+    "generic_low_controllability": "says_rank_low",
+}
+
 NAMING = ("undecided_case", "undecided_together", "undecided_many")
 
 RESTS_ON: dict[str, str] = {

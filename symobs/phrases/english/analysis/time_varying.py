@@ -73,6 +73,13 @@ PHRASES: dict[str, str] = {
     "x0_not_unique": "The initial state cannot be found from it, since the hidden states add nothing to an output.",
 }
 
+DEMANDS: dict[str, str] = {
+    "stack_yes": "says_rank_full",
+    "case_stack_yes": "says_rank_full",
+    "stack_no": "says_rank_low",
+    "case_stack": "says_rank_low",
+}
+
 RESTS_ON: dict[str, str] = {
     "stack_yes": "time_varying_rank",
     "stack_yes_at": "time_varying_rank",

@@ -60,6 +60,13 @@ PHRASES: dict[str, str] = {
     "defective_instead": _DEFECTIVE + " With distinct poles they are, for example with {instead}.",
 }
 
+DEMANDS: dict[str, str] = {
+    "compensator_unstable_alone": "needs_loop_stable",
+    "compensator_unstable_low_alone": "needs_loop_stable",
+    "defective": "needs_pole_defective",
+    "defective_instead": "needs_pole_defective",
+}
+
 #: A new thought begins here.
 OPENS = ("observer_equation", "existence_observer")
 

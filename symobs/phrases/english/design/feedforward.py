@@ -20,6 +20,10 @@ PHRASES: dict[str, str] = {
     "no_feedforward_none": "The transfer function of the plant is zero, so no input moves the output, at rest or not. There is no such $F_v$.",
 }
 
+DEMANDS: dict[str, str] = {
+    "no_feedforward_zero": "needs_rank_full",
+}
+
 OPENS = ("feedforward_law",)
 
 RESTS_ON: dict[str, str] = {"feedforward_gain": "feedforward", "feedforward_smallest": "feedforward"}

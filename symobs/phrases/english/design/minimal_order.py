@@ -27,6 +27,10 @@ PHRASES: dict[str, str] = {
     "reduced_coordinates": "In state and observer state the same loop reads",
 }
 
+DEMANDS: dict[str, str] = {
+    "minimal_unstable_alone": "needs_loop_stable",
+}
+
 #: A new thought begins here.
 OPENS = ("minimal_control", "partitioned_gain")
 

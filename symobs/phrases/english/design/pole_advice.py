@@ -55,6 +55,12 @@ PHRASES: dict[str, str] = {
     "modes_missed": "The roots of {polynomial} are modes that no observer gain moves, and they are not all among these poles: no gain places them.",
 }
 
+DEMANDS: dict[str, str] = {
+    "decayed": "says_decay",
+    "overshoot_held": "says_overshoot",
+    "overshoot_close": "says_overshoot_above",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {"always_unstable": ("no_stable_compensator",)}
 
 NAMING = ("radius_is_positive",)

@@ -57,6 +57,15 @@ PHRASES: dict[str, str] = {
     "parts_are": "Solved for the parameters:",
 }
 
+DEMANDS: dict[str, str] = {
+    "sought_margin": "sets_margin",
+    "sought_radius": "sets_radius",
+    "moved_right": "moves_by_margin",
+    "enlarged": "scales_by_radius",
+    "mapped": "applies_image",
+    "mapped_from_v": "applies_image",
+}
+
 RESTS_ON: dict[str, str] = {
     "cells_decide": "collins",
     "points_decide": "sturm",
