@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy
 
-from tests.support.tools.command_line import ROOT, fresh
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import fresh
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.tools.command_line import ROOT, Run, fresh
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import Run, fresh
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,6 +15,7 @@ import symobs
 from symobs import errors
 from symobs.result import tasks
 from tests.programs import typed_face
+from tests.support.paths import ROOT
 
 USES = """
 import symobs
@@ -85,9 +86,7 @@ def wrong_lines(folder: Path, *command: str) -> set[int]:
     """The lines, counted from those of the misuses, in which a type checker finds an error."""
     file = folder / "uses.py"
     file.write_text(USES.strip() + "\n" + MISUSES, encoding="utf-8")
-    run = subprocess.run(
-        [*command, str(file)], cwd=typed_face.ROOT, capture_output=True, text=True, timeout=600, check=False
-    )
+    run = subprocess.run([*command, str(file)], cwd=ROOT, capture_output=True, text=True, timeout=600, check=False)
     first = len(USES.strip().splitlines())
     found = re.findall(r"uses\.py:(\d+):(?:\d+:?)? (?:- )?error", run.stdout)
     assert found, run.stdout + run.stderr

@@ -15,7 +15,8 @@ from symobs.cli.sheet_command import _Progress
 from symobs.render.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
 from symobs.render.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
 from symobs.result import formats
-from tests.support.tools.command_line import EXAMPLES, ROOT, SERVO, fresh, inside
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import EXAMPLES, SERVO, fresh, inside
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,10 +13,10 @@ import time
 from typing import TYPE_CHECKING
 from unittest import mock
 
-import symobs.method.result
 from flint import Ordering, fmpq_mat, fmpq_poly, fmpz_mat, fmpz_mpoly_ctx
 
 import symobs
+import symobs.result.result
 from tests.programs.benchmarks import models
 from tests.programs.benchmarks.raw_flint import _dot, _minors
 
@@ -189,7 +189,7 @@ def _family() -> float:
 
 def _unchecked(work: Callable[[], float]) -> float:
     """Return the time without the checks of claims."""
-    with mock.patch.object(symobs.method.result, "check_all", return_value=()):
+    with mock.patch.object(symobs.result.result, "check_all", return_value=()):
         return work()
 
 

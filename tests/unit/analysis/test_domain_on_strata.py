@@ -109,7 +109,7 @@ def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
         ("pole_advice", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {"radius": "2"}),
     ],
 )
-def test_an_answer_with_cases_has_a_page(task: str, plant: dict[str, str], asked: dict[str, str]) -> None:
+def test_an_answer_with_cases_has_a_page(task: str, plant: dict[str, Any], asked: dict[str, Any]) -> None:
     result = getattr(symobs, task)(StateSpace(**plant, symbols={"a": "real", "b": "real"}), **asked)
     assert result.to_json()
     assert result.to_latex()

@@ -17,8 +17,9 @@ from symobs.errors import BudgetExceeded, CertificateRejected, ProblemErrors, Sy
 from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 from symobs.expression.syntax_tree import every
 from symobs.problem import read
+from tests.support.paths import ROOT
 from tests.support.problems.printed import finding, findings, problem
-from tests.support.tools.command_line import ROOT, SERVO, inside
+from tests.support.tools.command_line import SERVO, inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -183,11 +184,9 @@ def test_exactly_the_entry_that_is_spoiled_is_reported(data: st.DataObject) -> N
 )
 @settings(deadline=None, max_examples=60)
 def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int, power: int) -> None:
-    shifted = decimal.Context(prec=60).divide(
-        decimal.PrintedDecimal(value.numerator), decimal.PrintedDecimal(value.denominator)
-    )
+    shifted = decimal.Context(prec=60).divide(decimal.Decimal(value.numerator), decimal.Decimal(value.denominator))
     shifted = shifted.scaleb(-power)
-    unit = decimal.PrintedDecimal(1).scaleb(-places)
+    unit = decimal.Decimal(1).scaleb(-places)
     context = decimal.Context(prec=60)
     rounded = shifted.quantize(unit, decimal.ROUND_HALF_EVEN, context)
     truncated = shifted.quantize(unit, decimal.ROUND_DOWN, context)
@@ -196,7 +195,7 @@ def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int,
     if truncated != rounded and abs(shifted - truncated) * 2 != unit:  # of a half either neighbour will do
         (found,) = findings(f"[7 ({value})] = [7 {truncated:f}{dot}e{power}]")
         assert found.reason.endswith("truncated, not rounded")
-        assert decimal.PrintedDecimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
+        assert decimal.Decimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
 
 
 def test_both_neighbours_of_a_half_are_rounded() -> None:

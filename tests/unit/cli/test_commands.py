@@ -17,7 +17,8 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 from symobs import cli
 from symobs.errors import CertificateRejected
 from symobs.result import formats, methods, tasks
-from tests.support.tools.command_line import EXAMPLES, ROOT, SAFETY, SERVO, environment, fresh, inside
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, fresh, inside
 
 PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
 OBSERVER = f'task = "observer"\n{PLANT}[specification]\npoles = [-10, -10]\n'

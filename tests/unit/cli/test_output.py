@@ -12,7 +12,8 @@ import pytest
 
 from symobs.cli.output import check_target, write_all
 from symobs.errors import InputError
-from tests.support.tools.command_line import ROOT, SAFETY, SERVO, Run, environment, inside
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import SAFETY, SERVO, Run, environment, inside
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -20,7 +20,8 @@ from symobs.cli.time_and_memory import Budget, within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
 from symobs.render.formats.pdf import compiled
 from symobs.result import registry
-from tests.support.tools.command_line import ROOT, SAFETY, SERVO, environment, inside
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 from tests.unit.render.test_pdf import ends, program
 
 if TYPE_CHECKING:

@@ -304,7 +304,7 @@ def test_parameters_that_are_printed_like_a_letter_are_set_apart() -> None:
     assert isinstance(first, Section)
     assert first.steps == (plant, Define(said(L, -GAIN)), *told)
     assert last == Equal((said(L, -GAIN),))
-    assert set_apart(derivation, []) is derivation
+    assert set_apart(derivation, [], {}) is derivation
 
 
 def test_the_variable_of_polynomials_is_no_parameter() -> None:

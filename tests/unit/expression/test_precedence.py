@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from symobs.errors import InputError
 from symobs.expression import parse_matrix, parse_scalar, tokenizer
 from symobs.expression.names import Scope
-from symobs.expression.source import Source
+from symobs.expression.source import Source, Token
 from symobs.expression.syntax_parser import parse
 from symobs.expression.syntax_tree import SyntaxNode, every, operands_first
 
@@ -77,7 +77,7 @@ def test_numbers_are_worth_what_python_finds(text: str) -> None:
     assert parse_scalar(text).fraction() == expected
 
 
-def tokens_of(text: str) -> list[tokenizer.Token] | None:
+def tokens_of(text: str) -> list[Token] | None:
     """Return the tokens of a text, None where it is refused before its order is asked for."""
     try:
         return tokenizer.Tokeniser(Source(text, ""), Scope.of(None, None, "")).run()

@@ -22,7 +22,7 @@ from symobs.expression import parse_matrix, parse_poles, parse_polynomial, parse
 from tests.programs.fuzz import printing
 from tests.programs.fuzz.targets import TARGETS
 from tests.programs.fuzz.worker import Tally
-from tests.support.tools.command_line import ROOT
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable

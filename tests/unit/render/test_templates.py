@@ -9,8 +9,9 @@ import pytest
 from symobs.errors import InputError
 from symobs.render.formats.latex import typeset
 from symobs.render.formats.templates import template_folder
+from tests.support.paths import ROOT
 from tests.support.problems.render_examples import document
-from tests.support.tools.command_line import ROOT, inside
+from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -114,7 +114,7 @@ def test_numbers_are_matrices_of_one_entry() -> None:
         SymPyStateSpace(SERVO.A, SERVO.B, SERVO.C),
     ],
 )
-def test_systems_of_sympy_and_coefficients_are_plants(system: object) -> None:
+def test_systems_of_sympy_and_coefficients_are_plants(system: Any) -> None:
     """The characteristic polynomial of the error is (s + 1)(s + 2): trace and determinant of A - L C."""
     result = symobs.observer(system, poles=[-1, -2])
     error = SERVO.A - result.L * SERVO.C
@@ -143,7 +143,7 @@ def test_systems_of_python_control_are_plants() -> None:
         (([1], [0]), "the denominator is 0"),
     ],
 )
-def test_what_is_no_plant_is_refused(system: object, reason: str) -> None:
+def test_what_is_no_plant_is_refused(system: Any, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         symobs.observability(system)
 

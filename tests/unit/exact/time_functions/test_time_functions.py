@@ -524,7 +524,7 @@ def test_lengths_against_sympy() -> None:
 
 
 @pytest.mark.parametrize("asked", [{}, {"symbols": {"T": "real"}}, {"symbols": {"T": "nonnegative"}}])
-def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, dict[str, str]]) -> None:
+def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, Any]) -> None:
     """At T = 0 the Gramian is 0 and sees nothing, though the finite sum has rank 2."""
     plant = symobs.StateSpace("[0 1; 0 0]", C="[1 0]", **asked)
     results = (
