@@ -1,0 +1,32 @@
+"""The documents name what is there: paths, packages on their floors, and programs to run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PATH = re.compile(r"`((?:symobs|tests|docs|worked_examples|latex_templates|\.ci|\.github)/[\w./]+)`")
+PROGRAM = re.compile(r"python -m (tests[\w.]+)")
+FLOOR = re.compile(r"^\| [\d–]+ \| ([^|]*) \|", re.MULTILINE)
+
+
+def text_of(page: str) -> str:
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md", "docs/measurements.md"])
+def test_every_path_exists(page: str) -> None:
+    text = text_of(page)
+    named = [path for path in PATH.findall(text) if "NAME" not in path]
+    named += [program.replace(".", "/") for program in PROGRAM.findall(text)]
+    assert named
+    assert [path for path in named if not any((ROOT / f"{path}{end}").exists() for end in ("", ".py"))] == []
+
+
+def test_every_package_has_its_floor() -> None:
+    floors = [name for cell in FLOOR.findall(text_of("docs/architecture.md")) for name in re.findall(r"`(\w+)`", cell)]
+    packages = {path.stem for path in (ROOT / "symobs").glob("[!_]*") if path.suffix in {"", ".py"}}
+    assert sorted(floors) == sorted(packages)
