@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.support.paths import ROOT
+
 PATH = re.compile(r"`((?:symobs|tests|docs|worked_examples|latex_templates|\.ci|\.github)/[\w./]+)`")
 PROGRAM = re.compile(r"python -m (tests[\w.]+)")
 FLOOR = re.compile(r"^\| [\d–]+ \| ([^|]*) \|", re.MULTILINE)
@@ -28,5 +28,6 @@ def test_every_path_exists(page: str) -> None:
 
 def test_every_package_has_its_floor() -> None:
     floors = [name for cell in FLOOR.findall(text_of("docs/architecture.md")) for name in re.findall(r"`(\w+)`", cell)]
-    packages = {path.stem for path in (ROOT / "symobs").glob("[!_]*") if path.suffix in {"", ".py"}}
+    packages = {path.stem for path in (ROOT / "symobs").glob("[!_]*.py")}
+    packages |= {path.parent.name for path in (ROOT / "symobs").glob("[!_]*/__init__.py")}
     assert sorted(floors) == sorted(packages)
