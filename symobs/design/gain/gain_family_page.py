@@ -33,7 +33,7 @@ def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desi
     _equation(page, side, "", equation, equation.G)
     page.remark(f"dimension_{side.kind}", count=str(len(chart.names)))
     if chart.general is not None and chart.general.size <= _GAIN:
-        general = design.oriented(chart.general)
+        general = design.transpose_for_task(chart.general)
         page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
     own = chart.own_G
     if own is None:
@@ -72,7 +72,7 @@ def of_the_others(design: GainDesign) -> str:
 
 def _only_gain(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """One output (input): G = e₁ᵀ, and X is unique."""
-    pair = design.pair(page.plant)
+    pair = design.dual_pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
     _equation(page, side, "", equation, equation.G)
@@ -83,7 +83,7 @@ def _shift(page: Page, equation: Sylvester, side: PlacementProblem, design: Gain
     """Part the spectra where they meet."""
     if equation.shift is None:
         return
-    gain = page.define(f"{side.gain}_0", design.oriented(equation.shift), say="spectra_meet")
+    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), say="spectra_meet")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     page.define(f"A_{side.index}0", page["A"] - moved)
 

@@ -202,7 +202,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
     assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
     page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
-    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
     page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), divides, roots=roots)
@@ -220,7 +220,7 @@ def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     if design.zero and design.divides:
         write_no_gain(page, design, side)
         return
-    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
     page.conclude(
         f"impossible_{side.kind}",
         *hidden(page, side is OBSERVER, side.hidden),
@@ -285,7 +285,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
-    if result._pair.is_observable and result.answer[side.gain] is not None:  # noqa: SLF001 - the witness of the stratum
+    if result.pair.is_observable and result.answer[side.gain] is not None:
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
     outer, environment = page.steps, page.environment
@@ -302,7 +302,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
 def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
-    fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
+    fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
     kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"

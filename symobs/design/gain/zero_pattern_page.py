@@ -47,7 +47,7 @@ def _in_root(page: Page, design: GainDesign, side: PlacementProblem, listed: str
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]
     inner, page.steps, before = page.steps, [], page.environment
     page.environment = before.under((found.polynomial,))
-    page.define(side.gain, design.oriented(found.gain), answer=True)
+    page.define(side.gain, design.transpose_for_task(found.gain), answer=True)
     page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     changes = relation(page.value(at_ends[0]) @ page.value(at_ends[1]), "<", 0)

@@ -307,7 +307,7 @@ def _matrices(page: Page, design: ReducedOrderObserver, say: str) -> None:
 
 def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
     """Introduce the part of x₂ that A₁₂ does not show; return its polynomial and what makes it that part."""
-    pair = design.inner._pair  # noqa: SLF001 - the witness
+    pair = design.inner.pair
     N, X = page.set("N_2", pair.kernel), page.set("X_2", pair.restricted)
     count = pair.kernel.shape[1]
     hidden = relation(page["A_12"] @ N, Matrix.zeros(page.plant.outputs, count))

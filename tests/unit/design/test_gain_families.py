@@ -18,7 +18,7 @@ import sympy
 from sympy import Matrix, Rational
 
 import symobs
-from symobs.design import slices
+from symobs.design.pole_placement import decoupled
 from symobs.design.pole_placement.brunovsky_chains import shares
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Scalar
@@ -404,13 +404,13 @@ def test_factors_are_shared_in_every_way_once(roots: str, lengths: tuple[int, ..
 def test_the_same_chains_are_not_shared_out_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two double integrators: two orders of the outputs, the same chains, and three ways to share -1, -1, -2, -2."""
     tried: list[object] = []
-    own_rows = slices._own_rows
+    own_rows = decoupled._own_rows
 
     def noted(pair: Any, gain: Any) -> Any:
         tried.append(gain)
         return own_rows(pair, gain)
 
-    monkeypatch.setattr(slices, "_own_rows", noted)
+    monkeypatch.setattr(decoupled, "_own_rows", noted)
     plant = symobs.StateSpace("[0 1 0 0; 0 0 0 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0; 0 0 1 0]")
     symobs.observer(plant, poles=[-1, -1, -2, -2], member="decoupled")
     *looked_at, claimed = tried
