@@ -18,6 +18,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
+from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
 from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
 from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
 from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
@@ -41,13 +42,13 @@ _PAIR = 2
 
 def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
     """Write how the gain is found, in the style of a method, and the check the reader is shown."""
-    if design.desired is None:
+    if isinstance(design.kind, GivenGain):
         _given_gain(page, design, side)
         return
     _test(page, design, side, style)
-    if design.answer[side.gain] is None:
+    if not design.kind.exists:
         _impossible(page, design, side)
-        if not design.zero or not design.divides:
+        if isinstance(design.kind, UnassignableGain):
             for case in design.case_tree:
                 write_case(page, case, side)
         return
@@ -217,7 +218,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
 
 def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
-    if design.zero and design.divides:
+    if not isinstance(design.kind, UnassignableGain):
         write_no_gain(page, design, side)
         return
     fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
