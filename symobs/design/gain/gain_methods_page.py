@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form
 from symobs.derivation.builder import Page, relation
+from symobs.design.page_parts import readability
 from symobs.design.pole_placement.coefficient_matching import matching
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from symobs.formula import Relation
     from symobs.specification import DesiredPolynomial
 
-#: Longer row-reduced forms are not written out, nor more vectors than there are letters for.
-_READABLE, _VECTORS = 150, 9
 #: A gain that rounding changes by more than this share of an entry is worth a warning.
 _HARM = Fraction(1, 100)
 
@@ -105,7 +104,11 @@ def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: 
 def readable(design: GainDesign) -> bool:
     """Whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
     found = _reductions(design)
-    if found is None or len(found) > _VECTORS or any(part.reduced.size > _READABLE for part in found):
+    if (
+        found is None
+        or len(found) > readability.NULL_VECTORS
+        or any(part.reduced.size > readability.REDUCED_FORM for part in found)
+    ):
         return False
     return bool(design.transpose_for_task(gain_of(found)) == design.answer[design.letter])
 

@@ -22,6 +22,7 @@ from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
 from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
 from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
 from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
@@ -34,8 +35,6 @@ from symobs.specification import DesiredPolynomial
 if TYPE_CHECKING:
     from symobs.result import Case
 
-#: A coefficient of φ with more terms than this gets a letter of its own on the page.
-_PLAIN_TERMS = 4
 #: The degree of the factor of a conjugate pair.
 _PAIR = 2
 
@@ -127,7 +126,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
     plain = page.value(desired.polynomial)
     members = [plain] if desired.is_expanded else [grouped, plain]
-    if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
+    if all(c.size - 1 <= readability.COEFFICIENT for c in coefficients):
         if not desired.poles and desired.is_expanded and page.knows(side.phi):
             return desired
         page.define(side.phi, *members, say=f"asks_{side.kind}")

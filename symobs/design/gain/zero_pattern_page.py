@@ -10,6 +10,7 @@ from symobs.derivation import Note
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_kind import AlgebraicGain
+from symobs.design.page_parts import readability
 from symobs.exact import EIGENVALUE
 
 if TYPE_CHECKING:
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from symobs.design.gain.gain_kind import Places
     from symobs.design.gain.placement_problem import PlacementProblem
     from symobs.result import Case
-
-#: A condition with more terms is not written out.
-_WRITTEN = 60
 
 
 def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
@@ -33,7 +31,7 @@ def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> Non
         page.conclude("impossible_zero", places=listed)
     else:
         short = min(design.needed, key=lambda value: value.size)
-        if short.size <= _WRITTEN:
+        if short.size <= readability.ZERO_CONDITION:
             page.remark("impossible_zero_unless", places=listed, when=page.value(short))
         else:
             page.remark("impossible_zero_in_general", places=listed)
