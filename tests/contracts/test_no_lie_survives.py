@@ -197,9 +197,9 @@ def test_a_kernel_is_no_basis_when_a_column_is_zero() -> None:
     assert impossible.answer["K"] is None
     for column in range(2):
         kernel = Matrix.of([[Scalar.of(int(i == j != column)) for j in range(2)] for i in range(2)])
-        pair = tampered(impossible._pair, "kernel", kernel * (Scalar.symbol("k") / Scalar.symbol("k")))
+        pair = tampered(impossible.pair, "kernel", kernel * (Scalar.symbol("k") / Scalar.symbol("k")))
         with pytest.raises(CertificateRejected):
-            tampered(impossible, "_pair", pair).__post_init__()
+            tampered(impossible, "pair", pair).__post_init__()
 
 
 def test_a_determinant_is_that_of_a_square() -> None:
@@ -212,13 +212,13 @@ def test_impossibility_needs_a_subspace_of_the_plant_itself() -> None:
     impossible = observer(HIDDEN, poles=[-3, -4])
     assert isinstance(impossible, GainDesign)
     assert impossible.answer["L"] is None
-    nothing = tampered(impossible._pair, "kernel", Matrix.zeros(2, 1))
+    nothing = tampered(impossible.pair, "kernel", Matrix.zeros(2, 1))
     with pytest.raises(CertificateRejected):
-        tampered(impossible, "_pair", nothing).__post_init__()
+        tampered(impossible, "pair", nothing).__post_init__()
     possible = observer(SERVO, poles=[-3, -4])
-    foreign = tampered(tampered(possible, "answer", impossible.answer), "_pair", impossible._pair)
+    foreign = tampered(tampered(possible, "answer", impossible.answer), "pair", impossible.pair)
     with pytest.raises(CertificateRejected):
-        replace(possible, working=impossible._pair)
+        replace(possible, pair=impossible.pair)
     with pytest.raises(CertificateRejected):
         foreign.__post_init__()
 

@@ -16,6 +16,7 @@ from symobs.design.full_order.observer import write_observer
 from symobs.design.gain.gain_page import name_entries, write_gain
 from symobs.design.gain.page_style import page_style
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop, draw_unity_loop
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
@@ -34,18 +35,8 @@ if TYPE_CHECKING:
     from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.formula import Fact
 
-#: Beyond this many terms in F(s) the page works with letters for the entries of the gains and the coefficients of F.
-LARGE = 60
-#: Matrices of rational functions with more terms than this are not written out.
-MATRIX = 60
-#: Conditions with more terms than this are left to the JSON.
-_READABLE_TERMS = 40
-#: Where products of the gains have room beside what they are worth.
-_SMALL_ORDER = 2
-#: Loops with more terms are not written out before they are simplified.
-_LOOP_TERMS = 16
-#: Up to this order of the plant the loop is written out before its factors.
-_UNFACTORED = 4
+#: Up to this order positive coefficients make a polynomial stable in continuous time.
+_DECIDED_BY_SIGNS = 2
 
 
 @page_of(CompensatorDesign)
@@ -53,7 +44,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     plant = design.plant
-    large = design.answer["F"] is not None and design.answer["F"].size > LARGE
+    large = design.answer["F"] is not None and design.answer["F"].size > readability.COMPENSATOR
     beside = design.method == "duality" and can_stand_side_by_side(design)
     if beside:
         write_side_by_side(page, design)
@@ -101,10 +92,10 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
     page.equal(relation(x_hat.derivative, closed @ x_hat + L @ page["y"]), say="observer_closed")
-    small = page.plant.order == _SMALL_ORDER and not m.has_feedthrough
+    small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
     apart = [A.shown - B.shown @ K.shown - L.shown @ C.shown] if small else []
     page.define("A_c", closed, *apart, shown, say="compensator_matrix")
-    if closed.value.size <= MATRIX:
+    if closed.value.size <= readability.MATRIX:
         written = page["A_c"].shown @ x_hat + L.shown @ page["y"]
         page.equal(
             relation(x_hat.derivative, written), relation(page["u"], -K.shown @ x_hat), say="compensator_written"
@@ -143,7 +134,12 @@ def _transfer_matrix(page: Page, design: CompensatorDesign) -> None:
 def define_or_hold(page: Page, name: str, formula: Term, value: Matrix, say: str) -> None:
     """Introduce a transfer matrix, with its entries where they can be read."""
     page.define(
-        name, formula, *([page.value(value)] if value.size <= MATRIX else []), say=say, answer=True, closing=False
+        name,
+        formula,
+        *([page.value(value)] if value.size <= readability.MATRIX else []),
+        say=say,
+        answer=True,
+        closing=False,
     )
     page.conclude_silently(relation(page[name], value))
 
@@ -168,7 +164,7 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
-    if sum(value.size for value in positive) > _READABLE_TERMS:
+    if sum(value.size for value in positive) > readability.STABILITY_CONDITIONS:
         page.conclude(f"{stem}_proper", proper, **slots)
         return
     inequalities = [as_inequality(value, plant.symbols.signs) for value in positive]
@@ -179,7 +175,7 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
 def _reason(page: Page, design: OutputFeedback, word: str) -> dict[str, Slot]:
     """Return the polynomial whose coefficients tell by their signs alone: of order 1 or 2, in continuous time."""
     F, plant = design.answer["F"], page.plant
-    if plant.is_discrete or plant.order > _SMALL_ORDER or not isinstance(F, Scalar) or not page.knows("A_c"):
+    if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.knows("A_c"):
         return {}
     own = (page.s @ page.identity(page["A_c"].value.shape[0]) - page["A_c"]).apply("det")
     coefficients = own.scalar.coefficients(plant.variable)
@@ -228,13 +224,13 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     factors = page.term(formula_of_factored(form))
-    few = form.value.size + design.answer["F"].size <= _LOOP_TERMS
+    few = form.value.size + design.answer["F"].size <= readability.LOOP
     if few:
         inserted = page.value(1) + plant_form @ page.value(design.answer["F"])
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
-    members = [definition, expanded, factors] if page.plant.order <= _UNFACTORED else [definition, factors]
+    members = [definition, expanded, factors] if page.plant.order <= readability.LOOP_ORDER else [definition, factors]
     page.define("G_cl", *members, say="loop_after" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     _say_poles(page, design, form.value)
@@ -288,7 +284,7 @@ def return_path_of_several(page: Page, design: OutputFeedback) -> None:
     formula = (page.identity(plant.outputs) + page["P"] @ page["F"]).inverse @ page["P"]
     entries = [[page.term(formula_of_factored(entry)) for entry in row] for row in design.loop_of_several]
     loop = Matrix.of([[entry.value for entry in row] for row in design.loop_of_several])
-    shown = [block(entries)] if loop.size <= MATRIX else []
+    shown = [block(entries)] if loop.size <= readability.MATRIX else []
     page.define("G_cl", formula, *shown, say="return_path", answer=True, closing=False)
     page.conclude_silently(relation(page["G_cl"], loop))
     page.conclude("loop_matrix_poles")

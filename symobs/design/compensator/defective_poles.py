@@ -8,6 +8,7 @@ from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation.builder import Page, relation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.placement_problem import FEEDBACK
+from symobs.design.page_parts import readability
 from symobs.exact import Factored, Scalar, rank, roots_of
 from symobs.formula import Roots
 from symobs.specification import DesiredPolynomial
@@ -16,9 +17,6 @@ from symobs.stability.criteria.stability import monic
 if TYPE_CHECKING:
     from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.formula import Relation
-
-#: For this order the matrix itself says that it is not a multiple of I.
-_SHOWN = 2
 
 
 def caution_repeated(page: Page, design: OutputFeedback) -> None:
@@ -44,7 +42,7 @@ def caution_repeated(page: Page, design: OutputFeedback) -> None:
                 "defective" if instead is None else "defective_instead",
                 held,
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
-                matrix=relation(offset, offset.shown) if plant.order == _SHOWN else held,
+                matrix=relation(offset, offset.shown) if plant.order == readability.OFFSET_ORDER else held,
                 **({} if instead is None else {"instead": instead}),
             )
             return

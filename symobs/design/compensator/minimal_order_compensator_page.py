@@ -9,7 +9,6 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.design.compensator.compensator_page import (
-    LARGE,
     Namer,
     define_or_hold,
     named_return_path,
@@ -23,6 +22,7 @@ from symobs.design.compensator.minimal_order_compensator import MinimalOrderComp
 from symobs.design.gain.gain_page import name_entries, write_gain
 from symobs.design.gain.page_style import page_style
 from symobs.design.gain.placement_problem import FEEDBACK
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.component_equations import combination
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
@@ -36,7 +36,7 @@ from symobs.result import page_of
 def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
-    large = design.exists and design.answer["F"].size > LARGE
+    large = design.exists and design.answer["F"].size > readability.COMPENSATOR
     with page.section("state_feedback"):
         write_gain(page, design.feedback, FEEDBACK, page_style("auto", design.plant, several=design.plant.inputs > 1))
         if large:

@@ -9,6 +9,7 @@ from symobs.analysis.rank.rank_page import square_test
 from symobs.derivation.builder import Page, relation
 from symobs.design.gain.gain_page import name_coefficients, say_as_required, write_case
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER, PlacementProblem
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.term import Term, block
@@ -16,10 +17,6 @@ from symobs.formula.term import Term, block
 if TYPE_CHECKING:
     from symobs.design.compensator.compensator import CompensatorDesign
     from symobs.design.gain.gain_design import GainDesign
-
-
-#: The blocks of a test matrix of no larger order fit a column.
-_SHORT = 3
 
 
 def can_stand_side_by_side(design: CompensatorDesign) -> bool:
@@ -60,7 +57,9 @@ def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         blocks = block([[A**k @ page["B"] if k else page["B"] for k in range(order)]])
         page.define("Ctr", blocks, silent=True)
         test = page["Ctr"]
-    page.equal(relation(test, *([blocks] if order <= _SHORT else []), test.shown), say=f"test_{side.kind}")
+    page.equal(
+        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.shown), say=f"test_{side.kind}"
+    )
     square_test(page, side.matrix, design.test, side.test)
     page.conclude(f"any_{side.kind}")
     desired = name_coefficients(page, design, side)

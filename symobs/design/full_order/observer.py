@@ -10,23 +10,19 @@ from symobs.analysis.page_parts import given
 from symobs.analysis.rank.observability import Observability
 from symobs.derivation.builder import Page, relation
 from symobs.design.full_order.observer_existence_page import write_ansatz, write_found
-from symobs.design.gain.gain_design import GainDesign, require_one
-from symobs.design.gain.gain_methods_page import write_companion, write_matching
-from symobs.design.gain.gain_page import write_ackermann, write_canonical, write_gain, write_member, write_reduction
+from symobs.design.full_order.placement_methods import register_methods
+from symobs.design.gain.gain_design import GainDesign
+from symobs.design.gain.gain_page import write_gain
 from symobs.design.gain.gain_request import designed
 from symobs.design.gain.page_style import page_style
 from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_collected, draw_copy
 from symobs.design.page_parts.component_equations import write_components
 from symobs.design.page_parts.time_responses import plot_error
-from symobs.design.pole_placement.canonical_form_gain import canonical_gain, companion_gain
-from symobs.design.pole_placement.coefficient_matching import matched_gain
 from symobs.design.pole_placement.multiple_outputs import pair_of
-from symobs.design.pole_placement.row_reduction import reduced_gain
-from symobs.design.pole_placement.sylvester import SYLVESTER
 from symobs.exact import Matrix
 from symobs.formula.term import Term, letter
-from symobs.result import Result, method, task
+from symobs.result import Case, Result, task
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +30,7 @@ if TYPE_CHECKING:
     from symobs.analysis.rank.rank_test import RankResult
     from symobs.design.pole_placement.single_output import Pair
     from symobs.formula import Environment
-    from symobs.specification import DesiredPolynomial, Entries, GainText, Name, Poles, PolynomialText
+    from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
 
@@ -47,19 +43,26 @@ class ObserverDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Observability
 
     @staticmethod
-    def pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> Pair:
         """Return (A, C)."""
         return pair_of(plant.matrices.A, plant.matrices.C, plant.variable, plant.equations)
 
     @staticmethod
-    def oriented(gain: Matrix) -> Matrix:
+    def transpose_for_task(gain: Matrix) -> Matrix:
         """Return the column itself."""
         return gain
 
     @staticmethod
-    def moved(environment: Environment) -> Term:
+    def gain_term(environment: Environment) -> Term:
         """Return LC."""
         return letter("L", environment) @ letter("C", environment)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The design on the strata where modes, gain, or whether there is one are others than in general."""
+        from symobs.design.gain.gain_cases import cases_of_gain  # noqa: PLC0415 - of many in a loop none is asked
+
+        return cases_of_gain(self)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -138,55 +141,7 @@ def _say_deadbeat(page: Page, closed: Term) -> None:
         page.conclude("deadbeat_error", gone=relation(gone, zero))
 
 
-@method(
-    "observer/canonical_form",
-    source="S0, Example 4.1 (pole placement by the canonical form of the dual pair)",
-    page=write_canonical,
-)
-def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ."""
-    return ObserverDesign.by_column(plant, desired, "canonical_form", canonical_gain)
-
-
-@method("observer/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300; dual form", page=write_ackermann)
-def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """L = φ(A) 𝒪⁻¹ eₙ."""
-    require_one(plant.outputs, "output", "ackermann")
-    return ObserverDesign.of(plant, desired, "ackermann")
-
-
-@method("observer/existence", source="S4, existence of an asymptotic observer")
-def existence(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """x̂' = F x̂ + G u + H y with undetermined F, G, H: the error is free of x and u for G = B, F = A − HC alone."""
-    return ObserverDesign.of(plant, desired, "existence")
-
-
-@method("observer/sylvester", source=SYLVESTER, page=write_member)
-def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """L = (G X⁻¹)ᵀ with AᵀX − XF = CᵀG, F the companion matrix of φ: every G for which X is regular."""
-    return ObserverDesign.of(plant, desired, "sylvester")
-
-
-@method(
-    "observer/coefficient_matching",
-    source="S2, the exact route to its gains; S3 (other ways to the gain)",
-    page=write_matching,
-)
-def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system."""
-    return ObserverDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
-
-
-@method("observer/row_reduced_echelon", source="S3, (7)-(10)", page=write_reduction)
-def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form."""
-    return ObserverDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
-
-
-@method("observer/companion_form", source="S1, the double integrator at 16:01", page=write_companion)
-def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> ObserverDesign:
-    """Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
-    return ObserverDesign.by_column(plant, desired, "companion_form", companion_gain)
+register_methods(ObserverDesign)
 
 
 @task

@@ -8,19 +8,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs._dataclass import dataclass
 from symobs.analysis.page_parts import given
 from symobs.analysis.rank.observability import Controllability
-from symobs.design.gain.gain_design import GainDesign, require_one
-from symobs.design.gain.gain_methods_page import write_companion, write_matching
-from symobs.design.gain.gain_page import write_ackermann, write_canonical, write_gain, write_member, write_reduction
+from symobs.design.full_order.placement_methods import register_methods
+from symobs.design.gain.gain_design import GainDesign
+from symobs.design.gain.gain_page import write_gain
 from symobs.design.gain.gain_request import designed
 from symobs.design.gain.page_style import page_style
 from symobs.design.gain.placement_problem import FEEDBACK
-from symobs.design.pole_placement.canonical_form_gain import canonical_gain, companion_gain
-from symobs.design.pole_placement.coefficient_matching import matched_gain
 from symobs.design.pole_placement.multiple_outputs import pair_of
-from symobs.design.pole_placement.row_reduction import reduced_gain
-from symobs.design.pole_placement.sylvester import SYLVESTER
 from symobs.formula.term import Term, letter
-from symobs.result import Result, method, task
+from symobs.result import Case, Result, task
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,7 +26,7 @@ if TYPE_CHECKING:
     from symobs.design.pole_placement.single_output import Pair
     from symobs.exact import Matrix
     from symobs.formula import Environment
-    from symobs.specification import DesiredPolynomial, Entries, GainText, Name, Poles, PolynomialText
+    from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
 
@@ -43,19 +39,26 @@ class StateFeedbackDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Controllability
 
     @staticmethod
-    def pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> Pair:
         """Return (Aᵀ, Bᵀ)."""
         return pair_of(plant.matrices.A.T, plant.matrices.B.T, plant.variable, plant.equations)
 
     @staticmethod
-    def oriented(gain: Matrix) -> Matrix:
+    def transpose_for_task(gain: Matrix) -> Matrix:
         """Return the row."""
         return gain.T
 
     @staticmethod
-    def moved(environment: Environment) -> Term:
+    def gain_term(environment: Environment) -> Term:
         """Return BK."""
         return letter("B", environment) @ letter("K", environment)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The design on the strata where modes, gain, or whether there is one are others than in general."""
+        from symobs.design.gain.gain_cases import cases_of_gain  # noqa: PLC0415 - of many in a loop none is asked
+
+        return cases_of_gain(self)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -75,49 +78,7 @@ class StateFeedbackDesign(GainDesign):
             write_gain(page, self, FEEDBACK, page_style(self.page_method, self.plant, several=self.plant.inputs > 1))
 
 
-@method(
-    "state_feedback/canonical_form",
-    source="S0, Examples 4.1 and 4.2 (controllable canonical form)",
-    page=write_canonical,
-)
-def canonical_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ."""
-    return StateFeedbackDesign.by_column(plant, desired, "canonical_form", canonical_gain)
-
-
-@method("state_feedback/ackermann", source="Ackermann 1972, Regelungstechnik 20, 297-300", page=write_ackermann)
-def ackermann(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """K = eₙᵀ 𝒞⁻¹ φ(A)."""
-    require_one(plant.inputs, "input", "ackermann")
-    return StateFeedbackDesign.of(plant, desired, "ackermann")
-
-
-@method("state_feedback/sylvester", source=SYLVESTER, page=write_member)
-def sylvester(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """K = G X⁻¹ with AX − XF = BG, F the companion matrix of φ: every G for which X is regular."""
-    return StateFeedbackDesign.of(plant, desired, "sylvester")
-
-
-@method(
-    "state_feedback/coefficient_matching",
-    source="S2, the exact route to its gains; S3 (other ways to the gain)",
-    page=write_matching,
-)
-def coefficient_matching(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system."""
-    return StateFeedbackDesign.by_column(plant, desired, "coefficient_matching", matched_gain)
-
-
-@method("state_feedback/row_reduced_echelon", source="S3, (7)-(10)", page=write_reduction)
-def row_reduced_echelon(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form."""
-    return StateFeedbackDesign.by_method(plant, desired, "row_reduced_echelon", reduced_gain)
-
-
-@method("state_feedback/companion_form", source="S1, the double integrator at 16:01", page=write_companion)
-def companion_form(plant: StateSpace, desired: DesiredPolynomial) -> StateFeedbackDesign:
-    """K = (differences of coefficients, constant first) T, where T brings the pair to companion form."""
-    return StateFeedbackDesign.by_column(plant, desired, "companion_form", companion_gain)
+register_methods(StateFeedbackDesign)
 
 
 @task

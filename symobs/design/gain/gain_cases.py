@@ -15,6 +15,11 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+def cases_of_gain(design: GainDesign) -> tuple[Case, ...]:
+    """Return what is true of a given gain, or of one that was asked for, where it is not true in general."""
+    return cases_of_given(design) if design.desired is None else cases_of(design, design.desired)
+
+
 def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]:
     """Return the design on every stratum where its modes, its gain or whether there is one are others than in general."""
     plant, letter = design.plant, design.letter
@@ -35,7 +40,7 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
     if design.zero and design.answer[letter] is None and design.divides and plant.field.names:
         return common_zeros(plant, design.needed, solve) if design.needed else ()
     found = carried(plant, design.test.case_tree, solve)
-    if design._pair.is_observable or design.answer[letter] is not None:  # noqa: SLF001 - the witness
+    if design.pair.is_observable or design.answer[letter] is not None:
         return (*found, *strata(plant, chosen(design), solve))
     return (*found, *common_zeros(plant, design.existence, solve)) if design.existence else found
 
@@ -51,7 +56,7 @@ def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
 
 def chosen(design: GainDesign) -> tuple[Scalar, ...]:
     """Return what the gain divides by because it is this one of many: where it vanishes another one serves."""
-    pair = design._pair  # noqa: SLF001 - the witness
+    pair = design.pair
     if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, SeveralOutputs)):
         return ()
     lost = {

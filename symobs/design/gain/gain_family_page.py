@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.page_parts import determinant_form
 from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, relation
+from symobs.design.page_parts import readability
 from symobs.design.pole_placement.sylvester import Sylvester, charts_of
 from symobs.exact import Matrix, companion
 
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
     from symobs.formula import Relation
     from symobs.formula.term import Term
     from symobs.specification import DesiredPolynomial
-
-#: What has more terms is not written out: a matrix, a determinant, a general gain.
-_MATRIX, _DETERMINANT, _GAIN, _SOLUTION = 40, 24, 40, 120
 
 
 def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
@@ -32,8 +30,8 @@ def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desi
     _shift(page, equation, side, design)
     _equation(page, side, "", equation, equation.G)
     page.remark(f"dimension_{side.kind}", count=str(len(chart.names)))
-    if chart.general is not None and chart.general.size <= _GAIN:
-        general = design.oriented(chart.general)
+    if chart.general is not None and chart.general.size <= readability.GENERAL_GAIN:
+        general = design.transpose_for_task(chart.general)
         page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
     own = chart.own_G
     if own is None:
@@ -48,7 +46,7 @@ def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desi
     page.define(f"G_{side.index}1", own, say=f"member_{words}")
     solution = page.set(f"X_{side.index}1", equation.solution(own))
     determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
-    if solution.value.size <= _SOLUTION:
+    if solution.value.size <= readability.MEMBER_SOLUTION:
         page.equal(relation(solution, solution.shown), determinant, say="solution_of_member")
     else:
         page.equal(determinant, say="solution_long")
@@ -72,7 +70,7 @@ def of_the_others(design: GainDesign) -> str:
 
 def _only_gain(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """One output (input): G = e₁ᵀ, and X is unique."""
-    pair = design.pair(page.plant)
+    pair = design.dual_pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
     _equation(page, side, "", equation, equation.G)
@@ -83,7 +81,7 @@ def _shift(page: Page, equation: Sylvester, side: PlacementProblem, design: Gain
     """Part the spectra where they meet."""
     if equation.shift is None:
         return
-    gain = page.define(f"{side.gain}_0", design.oriented(equation.shift), say="spectra_meet")
+    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), say="spectra_meet")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     page.define(f"A_{side.index}0", page["A"] - moved)
 
@@ -99,16 +97,16 @@ def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylveste
     solution = page.set(X, equation.solution(value))
     page.equal(_sylvester(page, side, which, equation), say=f"sylvester_{side.kind}")
     apart = vanishing_factors([equation.resultant], page.plant.symbols.signs)
-    if apart and all(factor.size <= _MATRIX for factor in apart):
+    if apart and all(factor.size <= readability.FAMILY_SOLUTION for factor in apart):
         page.assume("spectra_provided", *apart)
     elif apart:
         page.remark("spectra_apart")
     page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
     page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
-    if solution.value.size <= _MATRIX:
+    if solution.value.size <= readability.FAMILY_SOLUTION:
         page.equal(relation(solution, solution.shown), say="solution_is" if value.shape[0] > 1 else "")
     determinant = solution.value.determinant()
-    if determinant.size <= _DETERMINANT:
+    if determinant.size <= readability.FAMILY_DETERMINANT:
         page.equal(
             relation(solution.apply("det"), determinant_form(page, determinant)),
             say="determinant_free" if value.shape[0] > 1 else "",

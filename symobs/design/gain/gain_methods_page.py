@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form
 from symobs.derivation.builder import Page, relation
+from symobs.design.page_parts import readability
 from symobs.design.pole_placement.coefficient_matching import matching
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from symobs.formula import Relation
     from symobs.specification import DesiredPolynomial
 
-#: Longer row-reduced forms are not written out, nor more vectors than there are letters for.
-_READABLE, _VECTORS = 150, 9
 #: A gain that rounding changes by more than this share of an entry is worth a warning.
 _HARM = Fraction(1, 100)
 
@@ -63,12 +62,12 @@ def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
 def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
-    system = matching(design.pair(page.plant), desired)
+    system = matching(design.dual_pair(page.plant), desired)
     names = fresh_names(f"{side.gain.lower()}_", order, taken_names(page))
     unknown = Matrix.column([Scalar.symbol(name) for name in names])
     for name, entry in zip(names, system.solution.entries, strict=True):
         page.name_coefficient(name, entry)
-    gain = page.define(side.gain, design.oriented(unknown), say="unknown_gain")
+    gain = page.define(side.gain, design.transpose_for_task(unknown), say="unknown_gain")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     determinant = (page.s @ page.identity(order) - page["A"] + moved).apply("det")
     polynomial = determinant.scalar
@@ -76,7 +75,7 @@ def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desir
     pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
     page.equal(*(relation(found, wish) for found, wish in pairs), say="equal_coefficients")
     page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
-    solution = design.oriented(system.solution)
+    solution = design.transpose_for_task(system.solution)
     page.equal(relation(gain, solution), say="solution_of_system", answer=True)
     page.set(side.gain, solution)
 
@@ -105,14 +104,18 @@ def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: 
 def readable(design: GainDesign) -> bool:
     """Whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
     found = _reductions(design)
-    if found is None or len(found) > _VECTORS or any(part.reduced.size > _READABLE for part in found):
+    if (
+        found is None
+        or len(found) > readability.NULL_VECTORS
+        or any(part.reduced.size > readability.REDUCED_FORM for part in found)
+    ):
         return False
-    return bool(design.oriented(gain_of(found)) == design.answer[design.letter])
+    return bool(design.transpose_for_task(gain_of(found)) == design.answer[design.letter])
 
 
 def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
     assert design.desired is not None  # noqa: S101 - a page of a given gain does not come here
-    return row_reduction(design.pair(design.plant), design.desired)
+    return row_reduction(design.dual_pair(design.plant), design.desired)
 
 
 def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:

@@ -18,9 +18,11 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
+from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
 from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
 from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
 from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
@@ -33,21 +35,19 @@ from symobs.specification import DesiredPolynomial
 if TYPE_CHECKING:
     from symobs.result import Case
 
-#: A coefficient of φ with more terms than this gets a letter of its own on the page.
-_PLAIN_TERMS = 4
 #: The degree of the factor of a conjugate pair.
 _PAIR = 2
 
 
 def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
     """Write how the gain is found, in the style of a method, and the check the reader is shown."""
-    if design.desired is None:
+    if isinstance(design.kind, GivenGain):
         _given_gain(page, design, side)
         return
     _test(page, design, side, style)
-    if design.answer[side.gain] is None:
+    if not design.kind.exists:
         _impossible(page, design, side)
-        if not design.zero or not design.divides:
+        if isinstance(design.kind, UnassignableGain):
             for case in design.case_tree:
                 write_case(page, case, side)
         return
@@ -126,7 +126,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     grouped = page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))
     plain = page.value(desired.polynomial)
     members = [plain] if desired.is_expanded else [grouped, plain]
-    if all(c.size - 1 <= _PLAIN_TERMS for c in coefficients):
+    if all(c.size - 1 <= readability.COEFFICIENT for c in coefficients):
         if not desired.poles and desired.is_expanded and page.knows(side.phi):
             return desired
         page.define(side.phi, *members, say=f"asks_{side.kind}")
@@ -202,7 +202,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
     assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
     page.define(side.phi, factored_form(page, desired.polynomial), desired.polynomial, say=f"asks_{side.kind}")
-    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
     page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), divides, roots=roots)
@@ -217,10 +217,10 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
 
 def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
-    if design.zero and design.divides:
+    if not isinstance(design.kind, UnassignableGain):
         write_no_gain(page, design, side)
         return
-    fixed = _fixed(page, side, design._pair.kernel, design._pair.restricted)  # noqa: SLF001 - the witness
+    fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
     page.conclude(
         f"impossible_{side.kind}",
         *hidden(page, side is OBSERVER, side.hidden),
@@ -285,7 +285,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
-    if result._pair.is_observable and result.answer[side.gain] is not None:  # noqa: SLF001 - the witness of the stratum
+    if result.pair.is_observable and result.answer[side.gain] is not None:
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
     outer, environment = page.steps, page.environment
@@ -302,7 +302,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
 def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
-    fixed = _fixed(page, side, result._pair.kernel, result._pair.restricted)  # noqa: SLF001 - the witness of the stratum
+    fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
     kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"

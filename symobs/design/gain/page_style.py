@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.design.page_parts import readability
+
 if TYPE_CHECKING:
     from symobs.system import StateSpace
 
@@ -14,9 +16,7 @@ def page_style(method_name: str, plant: StateSpace, *, several: bool = False) ->
         return method_name
     if several:
         return "sylvester"
-    readable = _CANONICAL_PAGES if not plant.field.names else _PARAMETRIC_CANONICAL_PAGES
+    readable = (
+        readability.CANONICAL_FORM_ORDER if not plant.field.names else readability.PARAMETRIC_CANONICAL_FORM_ORDER
+    )
     return "canonical_form" if plant.order <= readable else "ackermann"
-
-
-#: Up to these orders the matrices of the canonical form are easier to read than Ackermann's formula.
-_CANONICAL_PAGES, _PARAMETRIC_CANONICAL_PAGES = 4, 2

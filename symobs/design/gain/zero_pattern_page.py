@@ -9,29 +9,29 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Note
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.design.gain.gain_design import GainDesign
+from symobs.design.gain.gain_kind import AlgebraicGain
+from symobs.design.page_parts import readability
 from symobs.exact import EIGENVALUE
 
 if TYPE_CHECKING:
     from symobs.derivation import Step
+    from symobs.design.gain.gain_kind import Places
     from symobs.design.gain.placement_problem import PlacementProblem
     from symobs.result import Case
-
-#: A condition with more terms is not written out.
-_WRITTEN = 60
 
 
 def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     """Write why no gain has its zeros there, where one has, or one in a root."""
-    listed = ", ".join(f"({i + 1}, {j + 1})" for i, j in design.zero)
-    if design.in_root is not None:
-        _in_root(page, design, side, listed)
+    listed = _listed(design.zero)
+    if isinstance(design.kind, AlgebraicGain):
+        _algebraic(page, design, design.kind, side)
     elif not design.needed:
         page.conclude("undecided_zero", places=listed)
     elif design.needed[0].is_constant:
         page.conclude("impossible_zero", places=listed)
     else:
         short = min(design.needed, key=lambda value: value.size)
-        if short.size <= _WRITTEN:
+        if short.size <= readability.ZERO_CONDITION:
             page.remark("impossible_zero_unless", places=listed, when=page.value(short))
         else:
             page.remark("impossible_zero_in_general", places=listed)
@@ -39,19 +39,22 @@ def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> Non
             page.steps.append(_case(page, case, side))
 
 
-def _in_root(page: Page, design: GainDesign, side: PlacementProblem, listed: str) -> None:
+def _listed(zero: Places) -> str:
+    return ", ".join(f"({i + 1}, {j + 1})" for i, j in zero)
+
+
+def _algebraic(page: Page, design: GainDesign, kind: AlgebraicGain, side: PlacementProblem) -> None:
     """A gain whose entries are polynomials in a real root λ."""
-    found = design.in_root
-    assert found is not None  # noqa: S101 - asked for only where there is one
+    found = kind.found
     low, high = found.bounds
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]
     inner, page.steps, before = page.steps, [], page.environment
     page.environment = before.under((found.polynomial,))
-    page.define(side.gain, design.oriented(found.gain), answer=True)
+    page.define(side.gain, design.transpose_for_task(found.gain), answer=True)
     page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     changes = relation(page.value(at_ends[0]) @ page.value(at_ends[1]), "<", 0)
-    page.conclude("zero_in_root", changes, places=listed, low=str(low), high=str(high))
+    page.conclude("zero_in_root", changes, places=_listed(kind.zero), low=str(low), high=str(high))
     page.steps.append(CaseStep(relation(found.polynomial, 0), (), steps))
 
 

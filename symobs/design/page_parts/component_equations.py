@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation.builder import relation
+from symobs.design.page_parts import readability
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
     from symobs.derivation.builder import Page
     from symobs.formula.term import Term
-
-#: A system of this order is written out component by component, where no entry has more terms than that.
-_ORDER, _TERMS = 2, 4
 
 
 def summed(pairs: list[tuple[Term, Term]]) -> Term:
@@ -48,12 +46,16 @@ def write_components(page: Page, driven: Term | None) -> None:
     closed = A - L @ C
     sources = [(L, page["y"])] if driven is None else [(driven, page["u"]), (L, page["y"])]
     entries = [entry for matrix in (closed, *(matrix for matrix, _ in sources)) for entry in matrix.value.entries]
-    if page.plant.order != _ORDER or page.plant.outputs > 1 or any(entry.size - 1 > _TERMS for entry in entries):
+    if (
+        page.plant.order != readability.COMPONENTS_ORDER
+        or page.plant.outputs > 1
+        or any(entry.size - 1 > readability.COMPONENT for entry in entries)
+    ):
         return
     x_hat = page["x_hat"]
     parts = []
-    for i in range(_ORDER):
-        unit = page.value(Matrix.unit(_ORDER, i).T)
+    for i in range(page.plant.order):
+        unit = page.value(Matrix.unit(page.plant.order, i).T)
         parts.append(page.signal(f"x_hat_{i + 1}", unit @ x_hat, silent=True))
     rows = []
     for i, part in enumerate(parts):

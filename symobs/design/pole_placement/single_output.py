@@ -8,10 +8,11 @@ be assigned exactly when their polynomial divides it, and then every gain differ
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from symobs._dataclass import dataclass
 from symobs.exact import (
+    Field,
     Ideal,
     Matrix,
     Scalar,
@@ -101,6 +102,16 @@ class Pair:
         """Return quotient and remainder of a division by the polynomial of the fixed modes."""
         quotient, rest = remainder(polynomial, self.fixed_polynomial, self.variable)
         return quotient, rest if self.ideal is None else self.ideal.simplified(rest)
+
+    def can_assign(self, polynomial: Scalar) -> bool:
+        """Whether the polynomial of the fixed modes divides φ."""
+        return self.is_observable or self.divided(polynomial)[1].is_zero
+
+    def over_field_of(self, desired: DesiredPolynomial) -> Self:
+        """Return the pair over one field with the parameters of φ."""
+        names = {name for factor in desired.factors for name in factor.field.names} - {desired.variable}
+        field = Field.of((*self.A.field.names, *self.c.field.names, *names))
+        return type(self)(self.A.within(field), self.c.within(field), self.variable, self.equations)
 
     def _gain_of_observable_part(self, polynomial: Scalar) -> Matrix:
         """Place the observable modes; the gain has no component along the free rows of ker 𝒪."""

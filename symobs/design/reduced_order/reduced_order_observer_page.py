@@ -12,6 +12,7 @@ from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.gain.gain_page import define_test_matrix, say_as_required
 from symobs.design.gain.placement_problem import OBSERVER
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.block_diagrams import draw_minimal_order
 from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
@@ -27,13 +28,6 @@ from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
     from symobs.formula import Relation
-
-#: Plants of a larger order have their blocks listed one by one.
-_LISTED_FROM = 2
-#: The observer with the derivative of the output is written out where its matrices have no more terms than this.
-_WRITTEN_OUT = 80
-#: With no more unknown entries the observer is also shown before its gain is found.
-_FEW_UNKNOWNS = 2
 
 
 @page_of(ReducedOrderObserver)
@@ -126,7 +120,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
         "unmeasured": relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
-    if trivial and page.plant.order > _LISTED_FROM:
+    if trivial and page.plant.order > readability.BLOCKS_ORDER:
         names = [f"A_{i}{j}" for i in "12" for j in "12"] + (["B_1", "B_2"] if driven else [])
         page.equal(*(relation(page[name], page[name].shown) for name in names), say=f"{key}_blocks", **said)
         key, said = "two_parts", {}
@@ -155,9 +149,9 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
     if page.plant.matrices.has_input:
         copy, innovation = copy + page["B_2"] @ u, innovation - page["B_1"] @ u
     page.dynamics("x_2_hat", copy + L @ (innovation - page["A_12"] @ x_2_hat), say="reduced_observer")
-    if page.plant.outputs == 1 and len(gain.entries) <= _FEW_UNKNOWNS:
+    if page.plant.outputs == 1 and len(gain.entries) <= readability.UNKNOWN_ENTRIES:
         pairs = _collected(page)
-        if sum(matrix.value.size for matrix, _ in pairs) <= _WRITTEN_OUT:
+        if sum(matrix.value.size for matrix, _ in pairs) <= readability.OUTPUT_DERIVATIVE:
             page.equal(relation(x_2_hat.derivative, combination(page, pairs)), say="with_gain_unknown")
     page.signal("e_2", page["x_2"] - page["x_2_hat"], silent=True)
     page.equal(
@@ -252,7 +246,7 @@ def _without_derivative(page: Page) -> None:
     if m.has_input:
         rate = rate + (page["B_2"] - L @ page["B_1"]) @ u
     pairs = _collected(page)
-    if sum(matrix.value.size for matrix, _ in pairs) <= _WRITTEN_OUT:
+    if sum(matrix.value.size for matrix, _ in pairs) <= readability.OUTPUT_DERIVATIVE:
         page.equal(relation(x_2_hat.derivative, summed(pairs), combination(page, pairs)), say="right_side_collected")
     page.equal(
         relation(z.derivative, rate + fed @ x_1),
@@ -307,7 +301,7 @@ def _matrices(page: Page, design: ReducedOrderObserver, say: str) -> None:
 
 def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
     """Introduce the part of x₂ that A₁₂ does not show; return its polynomial and what makes it that part."""
-    pair = design.inner._pair  # noqa: SLF001 - the witness
+    pair = design.inner.pair
     N, X = page.set("N_2", pair.kernel), page.set("X_2", pair.restricted)
     count = pair.kernel.shape[1]
     hidden = relation(page["A_12"] @ N, Matrix.zeros(page.plant.outputs, count))

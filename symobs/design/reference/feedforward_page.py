@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.derivation.builder import Page, relation
-from symobs.design.compensator.compensator_page import MATRIX
 from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
 from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
 from symobs.design.compensator.unstable_law_caution import caution_law
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
+from symobs.design.page_parts import readability
 from symobs.design.page_parts.block_diagrams import draw_feedforward
 from symobs.design.reference.feedforward import FeedforwardDesign
 from symobs.exact import Matrix, Scalar, rank, transfer_matrix
@@ -143,6 +143,6 @@ def _gain(page: Page, design: FeedforwardDesign) -> None:
     if isinstance(T, Scalar):
         page.define("T_v", response, factored_form(page, T), say="feedforward_response", answer=True, closing=False)
     else:
-        shown = [page.value(T)] if T.size <= MATRIX else []
+        shown = [page.value(T)] if T.size <= readability.MATRIX else []
         page.define("T_v", response, *shown, say="feedforward_response", answer=True, closing=False)
     page.conclude_silently(relation(page["T_v"], T))

@@ -306,9 +306,9 @@ def try_witnesses(part: Result, where: str, count: Count, most: int = OF_AN_ANSW
             count.attempt(f"{where}: family{change.where}", make, partial(_is_family, part, family))
     if part.answer[part.letter] is None:
         for name in ("kernel", "restricted", "fixed_polynomial"):
-            for change in sample(list(changes(getattr(part._pair, name))), most):
-                pair = tampered(part._pair, name, change.value)
-                make = tampered(part, "_pair", pair).__post_init__
+            for change in sample(list(changes(getattr(part.pair, name))), most):
+                pair = tampered(part.pair, name, change.value)
+                make = tampered(part, "pair", pair).__post_init__
                 count.attempt(f"{where}: {name}{change.where}", make, partial(_is_hidden, part, pair))
 
 
