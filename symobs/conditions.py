@@ -132,7 +132,7 @@ def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar])
 
 
 def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
-    """Tell whether the declared signs alone exclude that the value is 0."""
+    """Return whether the declared signs alone exclude that the value is 0."""
     return sign_of(value, signs) in _NEVER_ZERO
 
 

@@ -44,7 +44,7 @@ class CandidateLetters:
         return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
 
     def is_signal(self, name: str) -> bool:
-        """Whether a letter is a signal."""
+        """Return whether a letter is a signal."""
         return name in self.environment.signals
 
     def rounded(self, block: SyntaxNode) -> str | None:

@@ -149,7 +149,7 @@ class EquationAuditor:
         return reading
 
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
-        """Tell whether an equation holds in general."""
+        """Return whether an equation holds in general."""
         return self._true(left, right, self.reading(left, right))
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
@@ -306,7 +306,7 @@ class EquationAuditor:
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
     def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
-        """Whether a side has no letters but the problem's own symbols."""
+        """Return whether a side has no letters but the problem's own symbols."""
         plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
         return set(letters_of(node)) <= plain
 
@@ -389,7 +389,7 @@ class EquationAuditor:
 
 
 def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
-    """Whether it is the numbers on the right that are wrong: a value of a letter, one entry among several, one number.
+    """Return whether it is the numbers on the right that are wrong: a value of a letter, one entry among several, one number.
 
     A single number says too little to tell which letter was meant instead of another.
     """

@@ -44,7 +44,7 @@ class Alphabet(Protocol):
         """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
 
     def is_signal(self, name: str) -> bool:
-        """Whether a letter is a signal."""
+        """Return whether a letter is a signal."""
 
     def rounded(self, block: SyntaxNode) -> str | None:
         """Return the letter whose value a bracket of decimals is, rounded."""
@@ -155,7 +155,7 @@ def _everywhere(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]
 
 
 def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
-    """Two entries of a bracket are exchanged."""
+    """Yield the side with two entries of a bracket exchanged."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block":
@@ -173,13 +173,13 @@ def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _whole(side: SyntaxNode) -> Iterator[Slip]:
-    """A whole side is printed without its transpose."""
+    """Yield the side transposed as a whole."""
     if side.kind == "call":
         yield Slip(SyntaxNode("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
 
 
 def _stacked(side: SyntaxNode) -> Iterator[Slip]:
-    """Blocks stand below instead of beside one another, or the reverse."""
+    """Yield the side with blocks stacked in rows instead of columns, or the reverse."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
@@ -191,7 +191,7 @@ def _stacked(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _dropped(side: SyntaxNode) -> Iterator[Slip]:
-    """Rows of a stack are too many."""
+    """Yield the side with rows of a stack left out."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
@@ -207,7 +207,7 @@ def _dropped(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """A matrix is rounded before it is used."""
+    """Yield the side with a matrix rounded before use."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         name = alphabet.rounded(node) if node.kind == "block" else None
@@ -219,7 +219,7 @@ def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
 
 
 def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """A transpose or a dot is printed that should not be, or is missing."""
+    """Yield the side with a transpose or a dot removed or added."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "primed":
@@ -235,7 +235,7 @@ def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
 
 
 def _inverses(side: SyntaxNode) -> Iterator[Slip]:
-    """An inverse is printed that should not be, or is missing."""
+    """Yield the side with an inverse removed or added."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "power" and exponent_of(node) == -1:
@@ -257,7 +257,7 @@ def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]])
 
 
 def _signs(side: SyntaxNode) -> Iterator[Slip]:
-    """The sign of a side, or of one of its terms, is wrong."""
+    """Yield the side with its sign, or that of a term, reversed."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for i, part in enumerate(node.parts if node.kind == "sum" else ()):
@@ -274,7 +274,7 @@ def _signs(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _indices(side: SyntaxNode) -> Iterator[Slip]:
-    """One index is printed for another throughout a side."""
+    """Yield the side with one index replaced throughout."""
     found = {match[2] for name in letters_of(side) if (match := _INDEXED.fullmatch(name)) and match[2].isdigit()}
     for old in sorted(found):
         for new in map(str, range(1, 7)):
@@ -289,7 +289,7 @@ def _reindexed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
 
 
 def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
-    """One letter is printed for another, or for the transpose or the derivative of another."""
+    """Yield the side with a letter replaced by another, its transpose or its derivative."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for name in alphabet.offered(node.text, primed=primed) if node.kind == "letter" else ():

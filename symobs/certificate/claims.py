@@ -124,7 +124,7 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
 
 
 def can_be_shown(relation: Relation, environment: Environment) -> bool:
-    """Tell whether a relation is within the reach of `verify`: not where a rank or a basis is too large to be seen."""
+    """Return whether a relation is within the reach of `verify`: not where a rank or a basis is too large to be seen."""
     try:
         _verified(relation, environment)
     except (NotShown, TooLarge):
@@ -149,7 +149,7 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
+    """Return whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
     if environment.relations:
         return True
     meanings = [formula for formula in environment.signals.values() if formula is not None]
@@ -202,7 +202,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
 
 
 def _is_rounding(exact: Any, shown: Any) -> bool:
-    """Tell whether every entry is rounded to the decimals shown."""
+    """Return whether every entry is rounded to the decimals shown."""
     if not isinstance(exact, Matrix):
         return is_rounding(exact, as_scalar(shown))
     if not isinstance(shown, Matrix) or exact.shape != shown.shape:
@@ -221,7 +221,7 @@ def as_scalar(value: Any) -> Scalar:
 
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
-    """Tell whether signs and stated conditions keep a value from 0, factor by factor."""
+    """Return whether signs and stated conditions keep a value from 0, factor by factor."""
     known = {*environment.assumed, *environment.domain}
     return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))
 

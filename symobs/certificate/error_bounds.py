@@ -121,7 +121,7 @@ class Bounds:
         return whole
 
     def block(self, rows: list[list[SizeBound]]) -> SizeBound:
-        """All blocks over one common denominator."""
+        """Return all blocks over one common denominator."""
         parts = [part for row in rows for part in row]
         below, below_bits = sum(p.below for p in parts), sum(p.below_bits for p in parts)
         height = sum((row[0].shape or (1, 1))[0] for row in rows)

@@ -24,7 +24,7 @@ _MINORS = 100
 def never_together_zero(
     values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
 ) -> bool:
-    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+    """Return whether no real parameters of these signs make all the values vanish where the relations hold.
 
     Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
 
@@ -111,13 +111,13 @@ class Pointwise(Restricted):
     def _has_minor(
         self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
     ) -> bool:
-        """Tell whether at every point a minor of some order is not zero; a likely one may be tried first."""
+        """Return whether at every point a minor of some order is not zero; a likely one may be tried first."""
         if not order or (first is not None and self._never_zero([matrix.select(*first)])):
             return True
         return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
 
     def _has_none(self, matrix: Matrix, order: int) -> bool:
-        """Tell whether all minors of some order vanish; of many that is not asked."""
+        """Return whether all minors of some order vanish; of many that is not asked."""
         if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
             return False
         return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))

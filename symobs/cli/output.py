@@ -77,7 +77,7 @@ def binary(stream: Any) -> Any:
 
 
 def _is_file(target: str | None) -> bool:
-    """Whether a target is a file or will be one; what is no regular file (/dev/stdout, a pipe) is a stream."""
+    """Return whether a target is a file or will be one; what is no regular file (/dev/stdout, a pipe) is a stream."""
     if target is None or target == "-":
         return False
     with _explained(target):

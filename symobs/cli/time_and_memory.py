@@ -179,7 +179,7 @@ def _lift(budget: Budget) -> None:
 
 
 def _for_want_of_memory(error: Exception, budget: Budget) -> bool:
-    """Whether an error says that there was no memory; imports and C code say it in ways of their own."""
+    """Return whether an error says that there was no memory; imports and C code say it in ways of their own."""
     if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
         return True
     return budget.megabytes is not None and isinstance(error, SystemError | ImportError)
@@ -308,7 +308,7 @@ def _records(said: bytes | bytearray) -> Iterator[tuple[str, Any]]:
 
 
 def _memory_is_bounded(budget: Budget) -> bool:
-    """Whether memory has a bound, given here or by the system: FLINT aborts where it reaches that."""
+    """Return whether memory has a bound, given here or by the system: FLINT aborts where it reaches that."""
     import resource  # noqa: PLC0415 - not on every system
 
     bounds = (resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA))

@@ -60,7 +60,7 @@ _COMMON = ("A", "B", "C", "D", "K", "L", "x", "x_hat", "u", "y", "e", "F", "T")
 
 
 def is_name(text: str) -> bool:
-    """Whether a text can be the name of a convention."""
+    """Return whether a text can be the name of a convention."""
     return _NAME.fullmatch(text) is not None
 
 

@@ -170,7 +170,7 @@ def _shown(value: Any) -> str:
 
 
 def met(result: Answered, name: str, expected: Any, where: str) -> bool:
-    """Tell whether an expected answer is the result's."""
+    """Return whether an expected answer is the result's."""
     found, names, variable = _found(result, name), _names(result), result.plant.variable
     if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
@@ -248,7 +248,7 @@ def _is_relation(entry: Any) -> bool:
 
 
 def _intervals_agree(found: list[list[str]], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether the ends of intervals are those expected: -oo, oo, CRootOf(polynomial, index), or a closed form."""
+    """Return whether the ends of intervals are those expected: -oo, oo, CRootOf(polynomial, index), or a closed form."""
     if len(found) != len(expected) or not all(isinstance(pair, list) and len(pair) == 2 for pair in expected):
         return False
     pairs = zip((end for pair in found for end in pair), (end for pair in expected for end in pair), strict=True)
@@ -271,7 +271,7 @@ def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
 
 
 def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
-    """Tell whether an entry of a list is this matrix; a number alone is none."""
+    """Return whether an entry of a list is this matrix; a number alone is none."""
     if not isinstance(expected, (str, list)):
         return False
     return agrees(parse_matrix(expected, names, where=where, rounding=True), found)
@@ -281,7 +281,7 @@ def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
 
 
 def _modes_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
-    """Tell whether each expected mode is one of those found, each once; of a mode the keys given are compared."""
+    """Return whether each expected mode is one of those found, each once; of a mode the keys given are compared."""
     waiting = list(found)
     for i, wanted in enumerate(expected):
         place = f"{where}[{i}]"
@@ -319,7 +319,7 @@ def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str)
 
 
 def _tables_agree(found: list[list[Any]], expected: Any, names: Any, where: str) -> bool:
-    """Tell whether a matrix, whose entries may be complex, is the one expected."""
+    """Return whether a matrix, whose entries may be complex, is the one expected."""
     table = [[str(cell) for cell in row] for row in found]
     if not isinstance(expected, list) or [len(row) if isinstance(row, list) else 0 for row in expected] != [
         len(row) for row in table

@@ -49,7 +49,7 @@ def rounded_roots(expected: list[Any], names: Any, where: str) -> tuple[Complex,
 
 
 def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: str) -> bool:
-    """Tell whether the roots found round to the decimals of those printed."""
+    """Return whether the roots found round to the decimals of those printed."""
     exact = polynomial_of_roots(variable, tuple(found))
     try:
         return exact is not None and rounds_to(polynomial_of(printed, variable), exact)
@@ -58,7 +58,7 @@ def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: st
 
 
 def root_rounds_to(printed: Complex, found: Root) -> bool:
-    """Tell whether a root with a closed form rounds to the decimals of a printed number."""
+    """Return whether a root with a closed form rounds to the decimals of a printed number."""
     return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed)
 
 
@@ -97,7 +97,7 @@ def _no_surd(text: str, where: str) -> InputError:
 
 
 def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether complex numbers with square roots, and roots without a form, are those expected, each once."""
+    """Return whether complex numbers with square roots, and roots without a form, are those expected, each once."""
     waiting = list(found)
     for i, entry in enumerate(expected):
         counted = isinstance(entry, str) and "CRootOf" in entry
@@ -110,7 +110,7 @@ def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str)
 
 
 def is_number(found: Complex | Root, expected: Complex) -> bool:
-    """Tell whether a complex number is the one expected, as functions of its symbols."""
+    """Return whether a complex number is the one expected, as functions of its symbols."""
     if isinstance(found, Root):
         return False
     return functions_agree(expected.real, found.real) and functions_agree(expected.imaginary, found.imaginary)

@@ -18,7 +18,7 @@ RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
 
 
 def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
-    """Tell whether a value is the one expected: of a table the keys that are given are compared."""
+    """Return whether a value is the one expected: of a table the keys that are given are compared."""
     if isinstance(found, Mapping):
         alike = isinstance(expected, Mapping) and set(expected) <= set(found)
         return alike and all(agree(found[key], entry, names, f"{where}.{key}") for key, entry in expected.items())
@@ -71,7 +71,7 @@ def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
 
 
 def relations_agree(expected: tuple[Scalar, str], found: tuple[Scalar, str]) -> bool:
-    """Tell whether a relation is the one found, up to a factor that does not matter; its decimals may be rounded."""
+    """Return whether a relation is the one found, up to a factor that does not matter; its decimals may be rounded."""
     (printed, operator), (exact, other) = expected, found
     if not decimals_in(printed) or exact.is_zero or operator != other:
         return expected == found
@@ -90,7 +90,7 @@ def relations_agree(expected: tuple[Scalar, str], found: tuple[Scalar, str]) -> 
 
 
 def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether the factors with their powers are those expected, in any order."""
+    """Return whether the factors with their powers are those expected, in any order."""
     read: list[tuple[Scalar, int]] = []
     for i, pair in enumerate(expected):
         if not isinstance(pair, list) or len(pair) != 2 or type(pair[1]) is not int:
@@ -119,7 +119,7 @@ def _knowing(names: Any, value: Scalar | Matrix) -> Any:
 
 
 def _agree_as_mathematics(found: str, expected: str, names: Any, where: str) -> bool:
-    """Tell whether two texts say the same; what is no mathematics says nothing but itself."""
+    """Return whether two texts say the same; what is no mathematics says nothing but itself."""
     try:
         if RELATION.match(found) or RELATION.match(expected):
             return relations_agree(relation(expected, names, where), relation(found, names, where))

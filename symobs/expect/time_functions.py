@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
-    """Tell whether an expected value is the one found, which rounds to its decimals."""
+    """Return whether an expected value is the one found, which rounds to its decimals."""
     if not decimals_in(expected):
         return bool(expected == found)
     pairs = [(expected, found)]
@@ -27,7 +27,7 @@ def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
 
 
 def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
-    """Tell whether two values are equal as functions: brought to common exponentials, sines and cosines.
+    """Return whether two values are equal as functions: brought to common exponentials, sines and cosines.
 
     Decimals of the one on the left may be rounded.
     """

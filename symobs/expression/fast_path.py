@@ -47,7 +47,7 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
 
 
 def _is_symbol(name: str, scope: Scope) -> bool:
-    """Whether a name is declared, or may be a symbol where every name may."""
+    """Return whether a name is declared, or may be a symbol where every name may."""
     if name in FUNCTIONS or scope.is_imaginary_unit(name) or refusal(name):
         return False
     return scope.names is None or scope.declares(name)

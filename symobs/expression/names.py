@@ -76,11 +76,11 @@ class Scope:
         return Scope(names, variable, functions=functions, rounding=rounding)
 
     def declares(self, name: str) -> bool:
-        """Whether the name is declared by name, not only admitted because every name is."""
+        """Return whether the name is declared by name, not only admitted because every name is."""
         return name == self.variable or (self.names is not None and name in self.names)
 
     def is_imaginary_unit(self, name: str) -> bool:
-        """Whether the name stands for the imaginary unit here."""
+        """Return whether the name stands for the imaginary unit here."""
         return name in IMAGINARY and (name in RESERVED or not self.declares(name))
 
     def declared(self) -> list[str]:

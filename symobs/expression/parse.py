@@ -196,7 +196,7 @@ def _real(value: Number, where: str) -> Scalar:
 
 
 def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
-    """Whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
+    """Return whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
     if not isinstance(value, list) or not value or not all(isinstance(row, list) and row for row in value):
         return False
     entries = [entry for row in value for entry in row]

@@ -148,14 +148,14 @@ class Tokeniser:
             self._add("MULTIPLY", "*", at)
 
     def _is_imaginary_part(self, division: int, at: int) -> bool:
-        """Whether the imaginary unit follows a number that something is divided by: 3/2 i, which all read alike."""
+        """Return whether the imaginary unit follows a number that something is divided by: 3/2 i, which all read alike."""
         name = NAME.match(self.text, at)
         divisor = self.tokens[division + 1 :]
         is_number = len(divisor) == 1 and isinstance(divisor[0].value, Scalar) and divisor[0].value.is_constant
         return is_number and name is not None and self.scope.is_imaginary_unit(name[0])
 
     def _in_brackets(self) -> bool:
-        """Whether spaces count here: inside brackets, but not inside parentheses within them."""
+        """Return whether spaces count here: inside brackets, but not inside parentheses within them."""
         return bool(self.open) and self.open[-1].type == "LEFT"
 
     def _after(self, types: Container[str]) -> bool:

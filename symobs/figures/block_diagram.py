@@ -73,7 +73,7 @@ class Figure:
         return [wire for wire in self.wires if wire.begin == node]
 
     def is_junction(self, node: str) -> bool:
-        """Whether signals are added at a node."""
+        """Return whether signals are added at a node."""
         return not is_box(node) and not is_integrator(node) and len(self.into(node)) > 1
 
     def without_missing(self, labels: Labels) -> Figure:
@@ -89,18 +89,18 @@ class Figure:
         return replace(self, places=places, wires=tuple(wires))
 
     def _is_loose(self, node: str, wires: list[Wire]) -> bool:
-        """Whether a node has lost all wires of one of its sides."""
+        """Return whether a node has lost all wires of one of its sides."""
         has_lost_entry = bool(self.into(node)) and not any(wire.end == node for wire in wires)
         return has_lost_entry or (bool(self.out_of(node)) and not any(wire.begin == node for wire in wires))
 
 
 def is_box(node: str) -> bool:
-    """Whether a node is a box with a gain."""
+    """Return whether a node is a box with a gain."""
     return node[0].isupper()
 
 
 def is_integrator(node: str) -> bool:
-    """Whether a node is an integrator or a delay."""
+    """Return whether a node is an integrator or a delay."""
     return node[0] == "∫"
 
 

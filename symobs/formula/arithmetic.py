@@ -54,7 +54,7 @@ class Arithmetic(Protocol):
         """Return the matrix of blocks."""
 
     def equal(self, left: Any, right: Any) -> bool:
-        """Tell whether two values of equal kind agree."""
+        """Return whether two values of equal kind agree."""
 
 
 def add(left: Any, right: Any, arithmetic: Arithmetic) -> Any:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
+    """Return whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
     if isinstance(left, Signal) and isinstance(right, Signal):
         difference = add(left, times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
         return all(
@@ -24,7 +24,7 @@ def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
 
 
 def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values of one kind and shape are different; values that cannot be compared do not count."""
+    """Return whether two values of one kind and shape are different; values that cannot be compared do not count."""
     left, right = _alike(left, right, arithmetic)
     return left is not None and not arithmetic.equal(left, right)
 

@@ -70,7 +70,7 @@ class Environment:
     above: tuple[Scalar, ...] = ()
 
     def knows(self, name: str) -> bool:
-        """Whether a letter is established."""
+        """Return whether a letter is established."""
         return name in self.values or name in self.signals or name == "s"
 
     def value(self, name: str) -> Scalar | Matrix:

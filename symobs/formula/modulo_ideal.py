@@ -55,7 +55,7 @@ class Restricted(Exact):
         return Scalar.of(len(field.echelon(value)[0]))
 
     def equal(self, left: Any, right: Any) -> bool:
-        """Tell whether two values agree wherever the relations hold."""
+        """Return whether two values agree wherever the relations hold."""
         if isinstance(left, Matrix) != isinstance(right, Matrix):
             return False
         difference = left - right

@@ -282,7 +282,7 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
 
 
 def contains(formula: Formula, kinds: tuple[type, ...]) -> bool:
-    """Tell whether a formula has a node of one of these kinds."""
+    """Return whether a formula has a node of one of these kinds."""
     return isinstance(formula, kinds) or any(contains(part, kinds) for part in children(formula))
 
 

@@ -45,7 +45,7 @@ class Turned:
     values: Collection[Matrix] = ()
 
     def concerns(self, formula: Formula) -> bool:
-        """Whether a formula has one of the letters."""
+        """Return whether a formula has one of the letters."""
         return not self.names.isdisjoint(letters(formula))
 
     # -- formulas -------------------------------------------------------------------------------------------------
@@ -113,7 +113,7 @@ class Turned:
         return formula
 
     def _writes(self, formula: Formula) -> bool:
-        """Whether a formula writes out the value of one of the letters."""
+        """Return whether a formula writes out the value of one of the letters."""
         if isinstance(formula, Literal):
             return isinstance(formula.value, Matrix) and formula.value in self.values
         return any(self._writes(part) for part in children(formula))

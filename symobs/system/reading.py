@@ -15,7 +15,7 @@ _DECIMAL = re.compile(r"\d\.\d")
 
 
 def has_decimals(value: object) -> bool:
-    """Tell whether a number is written with a point somewhere in a text or in nested lists of texts."""
+    """Return whether a number is written with a point somewhere in a text or in nested lists of texts."""
     if isinstance(value, (list, tuple)):
         return any(has_decimals(entry) for entry in value)
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False

@@ -243,7 +243,7 @@ class StateSpace:
         return self.ideal.simplified(value) if self.ideal is not None else value
 
     def admits(self, value: Scalar | Matrix) -> bool:
-        """Tell whether a value has a meaning here: whether its denominator is not one of what is known to be 0."""
+        """Return whether a value has a meaning here: whether its denominator is not one of what is known to be 0."""
         return self.ideal is None or value.common_denominator() not in self.ideal
 
     @property

@@ -163,7 +163,7 @@ _INNERMOST = re.compile(rf"\{{{_FORM}\}}")
 
 
 def _is_plain_latex(text: str) -> bool:
-    """Whether TeX can set a form anywhere: named commands only, whole groups, no script twice, and no `^^` code."""
+    """Return whether TeX can set a form anywhere: named commands only, whole groups, no script twice, and no `^^` code."""
     if _GROUP in text or text != text.strip() or not re.search("[A-Za-z]", text):
         return False
     shorter = _INNERMOST.sub(_GROUP, text)
@@ -196,5 +196,5 @@ def _symbols_in(values: object) -> Iterator[Any]:
 
 
 def is_sympy(value: object) -> bool:
-    """Tell whether a value is a SymPy object, without importing SymPy."""
+    """Return whether a value is a SymPy object, without importing SymPy."""
     return "sympy" in sys.modules and type(value).__module__.startswith("sympy")

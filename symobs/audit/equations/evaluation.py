@@ -263,7 +263,7 @@ def _block(rows: Sequence[Sequence[SyntaxNode]], reading: Reading) -> Printed:
 
 
 def _in_blocks(found: Sequence[Sequence[Printed]]) -> bool:
-    """Whether a bracket holds matrices, so that a number 0 stands for a zero matrix."""
+    """Return whether a bracket holds matrices, so that a number 0 stands for a zero matrix."""
     values = [value for row in found for value in row]
     return any(isinstance(value, Flexible) or shape(value) not in (None, (1, 1)) for value in values)
 
@@ -362,7 +362,7 @@ def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
 
 
 def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
-    """Tell whether an equation is true; one whose sizes do not fit is not."""
+    """Return whether an equation is true; one whose sizes do not fit is not."""
     try:
         return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
     except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
@@ -370,6 +370,6 @@ def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
 
 
 def is_rounded(node: SyntaxNode, reading: Reading) -> bool:
-    """Whether a side is a value written out with decimals."""
+    """Return whether a side is a value written out with decimals."""
     value = as_printed(node, reading)
     return value is not None and bool(decimals_in(value))

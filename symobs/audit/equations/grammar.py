@@ -113,7 +113,7 @@ class _Printed(Tokeniser):
             super()._imply(kind, at)
 
     def _is_applied(self, at: int) -> bool:
-        """Whether the "(" that begins here holds the argument of the letter before it."""
+        """Return whether the "(" that begins here holds the argument of the letter before it."""
         letter = next((token for token in reversed(self.tokens) if token.type != "PRIME"), None)
         if (
             self.spaced

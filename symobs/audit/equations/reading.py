@@ -66,7 +66,7 @@ class EquationConditions:
         return "nonnegative" if known > 0 else "nonpositive"
 
     def excludes(self, values: Sequence[Scalar], nonzero: tuple[Scalar, ...]) -> bool:
-        """Tell whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""
+        """Return whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""
         single = [value for group in self.apart if len(group) == 1 for value in group]
         try:
             if never_together_zero(values, (), self.signs, (*nonzero, *vanishing_factors(single, self.signs))):

@@ -32,7 +32,7 @@ def shape(term: Term) -> tuple[int, int] | None:
 
 
 def is_signal(printed: Printed) -> bool:
-    """Whether a value is made of signals."""
+    """Return whether a value is made of signals."""
     return isinstance(printed, Term) and isinstance(printed.value, Signal)
 
 
@@ -59,7 +59,7 @@ def kind_of(term: Term) -> str:
 
 
 def alike(left: Term, right: Term) -> bool:
-    """Whether two values can be added."""
+    """Return whether two values can be added."""
     single = ((1, 1), None)
     if is_signal(left) != is_signal(right):
         return False
@@ -86,7 +86,7 @@ def _is_zero(term: Term) -> bool:
 
 
 def equal(left: Term, right: Term) -> bool:
-    """Tell whether two sides are equal, by a certificate."""
+    """Return whether two sides are equal, by a certificate."""
     environment = left.environment
     exact = [value for value in (left.value, right.value) if isinstance(value, (Scalar, Matrix))]
     meanings, relations = identities(exact)

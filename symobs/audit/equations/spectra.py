@@ -21,7 +21,7 @@ def spectral(left: SyntaxNode, right: SyntaxNode, variable: str) -> tuple[Syntax
 
 
 def is_spectrum(node: SyntaxNode) -> bool:
-    """Whether this is `eigenvalues(X)`."""
+    """Return whether this is `eigenvalues(X)`."""
     return node.kind == "call" and node.text == "eigenvalues"
 
 

@@ -88,7 +88,7 @@ class Field:
         return _join(self, other)
 
     def __le__(self, other: Field) -> bool:
-        """Tell whether every generator of this field is one of `other`."""
+        """Return whether every generator of this field is one of `other`."""
         return all(name in other.position for name in self.names)
 
     def __repr__(self) -> str:

@@ -114,7 +114,7 @@ def _cosine(turns: Fraction) -> Scalar:
 
 
 def leads_with_minus(value: Scalar) -> bool:
-    """Whether the first term of the numerator, plain symbols before roots, is negative."""
+    """Return whether the first term of the numerator, plain symbols before roots, is negative."""
     return value.terms()[0][0] < 0
 
 

@@ -71,7 +71,7 @@ def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_
 
 
 def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
-    """Tell whether it is easily seen that no factor divides the denominator and all entries.
+    """Return whether it is easily seen that no factor divides the denominator and all entries.
 
     A factor of the denominator is free of the generators that the denominator lacks, so it divides the coefficients
     of the entries in those; the leading ones are much shorter than the entries, and mostly two of them suffice.

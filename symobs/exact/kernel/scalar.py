@@ -263,7 +263,7 @@ class Scalar:
         return 0 if index is None else int(self.numerator_part.degrees()[index])
 
     def is_polynomial_in(self, variable: str) -> bool:
-        """Whether the denominator is free of `variable`."""
+        """Return whether the denominator is free of `variable`."""
         index = self.field.position.get(variable)
         return index is None or self.denominator_part.degrees()[index] <= 0
 

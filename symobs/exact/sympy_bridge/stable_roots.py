@@ -50,7 +50,7 @@ def _decided(polynomial: fmpz_poly, *, discrete: bool) -> tuple[list[acb], list[
 
 
 def _is_on_boundary(number: int, roots: Sequence[acb], polynomial: fmpz_poly, *, discrete: bool) -> bool:
-    """Tell whether a root is surely its own mirror image: that is a root too, and lies near no other one."""
+    """Return whether a root is surely its own mirror image: that is a root too, and lies near no other one."""
     coefficients = polynomial.coeffs()
     image = coefficients[::-1] if discrete else [-c if k % 2 else c for k, c in enumerate(coefficients)]
     if fmpz_poly(image) not in (polynomial, -polynomial):
@@ -74,7 +74,7 @@ def _as_counted(factor: Scalar, variable: str, roots: Sequence[acb], numbers: Se
 
 
 def _meets(root: acb, rectangle: Any) -> bool:
-    """Tell whether an enclosure reaches into a rectangle of SymPy's."""
+    """Return whether an enclosure reaches into a rectangle of SymPy's."""
     ends = ((root.real, rectangle.ax, rectangle.bx), (root.imag, rectangle.ay, rectangle.by))
     return all(not (part < _number(low) or part > _number(high)) for part, low, high in ends)
 

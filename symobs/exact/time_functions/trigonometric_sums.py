@@ -15,7 +15,7 @@ _WAVES = {"cos", "sin"}
 
 
 def depends_on_time(name: str, by: str) -> bool:
-    """Whether a generator is a function of another one."""
+    """Return whether a generator is a function of another one."""
     found = function_named(name)
     return found is not None and found.kind != "sqrt" and by in found.symbols
 

@@ -136,12 +136,12 @@ class _Arranging:
         return label if self.is_end(node) else None
 
     def hands_on_its_sign(self, node: str) -> bool:
-        """Whether a box leads straight to a junction."""
+        """Return whether a box leads straight to a junction."""
         ends = [wire.end for wire in self.figure.out_of(node)]
         return len(ends) == 1 and self.figure.is_junction(ends[0])
 
     def is_end(self, node: str) -> bool:
-        """Whether a node is an input or output of the figure."""
+        """Return whether a node is an input or output of the figure."""
         is_between = bool(self.figure.into(node)) and bool(self.figure.out_of(node))
         return not (is_between or is_box(node) or is_integrator(node))
 
@@ -178,11 +178,11 @@ class _Arranging:
                 yield arriving[0], (label, False)
 
     def begins_across(self, wire: Wire) -> bool:
-        """Whether a wire begins horizontally."""
+        """Return whether a wire begins horizontally."""
         return wire.turn == "-|" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
 
     def ends_across(self, wire: Wire) -> bool:
-        """Whether a wire ends horizontally."""
+        """Return whether a wire ends horizontally."""
         return wire.turn == "|-" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
 
     def row(self, node: str) -> int:
@@ -190,7 +190,7 @@ class _Arranging:
         return self.figure.place[node][1]
 
     def is_entered_from_above(self, node: str) -> bool:
-        """Whether the sign of a wire stands where something over the wire that leaves would stand."""
+        """Return whether the sign of a wire stands where something over the wire that leaves would stand."""
         arriving = [wire for wire in self.figure.into(node) if not self.ends_across(wire)]
         return self.figure.is_junction(node) and any(self.row(wire.begin) < self.row(node) for wire in arriving)
 
@@ -267,7 +267,7 @@ class _Arranging:
         )
 
     def is_drawn(self, node: str) -> bool:
-        """Whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
+        """Return whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
         return self.shown(node) is not None or self.figure.is_junction(node)
 
     def mark(self, wire: Wire, label: Label, at_beginning: bool) -> DiagramMark:  # noqa: FBT001

@@ -60,7 +60,7 @@ class _Letters(TextPrinter):
     """Formulas on one line, as a terminal has them, but a rate has its dot."""
 
     def letter(self, name: str, mark: str) -> TextBox:
-        """A letter; a dot goes above an accent that is there."""
+        """Return a letter; a dot goes above an accent that is there."""
         if mark == "dot":
             text = self.letter_text(name)
             return text_box(text + (DOT if unicodedata.combining(text[-1]) else _DOT), Level.POWER)
@@ -160,7 +160,7 @@ def _path(points: tuple[Point, ...]) -> str:
 
 
 def _head(line: Line) -> str:
-    """The head of an arrow, its tip at the end of the wire."""
+    """Return the head of an arrow at the end of a wire."""
     (x0, y0), (x1, y1) = line.points[-2:]
     long = abs(x1 - x0) + abs(y1 - y0)
     across, down = (x1 - x0) / long, (y1 - y0) / long
@@ -170,7 +170,7 @@ def _head(line: Line) -> str:
 
 
 def _label(label: Label, centre: Point, printer: TextPrinter, anchor: str = "middle") -> Iterator[str]:
-    """Rows below one another around a place."""
+    """Return rows below one another around a place."""
     rows = _rows(label, printer)
     top = centre[1] - sum(row.height for row in rows) / 2
     for row in rows:
@@ -205,7 +205,7 @@ def _sign(sign: SignMark) -> str:
 
 
 def _written(text: str, centre: Point, anchor: str = "middle", size: float = 1.0) -> str:
-    """A line of text with its middle at a height."""
+    """Return a line of text with its middle at a height."""
     inside = spans([TextRun(text, is_math=True)], size * _EM)
     place = f'x="{_length(centre[0])}" y="{_length(centre[1] + 0.32 * size)}"'
     font = f' font-size="{_length(size)}"' if size != 1 else ""

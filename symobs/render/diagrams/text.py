@@ -163,7 +163,7 @@ def _cell(place: Point) -> tuple[int, int]:
 
 
 def _is_middle(place: Point) -> bool:
-    """Whether a place is the middle of a cell, not the border of a box."""
+    """Return whether a place is the middle of a cell, not the border of a box."""
     return place[0] % 1 == 0.5 and place[1] % 1 == 0.5
 
 

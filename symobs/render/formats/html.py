@@ -210,7 +210,7 @@ class HtmlWriter:
         return "\n".join(filter(None, (heading, f'<p class="source">{below}</p>' if below else "")))
 
     def _heading(self, number: str, words: str) -> str:
-        """A heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
+        """Return a heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
         depth = min(6, self.level + max(1, number.count(".")))
         words = f"{number} {words}".strip().removesuffix(".")
         if self.prefix is None:
@@ -219,7 +219,7 @@ class HtmlWriter:
         return f'<h{depth} id="{self.prefix}s-{place}">{words}</h{depth}>'
 
     def _columns(self, block: Columns) -> str:
-        """A table with a column of blocks for each head."""
+        """Return a table with a column of blocks for each head."""
         inset = self.printer.width - (self.printer.width - _INSET) / len(block.heads)
         inside = HtmlWriter(self.printer, prefix=None, level=self.level + 1, inset=inset)
         heads = "".join(f'<th scope="col">{self.sentence(head)}</th>' for head in block.heads)
@@ -246,7 +246,7 @@ class HtmlWriter:
         )
 
     def _text_printer(self) -> TextPrinter:
-        """The printer of the words inside pictures."""
+        """Return the printer of the words inside pictures."""
         own = self.printer
         printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete)
         printer.letters = own.letters

@@ -96,7 +96,7 @@ def values_of(document: Document) -> dict[str, object]:
 
 
 def has_drawings(blocks: Sequence[Block]) -> bool:
-    """Whether a page needs TikZ."""
+    """Return whether a page needs TikZ."""
     return any(isinstance(block, Drawing | PictureBlock) for block in every(blocks))
 
 

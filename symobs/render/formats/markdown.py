@@ -204,7 +204,7 @@ class MarkdownWriter:
         return f"${portable(latex).strip()}$"
 
     def _text_printer(self) -> TextPrinter:
-        """The printer of what is drawn with characters."""
+        """Return the printer of what is drawn with characters."""
         own = self.printer
         printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete, width=_SKETCH)
         printer.letters = own.letters

@@ -86,7 +86,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
 
 
 def conditions(sentence: Sentence | None) -> bool:
-    """Whether a sentence may condition an answer: it holds an inequality, or asserts a property."""
+    """Return whether a sentence may condition an answer: it holds an inequality, or asserts a property."""
     if sentence is None:
         return False
     slots = [slot for _, slot in sentence.slots]
@@ -98,7 +98,7 @@ def conditions(sentence: Sentence | None) -> bool:
 
 
 def _introduces(sentence: Sentence | None) -> bool:
-    """Whether a sentence says what the answer below it is, not how it was found, and needs no sentence before it."""
+    """Return whether a sentence says what the answer below it is, not how it was found, and needs no sentence before it."""
     if sentence is None or conditions(sentence):
         return sentence is not None
     return _begins(sentence) and sentence.key not in EXPLAINS
@@ -127,23 +127,23 @@ def _is_transposed(first: Formula, others: Sequence[Formula]) -> bool:
 
 
 def _spells_out(step: Define | Equal) -> bool:
-    """Whether a step says what short names stand for, in which answers are written."""
+    """Return whether a step says what short names stand for, in which answers are written."""
     return step.sentence is not None and step.sentence.key in SPELLS_OUT
 
 
 def _is_seen(step: Step) -> bool:
-    """Whether a step leaves anything on the page."""
+    """Return whether a step leaves anything on the page."""
     is_bare_fact = isinstance(step, Conclude) and step.sentence is None
     return not (getattr(step, "silent", False) or is_bare_fact)
 
 
 def _begins(sentence: Sentence | None) -> bool:
-    """Whether a sentence can be read without the one before it."""
+    """Return whether a sentence can be read without the one before it."""
     return sentence is not None and PHRASES[sentence.key][:1].isupper()
 
 
 def _speaks_of_before(step: Step) -> bool:
-    """Whether a step is about what was shown before it: a finding, a condition, or what short names stand for."""
+    """Return whether a step is about what was shown before it: a finding, a condition, or what short names stand for."""
     if isinstance(step, Define | Equal):
         return _spells_out(step)
     return getattr(step, "sentence", None) is not None and not isinstance(step, Case)

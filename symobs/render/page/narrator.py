@@ -348,7 +348,7 @@ class _PageBlocks:
 
 
 def _is_statement(step: Step) -> bool:
-    """Whether a step states the problem: a section titled as given, or data on their own."""
+    """Return whether a step states the problem: a section titled as given, or data on their own."""
     if isinstance(step, Section):
         return step.title.key == "given"
     return isinstance(step, Given) and not _is_condition(step)

@@ -29,7 +29,7 @@ def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]
 
 
 def is_beside(step: Step) -> TypeGuard[Section]:
-    """Whether a step is a section whose sections stand side by side."""
+    """Return whether a step is a section whose sections stand side by side."""
     return isinstance(step, Section) and step.title.key in BESIDE
 
 

@@ -130,7 +130,7 @@ def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float,
 
 
 def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
-    """Whether one of the pieces of lines meets a box."""
+    """Return whether one of the pieces of lines meets a box."""
     left, bottom, right, top = box.left, box.bottom, box.right, box.top
     for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
         is_aside = piece_left > right or left > piece_right or piece_bottom > top or bottom > piece_top
@@ -140,7 +140,7 @@ def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, floa
 
 
 def _crosses(line: Sequence[Point], box: Rectangle) -> bool:
-    """Whether a line meets a box."""
+    """Return whether a line meets a box."""
     return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
 
@@ -172,7 +172,7 @@ def _apart(box: Rectangle, other: Rectangle) -> float:
 
 
 def contains(area: Sequence[Point], place: Point) -> bool:
-    """Whether a place lies in a polygon."""
+    """Return whether a place lies in a polygon."""
     x, y = place
     crossings = 0
     for (x0, y0), (x1, y1) in zip(area, [*area[1:], *area[:1]], strict=True):

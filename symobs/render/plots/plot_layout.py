@@ -192,7 +192,7 @@ def ticks(low: float, high: float, most: int = _TICKS) -> list[tuple[float, str]
 
 
 def _line(picture: LinePicture, measure: Measure) -> Scene:
-    """A line with thick pieces; labels of ends that would overlap stand on further rows."""
+    """Return a line with thick pieces; labels of ends that would overlap stand on further rows."""
     low, high = _decimal(picture.window)
     frame = _Frame((low, high), (0.0, 1.0), _LINE, 1.0)
 
@@ -243,7 +243,7 @@ def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[TextLabel]:
 
 
 def _poles(picture: PoleMap, measure: Measure) -> Scene:
-    """The plane of poles with equal scales, the stable part shaded, arrows on the paths."""
+    """Return the plane of poles with equal scales, the stable part shaded, arrows on the paths."""
     frame = _square_frame(picture.window)
     (left, _), (bottom, top) = frame.horizontal, frame.vertical
     if picture.discrete:
@@ -272,7 +272,7 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
 
 
 def _responses(picture: TimeResponse, measure: Measure) -> Scene:
-    """Signals over time, each with its name beside it."""
+    """Return signals over time, each with its name beside it."""
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [

@@ -39,13 +39,13 @@ class Rectangle:
         return Rectangle(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def meets(self, other: Rectangle) -> bool:
-        """Whether two rectangles overlap."""
+        """Return whether two rectangles overlap."""
         return (
             self.left < other.right and other.left < self.right and self.bottom < other.top and other.bottom < self.top
         )
 
     def holds(self, other: Rectangle) -> bool:
-        """Whether another rectangle lies inside."""
+        """Return whether another rectangle lies inside."""
         return (
             self.left <= other.left
             and other.right <= self.right

@@ -122,7 +122,7 @@ def _stroke(stroke: Stroke) -> str:
 
 
 def _arrow(stroke: Stroke) -> str:
-    """The head of an axis."""
+    """Return the head of an axis."""
     (x0, y0), (x1, y1) = stroke.points[-2:]
     head = arrow_head(Sign("arrow", (x1, y1), (x1 - x0, y1 - y0)))
     return f'<path fill="currentColor" d="{_path(head)}Z"/>'
@@ -154,7 +154,7 @@ def _path(points: Iterable[Point]) -> str:
 
 
 def _written(place: Point, anchor: str, pieces: Iterable[TextRun]) -> str:
-    """A text at its baseline."""
+    """Return a text at its baseline."""
     x, y = coordinate(place[0]), coordinate(0.3 * FONT_SIZE - place[1])
     return f'<text x="{x}" y="{y}" text-anchor="{anchor}" fill="currentColor">{spans(pieces, FONT_SIZE)}</text>'
 

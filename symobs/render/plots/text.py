@@ -40,7 +40,7 @@ def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
 
 
 def _region(picture: RegionPicture, printer: TextPrinter) -> str:
-    """`#` where it is stable, `.` elsewhere."""
+    """Return `#` where it is stable, `.` elsewhere."""
     areas = [[(float(x), float(y)) for x, y in area] for area in picture.areas]
 
     def character(x: float, y: float) -> str:
@@ -54,7 +54,7 @@ def _region(picture: RegionPicture, printer: TextPrinter) -> str:
 
 
 def _poles(picture: PoleMap, printer: TextPrinter) -> str:
-    """`*` along the paths, `x` where they begin, `o` where they end, `:` where poles are stable."""
+    """Return `*` along the paths, `x` where they begin, `o` where they end, `:` where poles are stable."""
     edge = float(picture.margin or 0)
 
     def character(x: float, y: float) -> str:
@@ -72,7 +72,7 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
 
 
 def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
-    """A character for each response, which the line above explains."""
+    """Return a character for each response, which the line above explains."""
     grid = _grid(picture.window, lambda _x, _y: " ")
     zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
     if picture.window[1][0] < 0 < picture.window[1][1]:
@@ -126,7 +126,7 @@ def _short(value: Fraction) -> str:
 
 
 def _line(picture: LinePicture, printer: TextPrinter, width: int) -> str:
-    """`━` where it is stable, `○` at the ends, which do not belong to it; labels below, on as many rows as they need."""
+    """Return `━` where it is stable, `○` at the ends, which do not belong to it; labels below, on as many rows as they need."""
     low, high = picture.window
 
     def column(value: Fraction) -> int:

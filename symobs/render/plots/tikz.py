@@ -76,7 +76,7 @@ def measure_for(printer: LatexPrinter) -> Measure:
 
 
 def _shades(areas: tuple[tuple[Point, ...], ...]) -> Iterator[str]:
-    """One path for all areas: two that touch show no seam."""
+    """Return one path for all areas: two that touch show no seam."""
     if areas:
         yield rf"\fill[{_SHADE}] {' '.join(f'{_path(area)}--cycle' for area in areas)};"
 

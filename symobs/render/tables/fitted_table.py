@@ -128,7 +128,7 @@ def _definition(
 
 
 def _is_wide(value: Scalar, name: str, printer: Printer[B], line: float) -> bool:
-    """Tell whether name = value is wider than a line."""
+    """Return whether name = value is wider than a line."""
     return printer.relation(Relation((Literal(Scalar.symbol(name)), Literal(value)), ("=",))).width > line
 
 

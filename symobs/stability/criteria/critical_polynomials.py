@@ -128,7 +128,7 @@ class CriticalPolynomials:
         return tuple(dict.fromkeys([*self.proper, *signed]))
 
     def allows(self, point: Mapping[str, Fraction]) -> bool:
-        """Tell whether the declared signs allow a rational point off the critical set."""
+        """Return whether the declared signs allow a rational point off the critical set."""
         up, down = {"positive", "nonnegative"}, {"negative", "nonpositive"}
         return all(
             value < 0 if self.signs.get(name) in down else value > 0
@@ -137,7 +137,7 @@ class CriticalPolynomials:
         )
 
     def is_stable(self, point: Mapping[str, Fraction]) -> bool:
-        """Tell whether the polynomial is stable at a rational point, by Routh's table; never where it has no meaning."""
+        """Return whether the polynomial is stable at a rational point, by Routh's table; never where it has no meaning."""
         return value_at(self.denominator, point) != 0 and all_to_the_left(self.at(point))
 
     @cached_property

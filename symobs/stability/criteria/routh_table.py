@@ -113,7 +113,7 @@ def _derivative(above: RouthRow) -> tuple[Scalar, ...]:
 
 
 def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
-    """Tell whether this is the table of the polynomial with these coefficients.
+    """Return whether this is the table of the polynomial with these coefficients.
 
     Nothing is divided: a row is held to the two above it by cross-multiplication.
     """
@@ -137,7 +137,7 @@ def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
 def _follows(
     row: RouthRow, above: RouthRow, before: RouthRow | None, epsilon: str, coefficients: Sequence[Scalar]
 ) -> bool:
-    """Tell whether a row is what the two rows above it ask for; below the first one it holds every other coefficient."""
+    """Return whether a row is what the two rows above it ask for; below the first one it holds every other coefficient."""
     if before is None:
         factor, wanted, rule = Scalar.of(1), tuple(coefficients[1::2]), "coefficients"
     else:

@@ -119,7 +119,7 @@ def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
 
 
 def on_boundary(factor: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
-    """Tell whether all roots of an irreducible factor surely lie on the imaginary axis (the unit circle), each once.
+    """Return whether all roots of an irreducible factor surely lie on the imaginary axis (the unit circle), each once.
 
     q(s) = p(s²) has only simple imaginary roots exactly when q + q′ is stable (Hermite and Biehler): the roots of p are
     then real, negative and distinct.
@@ -147,7 +147,7 @@ def is_marginal(
     discrete: bool,
     apart: Collection[Scalar] = (),
 ) -> bool:
-    """Tell whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple.
+    """Return whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple.
 
     Two factors with roots on the boundary must not meet: `apart` holds irreducible polynomials known not to vanish.
     """
@@ -180,7 +180,7 @@ def marginal_where(
 
 
 def is_beyond(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
-    """Tell whether some root surely lies in Re s > 0 (|z| > 1).
+    """Return whether some root surely lies in Re s > 0 (|z| > 1).
 
     A factor with numbers for coefficients has one there where it is neither stable nor wholly on the boundary, since its
     roots on the boundary would bring a mirror image of every other.  With parameters two coefficients of surely opposite
@@ -231,7 +231,7 @@ def _number(generator: random.Random, sign: str) -> Fraction:
 
 
 def no_stable_compensator(transfer_function: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
-    """Tell whether a strictly proper P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
+    """Return whether a strictly proper P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
 
     With F = n/δ the loop's polynomial is χδ + Nn, which is monic as χδ is.  It is positive at z, being stable, so
     δ(z) < 0, although δ(s) tends to +∞: δ has a root beyond z.  (Half of the parity interlacing property of Youla,

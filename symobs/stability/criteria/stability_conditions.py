@@ -72,7 +72,7 @@ def is_stable_where(
     radius: Scalar | None = None,
     proof: Equivalence | None = None,
 ) -> bool:
-    """Tell whether it is proven that all roots are stable exactly where all of `said` are positive (trusted).
+    """Return whether it is proven that all roots are stable exactly where all of `said` are positive (trusted).
 
     A proof that comes along is checked against the lists computed here; else one is looked for.  Saying something that
     is seen to follow from the rest is refused.
@@ -91,7 +91,7 @@ def is_stable_where(
 
 
 def _is_checked(proof: Equivalence, lists: Sequence[Sequence[Scalar]], signs: Mapping[str, str]) -> bool:
-    """Tell whether a proof is about one of the lists, and holds."""
+    """Return whether a proof is about one of the lists, and holds."""
     return any(set(proof.raw) == set(map(cleared, found)) for found in lists) and proof.holds(signs)
 
 

@@ -34,7 +34,7 @@ _UNDECIDED = Decision("undecided")
 
 
 def decide_empty(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Decision:
-    """Tell whether the conditions, each > 0, hold nowhere; the steps of a yes lead from them to 0 > 0."""
+    """Return whether the conditions, each > 0, hold nowhere; the steps of a yes lead from them to 0 > 0."""
     state = _in_parts(conditions, signs)
     point, steps = nonempty_or_not(state.current, signs, Resources(0))
     if point is not None:
@@ -43,7 +43,7 @@ def decide_empty(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Deci
 
 
 def implies(conditions: Sequence[Scalar], other: Scalar, signs: Mapping[str, str]) -> Decision:
-    """Tell whether other > 0 wherever all conditions are > 0; a point of a no is one where they are and it is not."""
+    """Return whether other > 0 wherever all conditions are > 0; a point of a no is one where they are and it is not."""
     state, wanted = _in_parts(conditions, signs, split=True), _in_parts((other,), signs)
     found = [_follows(part, state.current, signs) for part in wanted.current]
     for decision in found:

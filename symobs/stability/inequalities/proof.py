@@ -73,7 +73,7 @@ class Equivalence:
 
 
 def proves(steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether the steps, each of which is checked, lead from `known` > 0 to every goal > 0."""
+    """Return whether the steps, each of which is checked, lead from `known` > 0 to every goal > 0."""
     found = set(known)
     for step in steps:
         if not _follows(step, found, signs):
@@ -83,7 +83,7 @@ def proves(steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scala
 
 
 def refutes(steps: Sequence[Step], known: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether the steps show that the known values are nowhere all positive."""
+    """Return whether the steps show that the known values are nowhere all positive."""
     return proves(steps, known, (ZERO,), signs)
 
 
@@ -106,7 +106,7 @@ def _follows(step: Step, known: set[Scalar], signs: Mapping[str, str]) -> bool:
 
 
 def _is_never_negative(coefficient: Scalar, signs: Mapping[str, str]) -> bool:
-    """Tell whether a coefficient is defined everywhere, and nowhere negative."""
+    """Return whether a coefficient is defined everywhere, and nowhere negative."""
     weak = {"positive", "nonnegative", "zero"}
     return sign_of(coefficient, signs) in weak and never_zero(coefficient.denominator, signs)
 
@@ -119,7 +119,7 @@ def _sum(products: Sequence[Product]) -> Scalar:
 
 
 def asks_z3(proof: Equivalence | None) -> bool:
-    """Tell whether a proof rests on what z3 says."""
+    """Return whether a proof rests on what z3 says."""
     steps = (*proof.forward, *proof.backward) if proof is not None else ()
     return any(_asks(step) for step in steps)
 

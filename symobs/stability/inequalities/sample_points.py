@@ -42,12 +42,12 @@ _ALLOWED = {
 
 
 def holds_at(positive: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
-    """Tell whether all polynomials are positive at a rational point."""
+    """Return whether all polynomials are positive at a rational point."""
     return all(value_at(value, point) > 0 for value in positive)
 
 
 def respects(point: Mapping[str, Fraction], signs: Mapping[str, str]) -> bool:
-    """Tell whether the coordinates have their declared signs."""
+    """Return whether the coordinates have their declared signs."""
     return all(_may_be(value, signs.get(name, "real")) for name, value in point.items())
 
 

@@ -139,6 +139,6 @@ def _greatest(values: Sequence[Scalar], signs: Mapping[str, str]) -> Scalar | No
 
 
 def _holds(value: Scalar, sample: Mapping[str, Scalar], needs: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether a condition holds at a symbolic point where the needs are positive."""
+    """Return whether a condition holds at a symbolic point where the needs are positive."""
     there = value.substitute(sample)
     return sign_of(there, signs) == "positive" or any(sign_of(there / need, signs) == "positive" for need in needs)

@@ -37,7 +37,7 @@ def names_of(values: Sequence[Scalar]) -> list[str]:
 
 
 def is_free(name: str) -> bool:
-    """Tell whether a generator is a symbol that may take any value of its sign: not √2, not π."""
+    """Return whether a generator is a symbol that may take any value of its sign: not √2, not π."""
     return name != PI and function_named(name) is None
 
 
@@ -95,7 +95,7 @@ def _cost(statistics: Any) -> int:
 
 
 def none_by_z3(positive: Sequence[Scalar], signs: Mapping[str, str], *, not_above: Scalar | None = None) -> bool:
-    """Tell whether z3 shows that no point makes all positive, and one value not positive."""
+    """Return whether z3 shows that no point makes all positive, and one value not positive."""
     return point_by_z3(positive, signs, not_above=not_above)[0] == "no"
 
 

@@ -36,7 +36,7 @@ class Edge:
     name: str
 
     def is_finite_at(self, x: RealNumber) -> bool:
-        """Tell whether the branch does not run off there: its leading coefficient, or denominator, is not 0."""
+        """Return whether the branch does not run off there: its leading coefficient, or denominator, is not 0."""
         below = self.polynomial.coefficients(self.name)[0] if self.closed is None else self.closed.denominator
         return below.is_constant or x.sign_of(integer_factor(below, next(iter(below.names)))) != 0
 
@@ -102,14 +102,14 @@ def meetings_of(region: PlaneRegion) -> list[Meeting]:
 
 
 def is_regular(part: CylindricalPart, end: RealNumber | None) -> bool:
-    """Tell whether the bounds of a part have a meaning at one of its ends."""
+    """Return whether the bounds of a part have a meaning at one of its ends."""
     edges = [edge for edge in (part.lower, part.upper) if edge is not None]
     # the number of a root may be another one on the wall itself
     return end is not None and all(edge.closed is not None and edge.is_finite_at(end) for edge in edges)
 
 
 def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
-    """Tell whether parts leave nothing out: where cells meet, the piece of the wall belongs to a part on one side."""
+    """Return whether parts leave nothing out: where cells meet, the piece of the wall belongs to a part on one side."""
     part_of = {cell: part for part in found for cell in part.cells}
     return not region.holes and all(
         part_of[m.left] is part_of[m.right]
@@ -141,7 +141,7 @@ def relations_of(part: CylindricalPart, names: tuple[str, str]) -> tuple[Relatio
 
 
 def is_written(part: CylindricalPart) -> bool:
-    """Tell whether every bound of y has a closed form."""
+    """Return whether every bound of y has a closed form."""
     return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 
 

@@ -293,7 +293,7 @@ def plane_region(critical: CriticalPolynomials, names: tuple[str, str]) -> Plane
 
 
 def can_be_divided(region: PlaneRegion) -> bool:
-    """Tell whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
+    """Return whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
     if region.critical.never:
         return True
     if projection_size(region.critical.factors, region.names) > LARGEST_PROJECTION:

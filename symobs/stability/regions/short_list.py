@@ -30,7 +30,7 @@ class RegionInequality(NamedTuple):
     operator: str = ">"
 
     def at(self, point: dict[str, Fraction]) -> bool:
-        """Tell whether it holds at a rational point."""
+        """Return whether it holds at a rational point."""
         value = value_at(self.polynomial, point)
         return value > 0 if self.operator == ">" else value != 0
 
@@ -86,7 +86,7 @@ def short_list(region: ExactRegion) -> tuple[RegionInequality, ...]:
 
 
 def is_exact(region: ExactRegion, bounds: Sequence[RegionInequality]) -> bool:
-    """Tell whether these inequalities hold exactly on the region."""
+    """Return whether these inequalities hold exactly on the region."""
     factors = irreducible(bound.polynomial for bound in bounds)
     # these do not vanish anywhere in the region; of others a curve or a point inside might be left out by a list
     known = {*region.critical.factors, *irreducible(region.critical.conditions)}

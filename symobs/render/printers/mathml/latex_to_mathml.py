@@ -204,7 +204,7 @@ class _Reader:
         return [LatexPart(f"<mi{_normal(words)}>{escape(words)}</mi>")]
 
     def function(self, name: str) -> list[LatexPart]:
-        """A function's name; a space where its argument has no parentheses."""
+        """Return a function's name; a space where its argument has no parentheses."""
         follows = self.pieces[self.place] if self.place < len(self.pieces) else "("
         space = [] if follows == "(" else [LatexPart(APPLY), LatexPart(THIN)]
         return [LatexPart(f"<mi{_normal(name)}>{escape(name)}</mi>"), *space]
@@ -228,12 +228,12 @@ _SIGN_ELEMENTS = {"(": OPENING, ")": CLOSING, "-": "<mo>−</mo>", r"\ldots": "<
 
 
 def _normal(word: str) -> str:
-    """A single letter would be slanted; words are upright anyway."""
+    """Return a function's name, a single letter made upright."""
     return ' mathvariant="normal"' if len(word) == 1 else ""
 
 
 def _upright(letter: str) -> str:
-    """Capital Greek letters stand upright, as in LaTeX."""
+    """Return a letter, capital Greek ones upright as in LaTeX."""
     return ' mathvariant="normal"' if letter.isupper() else ""
 
 

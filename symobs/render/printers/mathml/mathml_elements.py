@@ -75,5 +75,5 @@ def pieces(elements: tuple[str, ...], width: float) -> Iterator[str]:
 
 
 def is_word(element: str) -> bool:
-    """Whether an element is a name of several letters."""
+    """Return whether an element is a name of several letters."""
     return re.match(r"<m(?:sub><m)?i>[^<]{2,}</mi>", element) is not None
