@@ -33,7 +33,7 @@ _COSINES |= {Fraction(1, 3): (Fraction(1, 2), 1), Fraction(1, 2): (Fraction(0), 
 
 
 class NotWritten(ArithmeticError):
-    """A cosine without a closed form in the table."""
+    """A value has no closed form by square roots."""
 
 
 @dataclass(frozen=True)
