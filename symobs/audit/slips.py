@@ -1,4 +1,4 @@
-"""The slips of a formula: which one small change of what is printed makes it true.
+"""Slips of a formula: the single small changes that make a printed equation true.
 
 Kinds are tried from the simplest on, and the first that finds something decides.  A change counts only if the equation
 is then true, and only if it is the only one of its kind, or the only one that stays with the same letter.
@@ -30,7 +30,7 @@ _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
 @dataclass(frozen=True)
 class Slip:
-    """A changed side, what was changed, and whether the same letter still stands there."""
+    """A changed side, the change, and whether its letter is kept."""
 
     side: SyntaxNode
     reason: str
@@ -38,26 +38,26 @@ class Slip:
 
 
 class Alphabet(Protocol):
-    """What a slip may know of the letters of an equation."""
+    """The interface of the letters of an equation for the search for slips."""
 
     def offered(self, name: str, *, primed: bool) -> Collection[str]:
-        """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
+        """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
 
     def is_signal(self, name: str) -> bool:
         """Return whether a letter is a signal."""
 
     def rounded(self, block: SyntaxNode) -> str | None:
-        """Return the letter whose value a bracket of decimals is, rounded."""
+        """Return the letter whose value rounds to a matrix of decimals."""
 
 
 @dataclass()
 class SearchBudget:
-    """How much may still be tried for the findings of a file."""
+    """The remaining trials of the search for the findings of a file."""
 
     left: int = _MOST_PARTS_OF_A_FILE
 
     def asks(self, true: Callable[[SyntaxNode, SyntaxNode], bool]) -> Callable[[SyntaxNode, SyntaxNode], bool]:
-        """Return the same question for one finding; it is answered with no when too much has been asked."""
+        """Return a test limited to the trials of one finding; beyond them it answers no."""
         end = max(0, self.left - _MOST_PARTS)
 
         def asked(left: SyntaxNode, right: SyntaxNode) -> bool:
@@ -73,7 +73,7 @@ class SearchBudget:
 def found_slip(
     left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
-    """Return both sides as they should stand and the reason, None where no single slip explains what is printed."""
+    """Return the corrected sides and the reason, None if no single slip explains the equation."""
     kinds: list[Callable[[SyntaxNode], Iterator[Slip]]] = [
         lambda side: _digits(side, alphabet),
         _exchanged,
@@ -98,7 +98,7 @@ def found_slip(
 def _throughout(
     left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
-    """Return the equation with one letter in place of another wherever it stands, where only one does."""
+    """Return the equation with one letter replaced throughout, if exactly one replacement fits."""
     both = SyntaxNode("row", (left, right))
     twice = [name for name in letters_of(both) if sum(part.text == name for part in every(both)) > 1]
     fitting = []
@@ -123,7 +123,7 @@ def _decided(
     true: Callable[[SyntaxNode, SyntaxNode], bool],
     kind: Callable[[SyntaxNode], Iterator[Slip]],
 ) -> tuple[tuple[SyntaxNode, SyntaxNode, str] | None] | None:
-    """Return the one slip of a kind, in a pair; None where the kind has none; a pair of None where it has several."""
+    """Return a pair with the unique slip of a kind; None if there is none, a pair of None if there are several."""
     candidates = [
         *((slip, (left, slip.side)) for slip in islice(kind(right), _MOST_TRIED)),
         *((slip, (slip.side, right)) for slip in islice(kind(left), _MOST_TRIED) if left.kind != "letter"),
@@ -248,7 +248,7 @@ def _inverses(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
-    """Yield the tree with one of its parts changed; a letter below a prime or an inverse is changed with it."""
+    """Yield the tree with one of its parts changed, a letter together with its prime or inverse."""
     yield from change(node)
     for i, part in enumerate(node.parts):
         if node.kind not in {"primed", "power"} or part.kind not in {"letter", "primed"}:
@@ -302,7 +302,7 @@ def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> I
 
 
 def _alone(side: SyntaxNode) -> set[str]:
-    """Return the functions and powers of a letter alone: which letter that is, another one's value does not tell."""
+    """Return the functions and powers of a letter alone."""
     return {str(part) for part in every(side) if part.kind in {"call", "power"} and part.parts[0].kind == "letter"}
 
 
