@@ -1,4 +1,4 @@
-"""How relations share a display: on one line, packed on several, or aligned at their first sign.
+"""Layout of displays: relations on one line, packed on several, or aligned at their first sign.
 
 The result is rows; a format only writes them down.
 """

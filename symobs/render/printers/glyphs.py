@@ -1,4 +1,4 @@
-"""What a format supplies: boxes, and a glyph for everything a formula or a broken line is made of."""
+"""The interface of a format: boxes, and a glyph for every part of a formula or a broken line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Level(IntEnum):
-    """How tightly a box binds; an operand that binds less tightly than its place asks for is parenthesised."""
+    """The precedence of a box; an operand of lower precedence than its place is parenthesised."""
 
     SUM = 0
     PRODUCT = 1
@@ -26,7 +26,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True)
 class GlyphBox:
-    """A printed part; formats add what is written."""
+    """A printed part; formats add its text."""
 
     width: float
     level: Level
@@ -36,7 +36,7 @@ B = TypeVar("B", bound=GlyphBox)
 
 
 class FormulaWriter(ABC, Generic[B]):
-    """The glyphs of one format; boxes go in, a box comes out."""
+    """The writer of formulas of one format: from boxes to a box."""
 
     #: Whether a broken fraction is always (a)/(b), never 1/b before (a).
     slashes: ClassVar[bool] = False
@@ -85,7 +85,7 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def raised(self, base: B, exponent: int) -> B:
-        """Return a power of a base that is already parenthesised where it must be."""
+        """Return a power of an already parenthesised base."""
 
     @abstractmethod
     def transposed(self, base: B) -> B:
@@ -93,7 +93,7 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def applied(self, function: str, argument: B) -> B:
-        """Return a function's name before its argument, which is grouped already."""
+        """Return a function's name before its already grouped argument."""
 
     @abstractmethod
     def matrix(self, rows: Sequence[Sequence[B]]) -> B:
@@ -123,17 +123,17 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def evaluated(self, box: B, equations: Sequence[B]) -> B:
-        """Return the value of a function where its times are those of the equations."""
+        """Return the value of a function at the times of the equations."""
 
     @abstractmethod
     def integral(self, limits: tuple[B, B], integrand: B, name: B) -> B:
-        """Return the integral of what binds at least as a product, over the generator `name`."""
+        """Return the integral, over the generator `name`, of an integrand with the precedence of a product."""
 
     # -- of lines -------------------------------------------------------------------------------------------------
 
     @abstractmethod
     def parentheses(self, content: Sequence[B]) -> tuple[B, B]:
-        """Return a pair that may stand on different lines, tall enough for the content."""
+        """Return a pair of parentheses for different lines, as tall as the content."""
 
     @abstractmethod
     def brackets(self) -> tuple[B, B]:

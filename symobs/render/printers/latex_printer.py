@@ -152,7 +152,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
     def grouped(self, box: LatexBox) -> LatexBox:
-        """Return parentheses that grow with what they hold."""
+        """Return parentheses as tall as their content."""
         if box.height == 0:
             return LatexBox(box.width + 0.8, Level.ATOM, f"({box.source})")
         if self.running:
@@ -321,7 +321,7 @@ class LatexPrinter(Printer[LatexBox]):
 
 
 def swallows(left: str, right: str) -> bool:
-    """Return whether a command at the end of `left` would take the beginning of `right` as part of its name."""
+    """Return whether a command at the end of `left` would absorb the beginning of `right`."""
     command = left[left.rfind("\\") + 1 :] if "\\" in left else ""
     return bool(command) and command.isascii() and command.isalpha() and right[:1].isalpha()
 

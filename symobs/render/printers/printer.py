@@ -1,4 +1,4 @@
-"""The printer: one walk over a formula with its precedences; a format supplies the glyphs.
+"""The printer: traversal of a formula with precedences; a format supplies the glyphs.
 
 A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
 `A - L C` is printed as its author wrote it; only exact values are spelled out (`formula_of`).
@@ -223,7 +223,7 @@ class Printer(FormulaWriter[B]):
         return self.joined([*sign, *self.spaced(parts)], Level.SUM if negative else Level.PRODUCT)
 
     def spaced(self, parts: Sequence[B]) -> list[B]:
-        """Return factors with what stands between them."""
+        """Return factors with their separators."""
         row: list[B] = []
         for part in parts:
             between = self.between(row[-1], part) if row else None
@@ -231,12 +231,12 @@ class Printer(FormulaWriter[B]):
         return row
 
     def factor_boxes(self, formula: Formula) -> list[B]:
-        """Return the factors of a product, each parenthesised where it must be."""
+        """Return the factors of a product, parenthesised by precedence."""
         parts = factors(formula, self.variable)
         return [self.factor(part, last=index + 1 == len(parts)) for index, part in enumerate(parts)]
 
     def factor(self, formula: Formula, *, last: bool) -> B:
-        """Return one factor; a function's argument is closed off from the factors that follow."""
+        """Return one factor; the argument of a function is separated from the factors after it."""
         if not isinstance(formula, Apply):
             return self.at_least(Level.FRACTION, self.typeset(formula))
         if last:
@@ -244,7 +244,7 @@ class Printer(FormulaWriter[B]):
         return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
 
     def quotient(self, formula: Quotient) -> B:
-        """Return a fraction; the minus of its numerator stands in front."""
+        """Return a fraction with the minus of its numerator in front."""
         ((negative, body),) = signed_terms(formula, self.variable, flat=False)
         if isinstance(body, Quotient):
             box = self.fraction(self.typeset(body.numerator), self.typeset(body.denominator))
@@ -253,7 +253,7 @@ class Printer(FormulaWriter[B]):
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if negative else box
 
     def base(self, formula: Formula) -> B:
-        """What carries an exponent or a transposition sign."""
+        """Return the base of an exponent or a transposition sign."""
         if isinstance(formula, Literal) and isinstance(formula.value, Matrix):
             return self.plain_matrix(formula.value)
         return self.at_least(Level.ATOM, self.typeset(formula))
@@ -267,7 +267,7 @@ class Printer(FormulaWriter[B]):
         return self.applied(function, inner)
 
     def derivative(self, operand: Formula, name: str) -> B:
-        """Return ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        """Return ẋ, or d/dt of a stack; in discrete time the next instant."""
         if name != "t":
             return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)), name)
         if isinstance(operand, Letter) and is_of_time(operand.name):
@@ -325,7 +325,7 @@ class Printer(FormulaWriter[B]):
 
 
 def shifted(formula: Formula) -> Formula:
-    """Return the formula of the next instant, the shift carried one level inwards."""
+    """Return the formula of the next instant, with the shift moved one level inwards."""
     return with_children(formula, tuple(Derivative(part) for part in children(formula)))
 
 

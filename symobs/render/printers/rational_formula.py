@@ -28,7 +28,7 @@ Monomial = tuple[int, tuple[tuple[str, int], ...]]
 
 
 def is_leaf(value: Scalar) -> bool:
-    """Return whether a scalar is written as one glyph: a whole number that is not negative, or a symbol."""
+    """Return whether a scalar is printed as one glyph: a nonnegative integer, or a symbol."""
     if value.is_constant:
         number = value.fraction()
         return number.denominator == 1 and number >= 0
@@ -272,7 +272,7 @@ def sum_of(terms: Sequence[Formula]) -> Formula:
 
 
 def decimal(number: int) -> str:
-    """Return the digits of a whole number; `str` refuses to write more than some thousands of them."""
+    """Return the digits of an integer of any size; `str` is limited to some thousands of them."""
     if number.bit_length() < _BITS_AT_ONCE:
         return str(number)
     low = number.bit_length() * 3 // 20
@@ -281,7 +281,7 @@ def decimal(number: int) -> str:
 
 
 def size(formula: Formula) -> float:
-    """Return about how many glyphs a spelling takes."""
+    """Return the approximate number of glyphs of a formula."""
     match formula:
         case Literal(Scalar() as value):
             return len(decimal(value.fraction().numerator)) if value.is_constant else _size_of_symbol(value)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RootGlyphs:
-    """What a format adds to its printer for roots; `among` writes those that satisfy an equation."""
+    """The interface of a format for roots; `among` writes the roots of an equation."""
 
     square_root: Callable[[str], str]
     plus_minus: str

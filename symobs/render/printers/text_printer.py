@@ -133,7 +133,7 @@ class TextPrinter(Printer[TextBox]):
         return None if is_open else text_box(" ")
 
     def grouped(self, box: TextBox) -> TextBox:
-        """Return parentheses, as tall as what they hold."""
+        """Return parentheses as tall as their content."""
         return self._fenced(box, "(", ")", Level.ATOM)
 
     def _fenced(self, box: TextBox, opening: str, closing: str, level: Level) -> TextBox:

@@ -1,4 +1,4 @@
-"""Formulas as MathML Core, which browsers set by themselves: no script, no font, no network.
+"""Formulas as MathML Core, without scripts, fonts or network.
 
 A box is a row of elements.  Signs carry their form (prefix or infix), because a line that was broken may begin with one.
 A long formula in running text is several `math` elements, between which a browser may end a line: inside one it cannot.
@@ -189,7 +189,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(sum(part.width for part in parts), level, elements, max(part.height for part in parts))
 
     def between(self, left: MathmlBox, right: MathmlBox) -> MathmlBox:
-        """Return a dot before a number, a thin space beside what is tall or a word; else a sign that is only read out."""
+        """Return a dot before a number, a thin space beside a tall factor or a word, else an invisible times."""
         if _NUMBER.match(right.elements[0]):
             return MathmlBox(0.7, Level.PRODUCT, (DOT,))
         if self.running and left.width + right.width > _WIDE:
@@ -198,7 +198,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(0.17, Level.PRODUCT, (_SPACED,)) if is_apart else MathmlBox(0.0, Level.PRODUCT, (TIMES,))
 
     def grouped(self, box: MathmlBox) -> MathmlBox:
-        """Return parentheses that grow with what they hold; in running text a line may end between them."""
+        """Return parentheses as tall as their content, breakable in running text."""
         if self.running:
             return MathmlBox(box.width + 0.8, Level.ATOM, (OPENING, *box.elements, CLOSING), box.height)
         if box.height == 0:
@@ -307,7 +307,7 @@ class MathmlPrinter(Printer[MathmlBox]):
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[MathmlBox]) -> tuple[MathmlBox, MathmlBox]:
-        """Return a pair of a fixed size: a sign grows with its own row only, and these may stand in two."""
+        """Return a pair of parentheses of fixed size, which may be on different rows."""
         return _sized("(", ")", _SIZES[min(3, max(box.height for box in content))], 0.8)
 
     def brackets(self) -> tuple[MathmlBox, MathmlBox]:
@@ -352,7 +352,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(1.0, Level.SUM, ('<mspace width="1em"/>',))
 
     def framed(self, box: MathmlBox) -> MathmlBox:
-        """Return a row that the page's style frames."""
+        """Return a framed row."""
         return MathmlBox(
             box.width + widths.FRAME, Level.ATOM, (f'<mrow class="answer">{box.source}</mrow>',), max(1, box.height)
         )
