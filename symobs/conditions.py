@@ -1,4 +1,4 @@
-"""Declared signs, what they imply, and the conditions under which a result holds.
+"""Declared signs, their consequences, and the conditions under which a result holds.
 
 A condition is one relation `expression op 0` on the parameters, of one of four kinds: *domain* (a denominator of the
 plant: where it vanishes there is no plant), *claim* (a denominator of the answer), *existence* (a factor whose
@@ -104,7 +104,7 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
 
 
 def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
-    """Return what is certain about the sign of a value: one of `SIGNS`, or `zero`.
+    """Return the certain sign of a value: one of `SIGNS`, or `zero`.
 
     `real` means nothing is certain.  Read off the terms of the value, or of its factors where those say more.
     """
@@ -123,7 +123,7 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
 
 
 def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar]) -> str:
-    """Return what is certain about the sign of a value where some polynomials are above 0 besides."""
+    """Return the certain sign of a value where some polynomials are positive."""
     found = sign_of(value, signs)
     if found in {"positive", "negative", "zero"}:
         return found
@@ -132,7 +132,7 @@ def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar])
 
 
 def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
-    """Tell whether the declared signs alone exclude that the value is 0."""
+    """Return whether the declared signs alone imply that the value is nonzero."""
     return sign_of(value, signs) in _NEVER_ZERO
 
 
@@ -155,7 +155,7 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
 
 
 def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
-    """Return polynomials that vanish, for real parameters of these signs, wherever `polynomial` does.
+    """Return polynomials that vanish at all real zeros of `polynomial` with these signs.
 
     a² + b² = 0 only where a = b = 0: where no two terms have opposite signs, all of them vanish.  α x² + β x + γ = 0
     with 4αγ − β² ≥ 0 and α ≠ 0 only where 2αx + β = 0 and 4αγ − β² = 0.  Nothing is returned where neither applies.
@@ -185,5 +185,5 @@ def _radical(powers: tuple[tuple[str, int], ...], signs: Mapping[str, str]) -> S
 
 
 def opposite(sign: str) -> str:
-    """Return what a sign becomes under x → −x."""
+    """Return the sign of −x for the sign of x."""
     return _OPPOSITE.get(sign, sign)

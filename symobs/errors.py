@@ -20,7 +20,7 @@ class SymobsError(Exception):
     exit_code = 3
 
     def __init__(self, message: str, *, where: str = "", repair: str = "", **facts: object) -> None:
-        """Keep the facts: what is wrong, where it stands, what to write instead."""
+        """Keep the facts: the message, the place, and the repair."""
         super().__init__(message)
         self.message = message
         self.where = where
@@ -28,7 +28,7 @@ class SymobsError(Exception):
         self.facts = facts
 
     def __str__(self) -> str:
-        """Return `where: message; repair` on one line, leaving out what is not known; no terminal obeys what it quotes."""
+        """Return `where: message; repair` on one line, without unknown parts and with control characters escaped."""
         place = f"{self.where}: " if self.where else ""
         repair = f"; {self.repair}" if self.repair else ""
         return _printable(f"{place}{self.message}{repair}")
@@ -39,7 +39,7 @@ class SymobsError(Exception):
 
 
 def _printable(text: str) -> str:
-    """Return a text with what is no character on paper, line ends apart, written as its escape."""
+    """Return a text with nonprinting characters, except line ends, escaped."""
     return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
@@ -48,7 +48,7 @@ def _rebuild(kind: type[SymobsError], message: str, where: str, repair: str, fac
 
 
 class InputError(SymobsError, ValueError):
-    """What the caller gave cannot be used."""
+    """Input that cannot be used."""
 
 
 class ExpressionError(InputError):
@@ -60,11 +60,11 @@ class UnknownName(ExpressionError):
 
 
 class BudgetExceeded(ExpressionError):
-    """A text, or what it would build, is larger than the budgets allow."""
+    """A text, or its value, exceeds the limits of size."""
 
 
 class InexactInput(InputError, TypeError):
-    """A floating-point number came where exact numbers are needed."""
+    """A floating-point number in place of an exact one."""
 
 
 class ShapeMismatch(InputError):
@@ -75,7 +75,7 @@ class ProblemErrors(InputError):
     """All errors of one problem file together."""
 
     def __init__(self, errors: tuple[SymobsError, ...], *, where: str = "") -> None:
-        """Keep every error of the file, in the order of the file; those of one text stand beside the others."""
+        """Keep every error of the file, in its order."""
         self.errors: tuple[SymobsError, ...] = tuple(
             each for error in errors for each in (error.errors if isinstance(error, ProblemErrors) else (error,))
         )
@@ -91,7 +91,7 @@ class ProblemErrors(InputError):
 
 
 def together(*actions: Callable[[], Any]) -> tuple[Any, ...]:
-    """Return what all actions return; what several of them raise is raised together."""
+    """Return the values of all actions; errors of several are raised together."""
     values: list[Any] = []
     errors: list[SymobsError] = []
     for action in actions:
@@ -107,13 +107,13 @@ def together(*actions: Callable[[], Any]) -> tuple[Any, ...]:
 
 
 class UsageError(SymobsError):
-    """The command line was called in a way it does not know."""
+    """Unknown usage of the command line."""
 
     exit_code = 2
 
 
 class OutOfBudget(SymobsError):
-    """The time or the memory that was allowed ran out; `facts["left"]` is what there was by then, or None."""
+    """The allowed time or memory is exhausted; `facts["left"]` is the partial outcome, or None."""
 
     exit_code = 5
 
@@ -131,21 +131,21 @@ class CertificateRejected(SymobsError):
 
 
 class DerivationRejected(SymobsError):
-    """A line of a derivation is not true: always a bug of symobs, never of the input."""
+    """A line of a derivation is false: always a bug of symobs, never of the input."""
 
     exit_code = 1
 
 
 class WrongKind(TypeError, ValueError):
-    """A formula has no value since an operand is of another kind, such as a matrix where a number belongs."""
+    """A formula without a value: an operand is of another kind, such as a matrix in place of a number."""
 
 
 class NotShown(ArithmeticError):
-    """What is true of a formula at every point is beyond what is looked at; it says nothing about its truth."""
+    """The truth of a formula at every point is undecided within the limits."""
 
 
 class SymobsWarning(UserWarning):
-    """A page lacks a line or a picture whose check failed; what is printed is checked all the same."""
+    """A line or a figure is left out of a page because its check failed."""
 
 
 def reason_of(error: Exception) -> str:

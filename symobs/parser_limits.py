@@ -1,4 +1,4 @@
-"""What would cost a parser of TOML or JSON more than the text is long, refused before it is parsed.
+"""Limits of TOML and JSON texts whose parsing would cost more than linear time or memory.
 
 `tomllib` takes 1.5 GB for the 40 kB of `a.a.a…=1`; both parsers recurse on brackets, and Python on the digits of a number.
 """
@@ -29,7 +29,7 @@ _HEADER = re.compile(r"^[ \t]*\[[^\],\n]*\]+[ \t\r]*$", re.MULTILINE)
 
 
 def refuse_costly(text: str, most_bytes: int) -> None:
-    """Refuse what would cost the parsers their memory, their stack or their time; raises `InputError` with the line."""
+    """Raise `InputError`, with the line, for a text that would exhaust memory, stack or time of a parser."""
     if len(text) > most_bytes or len(text.encode("utf-8", "replace")) > most_bytes:
         raise InputError(f"the file is larger than {most_bytes // 1024} kB", repair="keep one problem to a file")
     bare = _QUOTED.sub(lambda found: " " if found["comment"] else "q" + "\n" * found[0].count("\n"), text)

@@ -1,4 +1,4 @@
-"""What a design is asked for: a desired polynomial, given as poles or as a polynomial, or a gain.
+"""Specifications of a design: a desired polynomial, given by poles or coefficients, or a gain.
 
 `KINDS` names every type a task's keyword may have.  A task's signature is its schema: the annotation of a keyword is
 the name of a kind, and the problem file, the command line and Python all read through it.
@@ -81,7 +81,7 @@ KINDS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class DesiredPolynomial:
-    """A monic polynomial φ of degree n with real coefficients: as factors, and as poles where these were given."""
+    """A monic polynomial φ of degree n with real coefficients: its factors, and its poles if given."""
 
     variable: str
     factors: tuple[Scalar, ...]
@@ -120,7 +120,7 @@ class DesiredPolynomial:
         return tuple(counted.items())
 
     def substitute(self, values: dict[str, Scalar]) -> DesiredPolynomial:
-        """Return φ with parameters replaced."""
+        """Return φ with parameters substituted."""
         poles = tuple(Complex(p.real.substitute(values), p.imaginary.substitute(values)) for p in self.poles)
         return DesiredPolynomial(self.variable, tuple(f.substitute(values) for f in self.factors), poles)
 
@@ -224,7 +224,7 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
 
 
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
-    """Return a given gain, checked against the shape the plant asks for."""
+    """Return a given gain; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
     gain = read_matrix(value, plant.symbols.seen(value), where)
     if gain.shape != shape:
@@ -234,7 +234,7 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
 
 
 def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
-    """Return a real quantity free of the variable; raises `InputError` where it is surely not positive."""
+    """Return a real quantity free of the variable; raises `InputError` if it is certainly not positive."""
     where = f"specification.{name}"
     quantity = read_scalar(value, plant.symbols.seen(value), where)
     if plant.variable in quantity.names:
@@ -247,7 +247,7 @@ def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
 
 
 def read_names(value: object, name: str) -> tuple[str, ...]:
-    """Return the names of a list or a text, which may be empty; raises `InputError` for one that is named twice."""
+    """Return the names of a list or a text, possibly none; raises `InputError` for a repeated name."""
     where = f"specification.{name}"
     listed = re.split(r"[,;\s]+", value.strip(" []")) if isinstance(value, str) else value
     listed = [str(entry) for entry in (listed if isinstance(listed, (list, tuple)) else [listed])]
@@ -292,7 +292,7 @@ def _read_pattern(text: str, where: str, shape: tuple[int, int]) -> tuple[tuple[
 
 
 def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
-    """Return the ends of an interval of time; raises `InputError` unless there are two, real and free of t, in order."""
+    """Return the two ends of a time interval; raises `InputError` unless they are real, free of t and in order."""
     where = "specification.interval"
     ends = read_poles(value, plant.symbols, where)
     if len(ends) != 2 or not all(end.is_real for end in ends):
@@ -341,7 +341,7 @@ def _text(entry: object) -> object:
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:
-    """Raise `InputError` where a gain is given together with what it should achieve."""
+    """Raise `InputError` if a gain is given together with desired poles."""
     if gain is not None and (poles is not None or polynomial is not None):
         message = f"both {name} and {other if poles is not None else 'polynomial'} are given"
         raise InputError(message, where=f"specification.{name}", repair="keep one of them")

@@ -1,4 +1,4 @@
-"""The audit: what a source prints, held against the checked answers, with the right value and the reason of the error.
+"""Audit of printed equations against the checked answers, with the right value and the reason of an error.
 
 A problem file carries `[[printed]]` entries (`statements`).  Each is an equation in the letters of the source
 (`grammar`, `letters`), evaluated exactly (`evaluation`); where it is false, the simplest slip that reproduces what is

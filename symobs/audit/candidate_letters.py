@@ -1,4 +1,4 @@
-"""Which letters may have been meant where another one is printed."""
+"""Candidate letters in place of a printed one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CandidateLetters:
-    """The letters of an environment: no names of `fields` of an answer, nothing kept for ourselves.
+    """The letters of an environment, without the names of `fields` of an answer and reserved names.
 
     Where the sizes `fit` as printed, only letters of the same size may have been meant.
     """
@@ -33,7 +33,7 @@ class CandidateLetters:
     fit: bool = True
 
     def offered(self, name: str, *, primed: bool) -> list[str]:
-        """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
+        """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
         environment = self.environment
         names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
         known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN, name} and not n.endswith("'")]
@@ -44,11 +44,11 @@ class CandidateLetters:
         return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
 
     def is_signal(self, name: str) -> bool:
-        """Whether a letter is a signal."""
+        """Return whether a letter is a signal."""
         return name in self.environment.signals
 
     def rounded(self, block: SyntaxNode) -> str | None:
-        """Return the letter whose value a bracket of decimals is, rounded."""
+        """Return the letter whose value rounds to a matrix of decimals."""
         printed = as_printed(block, Reading(self.environment))
         if not isinstance(printed, Matrix) or not decimals_in(printed):
             return None
@@ -57,7 +57,7 @@ class CandidateLetters:
         return next((name for name, value in alike if not wrong_entries(printed, value)), None)
 
     def _kind(self, name: str) -> Kind:
-        """Return whether a letter is a signal, and its size; numbers and 1x1 matrices are one kind."""
+        """Return whether a letter is a signal, and its size; numbers count as 1×1 matrices."""
         try:
             found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
         except (Misfit, Unknown):

@@ -1,4 +1,4 @@
-"""Two values side by side: what is wrong with the one printed, entry by entry, and the simplest reason."""
+"""Differences of a printed value from the right one, entry by entry, and the simplest reason."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def as_matrix(value: Scalar | Matrix) -> Matrix:
 
 
 def single(printed: Scalar) -> PrintedDecimal | None:
-    """Return the decimal that a printed value is, with its sign; None for any other value."""
+    """Return a printed value that is a signed decimal, None for any other value."""
     decimals = decimals_in(printed)
     if len(decimals) != 1:
         return None
@@ -49,7 +49,7 @@ def single(printed: Scalar) -> PrintedDecimal | None:
 
 
 def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[EntryDifference]:
-    """Return the entries in which a printed matrix differs; its decimals are generators and may be rounded."""
+    """Return the entries in which a printed matrix differs beyond rounding."""
     places = [(i, j) for i in range(right.shape[0]) for j in range(right.shape[1])]
     return [
         entry(whole if right.shape == (1, 1) else f"entry ({i + 1}, {j + 1})", printed[i, j], right[i, j])
@@ -59,7 +59,7 @@ def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -
 
 
 def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
-    """Return what is to be said of a wrong value."""
+    """Return the message on a wrong value."""
     decimal, plain = single(printed), written_out(printed)
     if decimal is None or not right.is_constant:
         return EntryDifference(place, text(plain), text(right), slip(plain, right))
@@ -70,7 +70,7 @@ def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
 
 
 def slip(printed: Scalar, right: Scalar) -> str:
-    """Return the simplest slip that makes one number of another, empty where there is none."""
+    """Return the simplest slip from one number to another, empty if there is none."""
     if printed == -right:
         return "the sign is wrong"
     if not printed.is_constant or not right.is_constant or printed.is_zero or right.is_zero:
@@ -85,7 +85,7 @@ def slip(printed: Scalar, right: Scalar) -> str:
 
 
 def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
-    """Return why a printed matrix is not the right one, the simplest that explains all of it."""
+    """Return the simplest reason that explains all differences of a printed matrix."""
     entries = wrong_entries(printed, right, whole=whole)
     if len(entries) == 1 or (entries and all(entry.slip.startswith("truncated") for entry in entries)):
         return listed(entries)
@@ -114,7 +114,7 @@ def _regular(matrix: Matrix) -> bool:
 
 
 def _exchanged(printed: Matrix, right: Matrix) -> str:
-    """Return which two entries, rows or columns are exchanged."""
+    """Return the two exchanged entries, rows or columns."""
     rows, columns = right.shape
     cells = [(i, j) for i in range(rows) for j in range(columns) if printed[i, j] != right[i, j]]
     if len(cells) == 2:
@@ -142,7 +142,7 @@ def _factor(printed: Matrix, right: Matrix) -> str:
 
 
 def polynomial_reason(printed: Scalar, right: Scalar, variable: str) -> str:
-    """Return in which coefficients a printed polynomial differs, empty where the two are no polynomials."""
+    """Return the coefficients in which a printed polynomial differs, empty if the two are not polynomials."""
     if not (printed.is_polynomial_in(variable) and right.is_polynomial_in(variable)) or right.degree(variable) < 1:
         return ""
     wanted, came = (list(value.coefficients(variable)) for value in (right, printed))
@@ -168,7 +168,7 @@ def _power_name(power: int, variable: str) -> str:
 
 
 def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -> str:
-    """Return a value in the grammar of printed equations, its decimals rounded as they are printed."""
+    """Return a value in the grammar of printed equations, rounded as printed."""
     if isinstance(value, Scalar):
         return _number_text(value, printed if isinstance(printed, Scalar) else None)
     alike = printed if isinstance(printed, Matrix) and printed.shape == value.shape else None

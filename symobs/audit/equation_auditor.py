@@ -1,4 +1,4 @@
-"""One convention's desk: every printed equation is evaluated there, and where it fails, what is wrong with it is found."""
+"""The auditor of printed equations in one convention: evaluation, and the cause of every failure."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _MOST_SQUARES = 3
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is right in place of an equation that is not plainly true, and why; `holds` says where it is true."""
+    """The correction of an equation that does not hold in general, and the reason; `holds` states where it does."""
 
     right: str
     reason: str
@@ -50,7 +50,7 @@ class Verdict:
 
 @dataclass()
 class EquationAuditor:
-    """One convention's letters, and the equations found true so far, whose sides later ones may lack."""
+    """The letters of one convention, and the equations found true so far."""
 
     problem: Problem
     results: Sequence[Result]
@@ -73,7 +73,7 @@ class EquationAuditor:
         return self.problem.plant.symbols.signs
 
     def read(self, entry: PrintedEntry) -> Iterator[tuple[str, Verdict]]:
-        """Yield the equations of an entry that are not plainly true."""
+        """Yield the equations of an entry that do not hold in general."""
         self.environments, self.gaps, self.where = {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
         for left, right in pairwise(self._members(entry.relation)):
@@ -97,7 +97,7 @@ class EquationAuditor:
         return f"{equation} where {conditions}" if conditions else equation
 
     def _confirmed(self, right: str) -> str:
-        """Return what is said to be right, read as if it were printed: it must be true.  Too long a text is left out.
+        """Return a correction after evaluating it like a printed equation; it must hold.  Long texts are left out.
 
         Where it is true in general only, its conditions are said with it, and it is read again.
         """
@@ -122,7 +122,7 @@ class EquationAuditor:
     # -- one equation -------------------------------------------------------------------------------------------------
 
     def environment(self, left: SyntaxNode, right: SyntaxNode) -> Environment:
-        """Return what the letters mean in an equation: signals depend on which of them it speaks of."""
+        """Return the environment of an equation; the equations of signals depend on the signals that occur."""
         inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
         own = frozenset(self.symbols)
         mentioned = (frozenset([*letters_of(left, right), *inside]) - own, frozenset(letters_of(right)) - own)
@@ -136,7 +136,7 @@ class EquationAuditor:
         return self.environments[mentioned]
 
     def _note_shadows(self, letters: Sequence[str], environment: Environment) -> None:
-        """Say which letters of an equation are the file's own symbols and something else besides."""
+        """Note the letters of an equation that are declared symbols and also letters of the convention."""
         for name in letters:
             if name in self.symbols and (name in {*self.values, *INSTANTS} or name in environment.signals):
                 note = f"{name} is the file's own symbol wherever it is printed, not the {name} of the convention "
@@ -149,7 +149,7 @@ class EquationAuditor:
         return reading
 
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
-        """Tell whether an equation holds in general."""
+        """Return whether an equation holds in general."""
         return self._true(left, right, self.reading(left, right))
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
@@ -159,7 +159,7 @@ class EquationAuditor:
             return False
 
     def _checked(self, printed_left: SyntaxNode, printed_right: SyntaxNode) -> Verdict | None:
-        """Return what is right in place of an equation that is not plainly true, None of a true one."""
+        """Return the correction of an equation that does not hold in general, None for a true one."""
         reading = self.reading(printed_left, printed_right)
         environment = reading.environment
         try:
@@ -185,7 +185,7 @@ class EquationAuditor:
         return Verdict(*found)
 
     def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
-        """Return what a true equation needs to be true, None where that is nothing."""
+        """Return the conditions of a true equation, None if there are none."""
         turned = self._turned(left, right, reading)
         if turned is not None:
             return turned
@@ -199,7 +199,7 @@ class EquationAuditor:
         )
 
     def _turned(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
-        """Return for which signs of what is squared under a root an equation is true, where that is not for all or none."""
+        """Return the signs of squared radicands for which an equation holds, unless it holds for all or none."""
         squares = reading.squares[:_MOST_SQUARES]
         choices = list(chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1)))
         true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
@@ -275,7 +275,7 @@ class EquationAuditor:
     def _values(
         self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
     ) -> tuple[str, str] | None:
-        """Return what is wrong with a value, or with a formula for one; None where only rounding parts them."""
+        """Return the error of a value or of a formula for one, None if it differs by rounding only."""
         environment = reading.environment
         exact, printed = (differences.as_matrix(term.value) for term in pair)
         rounded = as_printed(right, reading) if is_rounded(right, reading) else None
@@ -306,12 +306,12 @@ class EquationAuditor:
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
     def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
-        """Whether a side has no letters but the problem's own symbols."""
+        """Return whether a side has no letters other than the symbols of the problem."""
         plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
         return set(letters_of(node)) <= plain
 
     def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, str] | None:
-        """Return the equation with a factor before its left side that an equation above has as a side."""
+        """Return the equation with its left side multiplied by a factor from a side of an earlier equation."""
         for node in reversed(self.known):
             if node.kind == "block" and self.true(SyntaxNode("product", (node, left)), right):
                 fixed = SyntaxNode("product", (node, left))
@@ -389,7 +389,7 @@ class EquationAuditor:
 
 
 def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
-    """Whether it is the numbers on the right that are wrong: a value of a letter, one entry among several, one number.
+    """Return whether the error lies in numbers on the right: a value of a letter, an entry, a number.
 
     A single number says too little to tell which letter was meant instead of another.
     """

@@ -1,4 +1,4 @@
-"""What is wrong among the printed equations of a problem, with the right value and the reason."""
+"""Findings of the audit of a problem: false equations, right values and reasons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finding:
-    """A printed equation that is not plainly true: where it stands, what is printed, what is right, and why.
+    """A printed equation that does not hold in general: its place, text, correction and reason.
 
     `holds` is empty where it is false, `in general` where it fails only where some polynomials vanish.
     """
@@ -33,7 +33,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Audited:
-    """What the audit of one problem found, among how many printed equations; `notes` say how letters were read."""
+    """The findings for one problem, the number of printed equations, and notes on the reading of letters."""
 
     title: str
     checked: int
@@ -47,7 +47,7 @@ class Audited:
 
 
 def audit(problem: Problem) -> Audited:
-    """Solve a problem and hold every printed equation against the answers.
+    """Solve a problem and compare every printed equation with the answers.
 
     Raises `ProblemErrors` with every entry that cannot be read.
     """
@@ -72,7 +72,7 @@ def audit(problem: Problem) -> Audited:
 
 
 def _read(entry: PrintedEntry, desk: EquationAuditor) -> list[Finding]:
-    """Return what is wrong with one entry."""
+    """Return the findings for one entry."""
     if entry.expect:
         lines = mismatches([Viewed(result, desk.convention) for result in desk.results], entry.expect)
         texts = [line.partition(": expected ")[2].partition(", found ") for line in lines]

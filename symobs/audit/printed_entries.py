@@ -1,4 +1,4 @@
-"""The `[[printed]]` entries of a file: where something is printed, and what."""
+"""The `[[printed]]` entries of a file: places and printed equations."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 @dataclass(frozen=True)
 class PrintedEntry:
-    """What is printed at one place: an equation of two or more members, or answers as `[expect]` gives them."""
+    """A printed entry: an equation of two or more members, or answers in the form of `[expect]`."""
 
     place: str
     where: str
@@ -39,7 +39,7 @@ class PrintedEntry:
 def printed_entries(
     entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
 ) -> list[PrintedEntry]:
-    """Return the entries of a file, which can be read; raises `ProblemErrors` with every one that cannot be.
+    """Return the entries of a file; raises `ProblemErrors` with every unreadable one.
 
     `signs` are those of the file's own symbols, of which conditions speak.
     """
@@ -70,13 +70,13 @@ def _statement(entry: Mapping[str, Any], place: str, convention: Convention, sig
 
 
 def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, EquationConditions]:
-    """Return an equation and the conditions that stand behind it: `rank(O) = 2 where c != 0`."""
+    """Return an equation and its conditions: `rank(O) = 2 where c != 0`."""
     equation, found, condition = text.partition(_WHERE)
     return equation, EquationConditions.of(condition, signs, place) if found else EquationConditions(signs=signs)
 
 
 def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:
-    """Return what the entry's own letters stand for."""
+    """Return the values of the letters defined by the entry."""
     if len(table) > _MOST_LETS:
         raise InputError(f"more than {_MOST_LETS} letters", where=where, repair="print less at once")
     found: dict[str, str] = {}

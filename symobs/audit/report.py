@@ -1,4 +1,4 @@
-"""What an audit found, as text, Markdown or JSON."""
+"""Reports of an audit as text, Markdown or JSON."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _WIDTH = 100
 
 
 def report(audited: Mapping[str, Audited], format_name: str) -> str:
-    """Return the findings of several files (path → what was found), in the order given."""
+    """Return the report of the findings of several files by path, in the order given."""
     return REPORTS[format_name](audited)
 
 
 def summary(audited: Mapping[str, Audited]) -> str:
-    """Return one sentence: how many printed equations there are, and how many are wrong."""
+    """Return one sentence: the numbers of printed and of wrong equations."""
     checked = sum(each.checked for each in audited.values())
     wrong = sum(len(each.wrong) for each in audited.values())
     general = sum(len(each.findings) for each in audited.values()) - wrong

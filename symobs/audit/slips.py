@@ -1,4 +1,4 @@
-"""The slips of a formula: which one small change of what is printed makes it true.
+"""Slips of a formula: the single small changes that make a printed equation true.
 
 Kinds are tried from the simplest on, and the first that finds something decides.  A change counts only if the equation
 is then true, and only if it is the only one of its kind, or the only one that stays with the same letter.
@@ -30,7 +30,7 @@ _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
 @dataclass(frozen=True)
 class Slip:
-    """A changed side, what was changed, and whether the same letter still stands there."""
+    """A changed side, the change, and whether its letter is kept."""
 
     side: SyntaxNode
     reason: str
@@ -38,26 +38,26 @@ class Slip:
 
 
 class Alphabet(Protocol):
-    """What a slip may know of the letters of an equation."""
+    """The interface of the letters of an equation for the search for slips."""
 
     def offered(self, name: str, *, primed: bool) -> Collection[str]:
-        """Return the letters that can stand where `name` stands, `primed` those whose transpose or derivative can."""
+        """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
 
     def is_signal(self, name: str) -> bool:
-        """Whether a letter is a signal."""
+        """Return whether a letter is a signal."""
 
     def rounded(self, block: SyntaxNode) -> str | None:
-        """Return the letter whose value a bracket of decimals is, rounded."""
+        """Return the letter whose value rounds to a matrix of decimals."""
 
 
 @dataclass()
 class SearchBudget:
-    """How much may still be tried for the findings of a file."""
+    """The remaining trials of the search for the findings of a file."""
 
     left: int = _MOST_PARTS_OF_A_FILE
 
     def asks(self, true: Callable[[SyntaxNode, SyntaxNode], bool]) -> Callable[[SyntaxNode, SyntaxNode], bool]:
-        """Return the same question for one finding; it is answered with no when too much has been asked."""
+        """Return a test limited to the trials of one finding; beyond them it answers no."""
         end = max(0, self.left - _MOST_PARTS)
 
         def asked(left: SyntaxNode, right: SyntaxNode) -> bool:
@@ -73,7 +73,7 @@ class SearchBudget:
 def found_slip(
     left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
-    """Return both sides as they should stand and the reason, None where no single slip explains what is printed."""
+    """Return the corrected sides and the reason, None if no single slip explains the equation."""
     kinds: list[Callable[[SyntaxNode], Iterator[Slip]]] = [
         lambda side: _digits(side, alphabet),
         _exchanged,
@@ -98,7 +98,7 @@ def found_slip(
 def _throughout(
     left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
-    """Return the equation with one letter in place of another wherever it stands, where only one does."""
+    """Return the equation with one letter replaced throughout, if exactly one replacement fits."""
     both = SyntaxNode("row", (left, right))
     twice = [name for name in letters_of(both) if sum(part.text == name for part in every(both)) > 1]
     fitting = []
@@ -123,7 +123,7 @@ def _decided(
     true: Callable[[SyntaxNode, SyntaxNode], bool],
     kind: Callable[[SyntaxNode], Iterator[Slip]],
 ) -> tuple[tuple[SyntaxNode, SyntaxNode, str] | None] | None:
-    """Return the one slip of a kind, in a pair; None where the kind has none; a pair of None where it has several."""
+    """Return a pair with the unique slip of a kind; None if there is none, a pair of None if there are several."""
     candidates = [
         *((slip, (left, slip.side)) for slip in islice(kind(right), _MOST_TRIED)),
         *((slip, (slip.side, right)) for slip in islice(kind(left), _MOST_TRIED) if left.kind != "letter"),
@@ -155,7 +155,7 @@ def _everywhere(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]
 
 
 def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
-    """Two entries of a bracket are exchanged."""
+    """Yield the side with two entries of a bracket exchanged."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block":
@@ -173,13 +173,13 @@ def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _whole(side: SyntaxNode) -> Iterator[Slip]:
-    """A whole side is printed without its transpose."""
+    """Yield the side transposed as a whole."""
     if side.kind == "call":
         yield Slip(SyntaxNode("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
 
 
 def _stacked(side: SyntaxNode) -> Iterator[Slip]:
-    """Blocks stand below instead of beside one another, or the reverse."""
+    """Yield the side with blocks stacked in rows instead of columns, or the reverse."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
@@ -191,7 +191,7 @@ def _stacked(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _dropped(side: SyntaxNode) -> Iterator[Slip]:
-    """Rows of a stack are too many."""
+    """Yield the side with rows of a stack left out."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
@@ -207,7 +207,7 @@ def _dropped(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """A matrix is rounded before it is used."""
+    """Yield the side with a matrix rounded before use."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         name = alphabet.rounded(node) if node.kind == "block" else None
@@ -219,7 +219,7 @@ def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
 
 
 def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """A transpose or a dot is printed that should not be, or is missing."""
+    """Yield the side with a transpose or a dot removed or added."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "primed":
@@ -235,7 +235,7 @@ def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
 
 
 def _inverses(side: SyntaxNode) -> Iterator[Slip]:
-    """An inverse is printed that should not be, or is missing."""
+    """Yield the side with an inverse removed or added."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         if node.kind == "power" and exponent_of(node) == -1:
@@ -248,7 +248,7 @@ def _inverses(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
-    """Yield the tree with one of its parts changed; a letter below a prime or an inverse is changed with it."""
+    """Yield the tree with one of its parts changed, a letter together with its prime or inverse."""
     yield from change(node)
     for i, part in enumerate(node.parts):
         if node.kind not in {"primed", "power"} or part.kind not in {"letter", "primed"}:
@@ -257,7 +257,7 @@ def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]])
 
 
 def _signs(side: SyntaxNode) -> Iterator[Slip]:
-    """The sign of a side, or of one of its terms, is wrong."""
+    """Yield the side with its sign, or that of a term, reversed."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for i, part in enumerate(node.parts if node.kind == "sum" else ()):
@@ -274,7 +274,7 @@ def _signs(side: SyntaxNode) -> Iterator[Slip]:
 
 
 def _indices(side: SyntaxNode) -> Iterator[Slip]:
-    """One index is printed for another throughout a side."""
+    """Yield the side with one index replaced throughout."""
     found = {match[2] for name in letters_of(side) if (match := _INDEXED.fullmatch(name)) and match[2].isdigit()}
     for old in sorted(found):
         for new in map(str, range(1, 7)):
@@ -289,7 +289,7 @@ def _reindexed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
 
 
 def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
-    """One letter is printed for another, or for the transpose or the derivative of another."""
+    """Yield the side with a letter replaced by another, its transpose or its derivative."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for name in alphabet.offered(node.text, primed=primed) if node.kind == "letter" else ():
@@ -302,7 +302,7 @@ def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> I
 
 
 def _alone(side: SyntaxNode) -> set[str]:
-    """Return the functions and powers of a letter alone: which letter that is, another one's value does not tell."""
+    """Return the functions and powers of a letter alone."""
     return {str(part) for part in every(side) if part.kind in {"call", "power"} and part.parts[0].kind == "letter"}
 
 

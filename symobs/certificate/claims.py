@@ -64,7 +64,7 @@ _AT_POINTS = {"=", "!=="}
 
 @dataclass(frozen=True)
 class Claim:
-    """A relation that must hold in an environment; `says` is its text for the reader."""
+    """A relation that must hold in an environment; `says` is its printed text."""
 
     relation: Relation
     environment: Environment
@@ -76,7 +76,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Statement:
-    """What no equation says: `shown` returns how it was found true, "" where it is not."""
+    """A claim other than an equation: `shown` returns the proof method, "" if the claim is false."""
 
     says: str
     shown: Callable[[], str]
@@ -84,7 +84,7 @@ class Statement:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A claim that was checked: how, and the probability with which a false one would have passed."""
+    """A checked claim: the method, and a bound for the probability of accepting a false one."""
 
     claim: str
     how: str
@@ -104,7 +104,7 @@ def check(claim: Claim | Statement) -> Certificate:
 
 
 def check_all(claims: Iterable[Claim | Statement], relations: tuple[Scalar, ...] = ()) -> tuple[Certificate, ...]:
-    """Check every claim, where `relations` hold too."""
+    """Return the certificates of all claims, where `relations` hold too."""
     return tuple(check(c if isinstance(c, Statement) else _under(c, relations)) for c in claims)
 
 
@@ -113,7 +113,7 @@ def _under(claim: Claim, relations: tuple[Scalar, ...]) -> Claim:
 
 
 def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
-    """Return how a relation was found true and the bound of the error; ("", 0) where it is false or makes no sense.
+    """Return the method of proof of a relation and its error bound; ("", 0) if it is false or undefined.
 
     An equation that holds with the named coefficients free holds whatever they stand for, so that is tried first.
     """
@@ -124,7 +124,7 @@ def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
 
 
 def can_be_shown(relation: Relation, environment: Environment) -> bool:
-    """Tell whether a relation is within the reach of `verify`: not where a rank or a basis is too large to be seen."""
+    """Return whether `verify` can decide a relation: no rank or basis in it is too large."""
     try:
         _verified(relation, environment)
     except (NotShown, TooLarge):
@@ -149,7 +149,7 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Whether values are needed: in time residues and named coefficients cannot tell how, with relations neither."""
+    """Return whether exact values are needed: residues cannot decide functions of time, nor relations."""
     if environment.relations:
         return True
     meanings = [formula for formula in environment.signals.values() if formula is not None]
@@ -202,7 +202,7 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
 
 
 def _is_rounding(exact: Any, shown: Any) -> bool:
-    """Tell whether every entry is rounded to the decimals shown."""
+    """Return whether every entry rounds to the printed decimals."""
     if not isinstance(exact, Matrix):
         return is_rounding(exact, as_scalar(shown))
     if not isinstance(shown, Matrix) or exact.shape != shown.shape:
@@ -211,7 +211,7 @@ def _is_rounding(exact: Any, shown: Any) -> bool:
 
 
 def as_scalar(value: Any) -> Scalar:
-    """Read a 1×1 matrix as its entry; raises `WrongKind` for what is not a scalar."""
+    """Return the entry of a 1×1 matrix, or a scalar; raises `WrongKind` for any other value."""
     if isinstance(value, Matrix) and value.shape == (1, 1):
         (value,) = value.entries
     if not isinstance(value, Scalar):
@@ -221,7 +221,7 @@ def as_scalar(value: Any) -> Scalar:
 
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
-    """Tell whether signs and stated conditions keep a value from 0, factor by factor."""
+    """Return whether signs and stated conditions imply that a value is nonzero, factor by factor."""
     known = {*environment.assumed, *environment.domain}
     return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))
 
@@ -255,7 +255,7 @@ def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular)
 
 
 def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular) -> float:
-    """Return the probability with which this kind of point and prime would let a false relation pass."""
+    """Return a bound for the probability that a false relation passes at a random point modulo a random prime."""
     bounds = Bounds(environment, arithmetic)
     total = 0.0
     sizes = [evaluate(member, environment, bounds) for member in relation.members]
@@ -276,7 +276,7 @@ def _paired(left: Any, right: Any) -> list[tuple[SizeBound, SizeBound]]:
 
 
 def _leaves(formula: Formula, environment: Environment, seen: set[str]) -> Iterable[Scalar | Matrix]:
-    """Yield the exact values a formula is made of; a signal brings in its definition and its dynamics, once."""
+    """Yield the exact values in a formula, and once in the definition and dynamics of each signal."""
     match formula:
         case Letter(name) if name in environment.signals:
             if name not in seen:

@@ -1,4 +1,4 @@
-"""How likely a false claim passes at a random point: degrees and heights, followed through the claim's formulas (trusted)."""
+"""Error bounds of the randomised check: degrees and heights propagated through formulas (trusted)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class SizeBound(NamedTuple):
-    """A rational function's size: degrees and base-2 logarithms of the lengths of its two parts; shape of a matrix."""
+    """The size of a rational function: degrees and log₂ of the lengths of its two parts; shape of a matrix."""
 
     above: float
     below: float
@@ -23,14 +23,14 @@ class SizeBound(NamedTuple):
 
 
 class Bounds:
-    """The arithmetic of sizes at a point: bounds for the degree and the height of what a formula evaluates to.
+    """The arithmetic of sizes: bounds for degree and height of the value of a formula.
 
     Heights are those of the integers the leaves became at the point.  Named coefficients are rational there, so with them
     the heights are bounded through the coefficients of the leaves instead.
     """
 
     def __init__(self, environment: Environment, arithmetic: Modular) -> None:
-        """Bound what named coefficients stand for, in the order they were introduced."""
+        """Bound the values of named coefficients in the order of their definition."""
         self.arithmetic = arithmetic
         self.named = bool(environment.coefficients)
         degrees: dict[str, float] = {}
@@ -121,7 +121,7 @@ class Bounds:
         return whole
 
     def block(self, rows: list[list[SizeBound]]) -> SizeBound:
-        """All blocks over one common denominator."""
+        """Return all blocks over one common denominator."""
         parts = [part for row in rows for part in row]
         below, below_bits = sum(p.below for p in parts), sum(p.below_bits for p in parts)
         height = sum((row[0].shape or (1, 1))[0] for row in rows)

@@ -1,4 +1,4 @@
-"""What holds at every real point where some polynomials vanish: values that are never 0 together, and ranks (trusted)."""
+"""Statements at every real point of a variety: values never 0 together, and ranks (trusted)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MINORS = 100
 def never_together_zero(
     values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
 ) -> bool:
-    """Tell whether no real parameters of these signs make all the values vanish where the relations hold.
+    """Return whether the values have no common real zero with these signs where the relations hold.
 
     Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
 
@@ -43,7 +43,7 @@ def never_together_zero(
 
 
 def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]) -> tuple[Scalar, ...]:
-    """Leave out what is said of square roots that the values know nothing of.
+    """Drop relations on square roots that do not occur in the values.
 
     Roots of q and of −q may stand on one page, each in a case of its own: taken as real together they leave no point, and
     of no point everything is true.
@@ -79,10 +79,10 @@ def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]
 
 
 class Pointwise(Restricted):
-    """The exact kernel where the relations of an environment hold, with the rank that a matrix has at all points there."""
+    """The exact arithmetic modulo relations, with the rank of a matrix common to all points of the variety."""
 
     def __init__(self, environment: Environment) -> None:
-        """Keep the signs, and what is known not to vanish."""
+        """Keep the signs and the nonzero values."""
         super().__init__(environment)
         self.signs = environment.signs
         self.nonzero = (*environment.assumed, *environment.domain)
@@ -111,13 +111,13 @@ class Pointwise(Restricted):
     def _has_minor(
         self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
     ) -> bool:
-        """Tell whether at every point a minor of some order is not zero; a likely one may be tried first."""
+        """Return whether at every point a minor of some order is not zero; a likely one may be tried first."""
         if not order or (first is not None and self._never_zero([matrix.select(*first)])):
             return True
         return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
 
     def _has_none(self, matrix: Matrix, order: int) -> bool:
-        """Tell whether all minors of some order vanish; of many that is not asked."""
+        """Return whether all minors of an order vanish; False if there are too many to check."""
         if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
             return False
         return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))

@@ -1,4 +1,4 @@
-"""The command `audit`: what is wrong among the equations a source prints."""
+"""The command `audit`: errors among the equations of a source."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def audit_command(
 
 
 def _audited(files: tuple[str, ...], report_progress: Progress) -> dict[str, Audited]:
-    """Return what each file's audit found; the errors of all files are raised together."""
+    """Return the findings of each file; the errors of all files are raised together."""
     found: dict[str, Audited] = {}
     errors: list[SymobsError] = []
     several = len(files) > 1

@@ -42,14 +42,14 @@ _LATE = {
 
 
 class Tasks(click.Group):
-    """The commands that stand in this file, those in `_LATE`, and one for every registered task."""
+    """The commands of this module, those in `_LATE`, and one for every registered task."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return all names."""
         return [*sorted([*super().list_commands(ctx), *_LATE]), *_summaries()]
 
     def format_commands(self, _: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write what every command does; those on tasks are read from the sources, which costs no kernel."""
+        """Write the list of commands; tasks are listed from the sources, without importing the kernel."""
         own = {name: command.get_short_help_str(limit=200) for name, command in self.commands.items()} | _LATE
         for title, listed in (
             ("Commands", dict(sorted(own.items()))),
@@ -59,7 +59,7 @@ class Tasks(click.Group):
                 formatter.write_dl(list(listed.items()))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return a command, made from the task's signature where it is a task."""
+        """Return a command; that of a task is made from its signature."""
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
@@ -81,7 +81,7 @@ class Tasks(click.Group):
         return task_command(task)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; click itself would put an empty line before our word on an interruption."""
+        """Run the command; an interruption is reported without click's empty line."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
@@ -90,7 +90,7 @@ class Tasks(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Name the command most like one that does not exist."""
+        """Return the command, or raise an error that names the most similar one."""
         name = args[0]
         if not name.startswith("-") and self.get_command(ctx, name) is None:
             nearest = get_close_matches(name, self.list_commands(ctx), 1)
@@ -102,7 +102,7 @@ class Tasks(click.Group):
 
 
 def _summaries() -> dict[str, str]:
-    """Return the tasks with what each does."""
+    """Return the tasks with their summaries."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.task_index import task_summaries  # noqa: PLC0415
 
@@ -236,7 +236,7 @@ _COLLECTED_AFTER = 50_000
 
 
 def _interrupted() -> int:
-    """Say that the run was interrupted, in one line that no second Ctrl-C disturbs, and return its exit code."""
+    """Report the interruption in one line, safe from a second Ctrl-C, and return its exit code."""
     import signal  # noqa: PLC0415 - not for runs that nobody interrupts
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)

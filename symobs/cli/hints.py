@@ -1,4 +1,4 @@
-"""What may have been meant by a command line that is not understood, where the usual message does not say it."""
+"""Hints for command lines that are not understood."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _QUOTES = 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]" and --p
 
 
 def hint(error: click.ClickException) -> str:
-    """Return a sentence to be said behind the message, or nothing."""
+    """Return a sentence to append to the message, or nothing."""
     context = getattr(error, "ctx", None)
     if context is None:
         return ""

@@ -1,4 +1,4 @@
-"""The options that several commands share: what a page is to look like, where it goes, and what its work may cost."""
+"""Options shared by several commands: format, target, detail, time and memory."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LEAST_MEMORY = 64  # megabytes; symobs and its libraries take half of that befo
 
 
 def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> float | None:
-    """Return the number an option gives; raises `UsageError` for what no budget can be, "nan" and "inf" included."""
+    """Return the number of an option; raises `UsageError` unless it is positive and finite."""
     if value is None:
         return None
     least = _LEAST_MEMORY if parameter.name == "memory" else 0
@@ -90,7 +90,7 @@ def options(*names: str) -> Callable[[Optioned], Optioned]:
 
 
 def quoted(text: str) -> str:
-    """Return what a user wrote, shortened, in quotation marks."""
+    """Return a user's text, shortened, in quotation marks."""
     from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return f'"{shown(text, 40)}"'

@@ -1,4 +1,4 @@
-"""What a command leaves behind, worked out before anything is written: so nothing is left of a run that fails."""
+"""Outcomes of commands, computed before anything is written, so that a failing run leaves no files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 @dataclass(frozen=True)
 class Outcome:
-    """What is to be written where, what is to be said besides, and the exit code."""
+    """The outputs with their targets, the messages, and the exit code."""
 
     outputs: tuple[tuple[str | bytes, str | None], ...]
     messages: tuple[str, ...] = ()
@@ -30,7 +30,7 @@ class Outcome:
 
 
 def convention_of(name: str | None) -> Any:
-    """Return the convention asked for, None for the file's own."""
+    """Return the convention of --convention, None for that of the file."""
     if name is None:
         return None
     from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
@@ -39,7 +39,7 @@ def convention_of(name: str | None) -> Any:
 
 
 def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
-    """Return how the page is to be told and set; raises `UsageError` for what does not exist."""
+    """Return the options of --detail and --templates; raises `UsageError` for unknown values."""
     from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
 
     if templates is None:
@@ -56,7 +56,7 @@ def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, A
 
 
 def check_targets(target: str | None, plot: str | None) -> None:
-    """Say at once that the result or its picture cannot be written."""
+    """Raise an error, before any work, if the result or its plot cannot be written."""
     check_target(target)
     if plot is not None:
         from symobs.render.plots.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
@@ -78,7 +78,7 @@ def solved(
     only_some_tasks: bool = False,
     **page: Any,
 ) -> Outcome:
-    """Solve a problem and return its document, its picture, and what the contract says of them.
+    """Solve a problem and return the outcome: its document, its plot, messages and exit code.
 
     With `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the
     document.  `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
@@ -124,7 +124,7 @@ def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str
 
 
 def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
-    """Return what the work leaves behind, or what was left of it when its budget was used up."""
+    """Return the outcome of the work, or the partial outcome if its budget is exhausted."""
     from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 
     try:

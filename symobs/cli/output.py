@@ -1,4 +1,4 @@
-"""Writing what was asked for: whole or not at all, to standard output or to files; of several results all or none."""
+"""Output to standard output or to files: complete or not at all, several results all or none."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def write_all(outputs: Sequence[tuple[str | bytes, str | None]]) -> None:
 
 
 def check_target(target: str | None) -> None:
-    """Raise `InputError`, before any work, where a result could not be written."""
+    """Raise `InputError`, before any work, if a result cannot be written."""
     if target is None or target == "-":
         return
     with _explained(target):
@@ -67,7 +67,7 @@ def check_target(target: str | None) -> None:
 
 
 def binary(stream: Any) -> Any:
-    """Return the bytes below a standard stream; it is None where it was closed before we began."""
+    """Return the binary stream of a standard stream, which is None if it was closed."""
     if stream is None:
         raise OSError(errno.EBADF, os.strerror(errno.EBADF))
     return stream.buffer
@@ -77,7 +77,7 @@ def binary(stream: Any) -> Any:
 
 
 def _is_file(target: str | None) -> bool:
-    """Whether a target is a file or will be one; what is no regular file (/dev/stdout, a pipe) is a stream."""
+    """Return whether a target is or will be a regular file, not a stream (/dev/stdout, a pipe)."""
     if target is None or target == "-":
         return False
     with _explained(target):
@@ -86,7 +86,7 @@ def _is_file(target: str | None) -> bool:
 
 
 def _send(content: str | bytes, target: str | None) -> None:
-    """Write to a stream, and be content where its reader has read enough."""
+    """Write to a stream; a closed pipe ends the output without an error."""
     try:
         with _explained(target):
             if target is not None and target != "-":
@@ -131,7 +131,7 @@ def _prepared(data: bytes, target: str) -> Prepared:
 
 
 def _put_in_place(files: Sequence[Prepared]) -> None:
-    """Move complete files to their places; where one cannot go there, those that went before it are taken back."""
+    """Move complete files to their places; if one fails, undo those before it."""
     new = {place for _, place, _ in files if not place.exists()}
     kept: dict[Path, Path] = {}
     moved: list[Path] = []
@@ -155,7 +155,7 @@ def _put_in_place(files: Sequence[Prepared]) -> None:
 
 
 def _kept(temporary: Path, place: Path) -> dict[Path, Path]:
-    """Give what stands in a place a second name; return that, or nothing where the file system has no second names."""
+    """Link an existing file to a second name; return that, or nothing if the file system has no links."""
     before = temporary.with_suffix(".before")
     with suppress(OSError):
         before.hardlink_to(place)

@@ -1,4 +1,4 @@
-"""The command `sheet`: several problems on one sheet, of which one that fails loses no other."""
+"""The command `sheet`: several problems on one sheet; a failing one does not affect the others."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 
 @dataclass(frozen=True)
 class _Wanted:
-    """What was asked for on the command line."""
+    """The options of the command."""
 
     format: Any
     questions: bool
@@ -152,7 +152,7 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
-    """Return what `_entry` does, and where that takes more than it may, as much as there was by then."""
+    """Return the value of `_entry`, or the partial entry if its budget is exhausted."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, file, text, wanted, lambda _: None)
     from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
@@ -172,7 +172,7 @@ def _empty(number: int, file: str) -> SheetEntry:
 def _entry(
     number: int, file: str, text: str, wanted: _Wanted, report_progress: Progress
 ) -> tuple[SheetEntry, int, list[str]]:
-    """Return a problem's place on the sheet, its exit code, and what there is to say about it."""
+    """Return the entry of a problem, its exit code, and its messages."""
     entry = _empty(number, file)
     try:
         return _worked_out(entry, text, wanted, report_progress)
@@ -183,7 +183,7 @@ def _entry(
 def _worked_out(
     entry: SheetEntry, text: str, wanted: _Wanted, report_progress: Progress
 ) -> tuple[SheetEntry, int, list[str]]:
-    """Return the entry with its parts; a solution that fails leaves the question where there is one."""
+    """Return the entry with its parts; if the solution fails, with the question alone."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
@@ -209,14 +209,14 @@ def _worked_out(
 
 
 def _part(document: Document, wanted: _Wanted) -> Any:
-    """Return what the format will want of a question or a solution."""
+    """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
     told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
     return wanted.format.part(told)
 
 
 def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
-    """Return the entry of a problem that failed; one that has used up its memory is told of where that is bounded."""
+    """Return the entry of a failed problem; exhausted memory is reported by the budget."""
     if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
         raise error
     phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
@@ -224,7 +224,7 @@ def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[Sheet
 
 
 def _failure(error: Exception) -> tuple[int, list[str]]:
-    """Return the exit code of what failed, and its messages; TeX that is missing fails for all."""
+    """Return exit code and messages of a failure; missing TeX fails for all problems."""
     if isinstance(error, TypesettingError):
         raise error
     if isinstance(error, MemoryError):
@@ -239,14 +239,14 @@ def _failure(error: Exception) -> tuple[int, list[str]]:
 
 
 class _Progress:
-    """One line on a terminal, written over again and again; nothing where standard error is none."""
+    """A progress line on a terminal, overwritten each time; nothing unless standard error is a terminal."""
 
     def __init__(self, total: int) -> None:
         self.total = total
         self.shows = sys.stderr.isatty()
 
     def show(self, number: int, name: str) -> None:
-        """Say which problem is being worked on."""
+        """Show the problem in progress."""
         self.say(f"{number}/{self.total} {name}")
 
     def say(self, text: str) -> None:
@@ -256,7 +256,7 @@ class _Progress:
                 click.echo(f"\r\x1b[K{shown(text, 70)}", nl=False, err=True)
 
     def clear(self) -> None:
-        """Take the line away."""
+        """Erase the line."""
         if self.shows:
             with suppress(OSError):
                 click.echo("\r\x1b[K", nl=False, err=True)

@@ -53,7 +53,7 @@ def task_command(task: Any) -> click.Command:
 
 
 def _run_task(task: Any, options_given: dict[str, Any]) -> None:
-    """Put the options into a problem's tables and run it; undeclared names are real symbols."""
+    """Run the problem of the options; undeclared names are real symbols."""
 
     def given(group: str) -> dict[str, Any]:
         chosen = {name: value for name, value in options_given.items() if name.startswith(group) and value is not None}

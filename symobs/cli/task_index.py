@@ -1,4 +1,4 @@
-"""Which tasks and formats there are, read from the sources without importing them: a list of names costs no kernel.
+"""Index of tasks and formats, read from the sources without importing them.
 
 The registry of `method` is what counts; this says the same of it, faster.
 """
@@ -19,7 +19,7 @@ _FORMAT = re.compile(r'name: ClassVar\[str\] = "(\w+)"\n    suffix: ClassVar\[st
 
 
 def task_summaries(packages: tuple[str, ...]) -> dict[str, str]:
-    """Return the tasks of some packages of symobs with what each does, in a line."""
+    """Return the tasks of some packages of symobs with their summaries."""
     found: dict[str, str] = {}
     for package in packages:
         for source in _sources(package, "\n@task"):

@@ -40,18 +40,18 @@ _LESS = "ask for less, or put numbers in place of symbols"
 
 
 class Budget(NamedTuple):
-    """What a piece of work may take; None is as much as there is."""
+    """The time and memory allowed for a piece of work; None is unlimited."""
 
     seconds: float | None = None
     megabytes: float | None = None
 
 
 class _TimeOver(BaseException):
-    """Raised by the alarm in a child: no code may take it for an error of its own."""
+    """Raised by SIGALRM in the worker; a BaseException so that `except Exception` cannot swallow it."""
 
 
 def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -> Value:
-    """Return what `work` returns, or raise what it raises; raises `OutOfBudget` where it takes more than it may.
+    """Return the value of `work`, or raise its error; raises `OutOfBudget` beyond its budget.
 
     `work` is given a function that takes how far it has come: a text says what it is at work on, anything else, or
     what a function returns, is what would be left of it now, and stands in `OutOfBudget.facts["left"]`.
@@ -74,7 +74,7 @@ def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -
 
 
 def _require_child_processes(budget: Budget) -> None:
-    """Raise `UsageError` where the system has no way to keep a budget."""
+    """Raise `UsageError` if the system cannot enforce a budget."""
     option = "--memory" if budget.seconds is None else "--timeout"
     if not hasattr(os, "fork"):
         repair = f"leave {option} out, or use Linux, macOS or the Windows Subsystem for Linux"
@@ -88,7 +88,7 @@ def _require_child_processes(budget: Budget) -> None:
 
 
 def _work(budget: Budget, work: Callable[[Progress], Any], writing: int) -> NoReturn:
-    """Do the work, say on a pipe what came of it, and end this process."""
+    """Do the work, write its value to a pipe, and end this process."""
     code = 1
     try:
         with open(writing, "wb", buffering=0) as stream:
@@ -130,7 +130,7 @@ def _say(stream: io.RawIOBase, kind: str, content: object) -> None:
 
 
 def _set_up(budget: Budget) -> None:
-    """Bound this process, and let it leave in order when it is asked to."""
+    """Set the limits of this process and its handlers for orderly termination."""
 
     def leave(number: int, _: FrameType | None) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0)
@@ -150,7 +150,7 @@ def _set_up(budget: Budget) -> None:
 
 
 def _silence() -> None:
-    """Let libraries that abort say nothing to the user; what we say still gets there."""
+    """Discard the messages of aborting libraries, but not those of symobs."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     if sys.stderr is sys.__stderr__ and sys.stderr is not None:
@@ -159,7 +159,7 @@ def _silence() -> None:
 
 
 def _bound_memory(size: int | None) -> None:
-    """Let this process, and each that it starts, have so many bytes of data; None takes the bound away."""
+    """Limit the data of this process and its children in bytes; None removes the limit."""
     import resource  # noqa: PLC0415 - not on every system
 
     # On Linux the data alone; elsewhere all addresses, libraries and reserved space included.
@@ -172,14 +172,14 @@ def _bound_memory(size: int | None) -> None:
 
 
 def _lift(budget: Budget) -> None:
-    """Take the bounds away: the answer is there and has only to be handed over."""
+    """Remove the limits once the answer is computed."""
     signal.setitimer(signal.ITIMER_REAL, 0)
     if budget.megabytes is not None:
         _bound_memory(None)
 
 
 def _for_want_of_memory(error: Exception, budget: Budget) -> bool:
-    """Whether an error says that there was no memory; imports and C code say it in ways of their own."""
+    """Return whether an error is due to exhausted memory, including those of imports and C code."""
     if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
         return True
     return budget.megabytes is not None and isinstance(error, SystemError | ImportError)
@@ -209,7 +209,7 @@ def _tex_took_too_long(budget: Budget) -> TypesettingError:
 
 
 def _heard(stream: io.FileIO, child: int, seconds: float | None) -> tuple[bytes, int | None]:
-    """Return all that a child says and its status at its end, None where it had to be ended."""
+    """Return the output of a child and its status, None if it was ended."""
     said = bytearray()
     end = None if seconds is None else time.monotonic() + seconds + GRACE
     usual = signal.signal(signal.SIGTERM, _leave)
@@ -238,7 +238,7 @@ def _leave(number: int, _: FrameType | None) -> None:
 
 
 def _kill(child: int, stream: io.FileIO, said: bytearray) -> None:
-    """End a child that does not leave, and the group of processes that it has started and waits for."""
+    """Kill a child that does not terminate, and the group of processes that it waits for."""
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
     while chunk := stream.read(1 << 20):  # up to its end: nobody else holds the pipe
@@ -247,7 +247,7 @@ def _kill(child: int, stream: io.FileIO, said: bytearray) -> None:
 
 
 def _end_group(said: bytearray) -> None:
-    """End the group of processes that a child, which has ended, waited for to the last."""
+    """Kill the group of processes that a terminated child was waiting for."""
     groups = [content for kind, content in _records(said) if kind == "group"]
     if groups and groups[-1] is not None:
         with suppress(ProcessLookupError):
@@ -255,7 +255,7 @@ def _end_group(said: bytearray) -> None:
 
 
 def _end(child: int, stream: io.FileIO, said: bytearray) -> None:
-    """Ask a child to leave in order, and end it where it does not."""
+    """Terminate a child, and kill it if it does not exit."""
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         os.kill(child, signal.SIGINT)
@@ -272,7 +272,7 @@ def _end(child: int, stream: io.FileIO, said: bytearray) -> None:
 
 
 def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
-    """Return the child's value, or raise what ended it."""
+    """Return the child's value, or raise the error that ended it."""
     left, at_work = None, ""
     for kind, content in _records(said):
         if kind == "value":
@@ -300,7 +300,7 @@ def _answer(said: bytes, status: int | None, budget: Budget, where: str) -> Any:
 
 
 def _records(said: bytes | bytearray) -> Iterator[tuple[str, Any]]:
-    """Yield what a child said, as far as it is whole."""
+    """Yield the complete records of a child."""
     records = io.BytesIO(said)
     with suppress(EOFError, pickle.UnpicklingError):
         while True:
@@ -308,7 +308,7 @@ def _records(said: bytes | bytearray) -> Iterator[tuple[str, Any]]:
 
 
 def _memory_is_bounded(budget: Budget) -> bool:
-    """Whether memory has a bound, given here or by the system: FLINT aborts where it reaches that."""
+    """Return whether memory is limited, here or by the system; FLINT aborts at the limit."""
     import resource  # noqa: PLC0415 - not on every system
 
     bounds = (resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA))

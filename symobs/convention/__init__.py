@@ -1,4 +1,4 @@
-"""Conventions: the letters and signs in which a page is written, input is read, and answers are expected."""
+"""Conventions: the letters and signs of pages, of input, and of expected answers."""
 
 from symobs.convention.builtin import convention_named, conventions
 from symobs.convention.convention import OF_REDUCED_ORDER, STANDARD, Convention

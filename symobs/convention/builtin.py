@@ -14,7 +14,7 @@ _SHOWN = 40
 
 
 def convention_named(name: str, folder: Path | None = None) -> Convention:
-    """Return a convention: one of the package, `NAME.toml` in `folder`, or the file that a path ending in .toml names.
+    """Return a convention: one of the package, `NAME.toml` in `folder`, or the file of a path ending in .toml.
 
     Raises `UsageError` naming those that exist, and `ProblemErrors` with everything that is wrong in a file.
     """

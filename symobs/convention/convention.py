@@ -1,4 +1,4 @@
-"""Conventions: the letters and signs in which a page is written, input is read, and answers are expected.
+"""Conventions: the letters and signs of pages, of input, and of expected answers.
 
 The mathematics is the same in all of them; the standard one is u = −K x̂, A − L C, e = x − x̂.  Those of the source
 documents come with the package as small TOML files (`profiles/`), and a user adds one by writing another (`reading`).
@@ -48,21 +48,21 @@ class Convention:
 
     @property
     def is_standard(self) -> bool:
-        """Whether pages stay as they were written."""
+        """Whether this is the standard convention."""
         return self == STANDARD
 
     @cached_property
     def turned(self) -> frozenset[str]:
-        """The letters that mean the negative of what they mean in the standard convention."""
+        """The letters that denote the negative of their standard meaning."""
         feedback = FEEDBACK_GAINS if self.feedback_sign > 0 else frozenset()
         return feedback | (OBSERVER_GAINS if self.observer_sign > 0 else frozenset())
 
     def written(self, *, reduced: bool) -> Mapping[str, str]:
-        """Return what is written for the letters that differ; `reduced` where there is a reduced-order observer."""
+        """Return the forms of the letters that differ; with `reduced` those of a reduced-order observer."""
         return {**self.letters, **self.reduced} if reduced else self.letters
 
     def forms(self, *, reduced: bool) -> Mapping[str, LetterForm]:
-        """Return the forms of the letters that are written differently."""
+        """Return the forms of the letters that differ from the standard convention."""
         changed = self._with_components(self.written(reduced=reduced))
         forms = {name: letter_form(text, LETTERS[name]) for name, text in changed.items()}
         forms |= {f"{name}_at": form.alone for name, form in forms.items() if f"{name}_at" in FUNCTIONS}
@@ -73,7 +73,7 @@ class Convention:
 
     @staticmethod
     def _with_components(written: Mapping[str, str]) -> Mapping[str, str]:
-        """Return the letters with those of the estimate's components: x_01, x_02 where the estimate is x_0."""
+        """Return the letters with those of the components of the estimate: x_01, x_02 for the estimate x_0."""
         estimate = written.get("x_hat", "")
         numbered = estimate if estimate[-1:].isdigit() else f"{estimate}_"
         components = {name: f"{numbered}{name[-1]}" for name in ("x_hat_1", "x_hat_2") if estimate}
@@ -81,17 +81,17 @@ class Convention:
 
     @property
     def law(self) -> str:
-        """The control law, as it is typed."""
+        """The control law, as typed."""
         return f"u = {'-' * (self.feedback_sign < 0)}{self.letters.get('K', 'K')} x_hat"
 
     @property
     def observer_matrix(self) -> str:
-        """The observer matrix, as it is typed."""
+        """The observer matrix, as typed."""
         return f"A {'-' if self.observer_sign < 0 else '+'} {self.letters.get('L', 'L')} C"
 
     @property
     def pair(self) -> str:
-        """The pair that is observable."""
+        """The observable pair."""
         opening, closing = self.brackets
         return f"{opening}{'A, C' if self.state_first else 'C, A'}{closing}"
 

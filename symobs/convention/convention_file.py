@@ -60,13 +60,13 @@ _COMMON = ("A", "B", "C", "D", "K", "L", "x", "x_hat", "u", "y", "e", "F", "T")
 
 
 def is_name(text: str) -> bool:
-    """Whether a text can be the name of a convention."""
+    """Return whether a text can be the name of a convention."""
     return _NAME.fullmatch(text) is not None
 
 
 @cache
 def of_file(path: Path) -> Convention:
-    """Return the convention of a file.  Raises `ProblemErrors` with everything that is wrong in it."""
+    """Return the convention of a file; raises `ProblemErrors` with every error in it."""
     where = path.name[:200]
     try:
         with path.open("rb") as stream:
@@ -84,7 +84,7 @@ def of_file(path: Path) -> Convention:
 
 
 def read_convention(table: Mapping[str, Any], where: str) -> Convention:
-    """Return the convention of a file's table.  Raises `ProblemErrors` with every error of it."""
+    """Return the convention of a table; raises `ProblemErrors` with every error in it."""
     errors: list[InputError] = []
     known = (*_TEXTS, *_TABLES)
     repair = f"known keys are {', '.join(known)}"
@@ -114,7 +114,7 @@ def read_convention(table: Mapping[str, Any], where: str) -> Convention:
 
 
 def _text(table: Mapping[str, Any], key: str, errors: list[InputError]) -> re.Match[str] | None:
-    """Return the match of a key's text; what cannot be one is noted."""
+    """Return the match of the text of a key; an error is recorded if there is none."""
     pattern, usual, repair = _TEXTS[key]
     value = table.get(key, usual)
     found = pattern.fullmatch(value) if isinstance(value, str) else None
@@ -124,7 +124,7 @@ def _text(table: Mapping[str, Any], key: str, errors: list[InputError]) -> re.Ma
 
 
 def _letters(table: Mapping[str, Any], key: str, errors: list[InputError]) -> dict[str, str]:
-    """Return a table of letters; what cannot be one is noted."""
+    """Return a table of letters; errors are recorded."""
     value = table.get(key, {})
     if not isinstance(value, dict):
         errors.append(InputError("a table is expected", where=key, repair=f"write [{key}] and the letters below it"))
@@ -150,7 +150,7 @@ def _nearest(name: str) -> str:
 
 
 def _shared(written: Mapping[str, str], key: str) -> list[InputError]:
-    """Return an error for each letter that would be written like another that pages speak of."""
+    """Return an error for each letter with the form of another letter of the pages."""
     errors: list[InputError] = []
     for name, text in written.items():
         others = [other for other in _COMMON if other != name and written.get(other, other) == text]

@@ -1,4 +1,4 @@
-"""How a letter of a convention is written: from what is typed to LaTeX and to the terminal."""
+"""Forms of the letters of a convention: from the typed letter to LaTeX and to the terminal."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ARGUMENT = re.compile(r"\(.*\)$")
 
 
 def letter_form(name: str, standard: LetterForm) -> LetterForm:
-    """Return the form of a letter that is typed `M`, `x_bar` or `r_o` in place of a standard one.
+    """Return the form of a typed letter such as `M`, `x_bar` or `r_o`.
 
     What the standard letter is a function of stays behind it: `r_o` for φ(s) is r_o(s).
     """

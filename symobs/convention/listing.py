@@ -1,4 +1,4 @@
-"""The conventions as a user looks them up: a table of laws, observers and letters, or the file of one."""
+"""The list of conventions: laws, observers and letters, or the file of one."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ pair = "(C, A)"
 
 
 def listed() -> str:
-    """Return a table of all conventions, and below it what each writes in place of the standard letters."""
+    """Return a table of all conventions, and below it their letters that differ from the standard ones."""
     known = conventions()
     rows = [
         _HEAD,
@@ -43,12 +43,12 @@ def listed() -> str:
 
 
 def _shown(typed: str) -> str:
-    """Return a law as pages write it."""
+    """Return a law as printed."""
     return typed.replace("x_hat", "x̂").replace("-", "−")
 
 
 def _letters(found: Convention) -> list[str]:
-    """Return the lines on the letters that are not written as in the standard convention."""
+    """Return the lines on the letters that differ from the standard convention."""
     lines: list[str] = []
     for letters, reduced in ((found.letters, False), (found.reduced, True)):
         forms, where = found.forms(reduced=reduced), " (with a reduced-order observer)" if reduced else ""
@@ -60,7 +60,7 @@ def _letters(found: Convention) -> list[str]:
 
 
 def file_of(name: str) -> str:
-    """Return the TOML of a convention.  Raises `UsageError` naming those that exist."""
+    """Return the TOML of a convention; raises `UsageError` naming those that exist."""
     if name == STANDARD.name:
         return _OF_STANDARD
     convention_named(name)

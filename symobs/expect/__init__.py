@@ -1,4 +1,4 @@
-"""Holding results against expected answers: compared as mathematics, never as text."""
+"""Comparison of results with expected answers, as mathematics and not as text."""
 
 from symobs.expect.expectations import applicable, mismatches, unreadable
 

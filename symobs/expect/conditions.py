@@ -1,4 +1,4 @@
-"""Conjunctions of relations: two are the same where each follows from the other, however they are written."""
+"""Equivalence of conjunctions of relations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def conditions_agree(
     found: Iterable[Any], expected: Iterable[Any], names: Any, where: str, signs: Mapping[str, str]
 ) -> bool:
-    """Tell whether two conjunctions of relations hold at the same parameters, as far as that is proved."""
+    """Return whether two conjunctions of relations are proved equivalent."""
     ours = {relation(str(entry), names, where) for entry in found}
     theirs = {relation(entry, names, where) for entry in expected}
     if any(decimals_in(value) for value, _ in theirs):
@@ -28,7 +28,7 @@ def conditions_agree(
 def _implies(
     given: Iterable[tuple[Scalar, str]], wanted: Iterable[tuple[Scalar, str]], signs: Mapping[str, str]
 ) -> bool:
-    """Tell whether relations follow from others: those not among them must be strict, and follow from the strict ones."""
+    """Return whether relations follow from others; new ones must be strict, and follow from the strict ones."""
     from symobs.stability.inequalities.simplify import prove_value  # noqa: PLC0415 - only where two lists are not the same
 
     given = set(given)

@@ -1,4 +1,4 @@
-"""Holding results against expected answers: compared as mathematics, never as text."""
+"""Comparison of results with expected answers, as mathematics and not as text."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _MOST_SHOWN = 200
 
 
 def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[str]:
-    """Return one line for each expected answer that is not met; raises `ProblemErrors` for what cannot be read.
+    """Return one line for each expected answer not met; raises `ProblemErrors` for unreadable ones.
 
     `[expect.TASK]` belongs to one task; other keys belong to every task that has the field, and at least one must.
     """
@@ -60,7 +60,7 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
 
 
 def applicable(results: Sequence[Answered], expect: Mapping[str, Any]) -> dict[str, Any]:
-    """Return those expected answers that belong to one of these results."""
+    """Return the expected answers of these results."""
     tasks = {result.task for result in results}
     fields = {name for result in results for name in _available(result)}
     return {
@@ -69,7 +69,7 @@ def applicable(results: Sequence[Answered], expect: Mapping[str, Any]) -> dict[s
 
 
 def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], errors: list[SymobsError]) -> list[str]:
-    """Return the lines for one result; of answers that are not unique, the others are held against the one expected."""
+    """Return the lines for one result; with a nonunique answer, the others are compared given the expected one."""
     lines: list[str] = []
     chosen = result
     for name, (entry, where) in expected.items():
@@ -90,7 +90,7 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
 
 
 def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answered:
-    """Return the result with another gain of its family, where that is what is expected; else the result itself."""
+    """Return the result with the expected gain of its family, else the result itself."""
     answer = result.answer[name]
     if not isinstance(answer, Matrix) or result.fields.get("family") is None:
         return result
@@ -103,7 +103,7 @@ def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answere
 
 
 def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[SymobsError]:
-    """Return what can be said of expected answers without results: the texts that are no mathematics at all."""
+    """Return the errors of expected answers that are not expressions, without solving."""
     known = None if names is None else {**names, variable: "real", "t": "real", "t0": "real", "t1": "real"}
     errors: list[SymobsError] = []
     waiting: list[tuple[str, Any]] = [("expect", expect)]
@@ -147,7 +147,7 @@ def _found(result: Answered, name: str) -> Any:
 
 
 def _names(result: Answered) -> Any:
-    """Return the declared names, and those that the answers use by themselves, such as t and t0."""
+    """Return the declared names, and the names introduced by answers, such as t and t0."""
     declared, plant = result.plant.symbols.names, result.plant
     if declared is None:
         return None
@@ -170,7 +170,7 @@ def _shown(value: Any) -> str:
 
 
 def met(result: Answered, name: str, expected: Any, where: str) -> bool:
-    """Tell whether an expected answer is the result's."""
+    """Return whether an expected answer equals that of the result."""
     found, names, variable = _found(result, name), _names(result), result.plant.variable
     if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
@@ -248,7 +248,7 @@ def _is_relation(entry: Any) -> bool:
 
 
 def _intervals_agree(found: list[list[str]], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether the ends of intervals are those expected: -oo, oo, CRootOf(polynomial, index), or a closed form."""
+    """Return whether intervals have the expected ends: -oo, oo, CRootOf(polynomial, index), or a closed form."""
     if len(found) != len(expected) or not all(isinstance(pair, list) and len(pair) == 2 for pair in expected):
         return False
     pairs = zip((end for pair in found for end in pair), (end for pair in expected for end in pair), strict=True)
@@ -271,7 +271,7 @@ def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
 
 
 def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
-    """Tell whether an entry of a list is this matrix; a number alone is none."""
+    """Return whether an entry of a list is this matrix; a number alone is not."""
     if not isinstance(expected, (str, list)):
         return False
     return agrees(parse_matrix(expected, names, where=where, rounding=True), found)
@@ -281,7 +281,7 @@ def _is_matrix(expected: Any, found: Matrix, names: Any, where: str) -> bool:
 
 
 def _modes_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
-    """Tell whether each expected mode is one of those found, each once; of a mode the keys given are compared."""
+    """Return whether each expected mode matches a different mode found, in the given keys."""
     waiting = list(found)
     for i, wanted in enumerate(expected):
         place = f"{where}[{i}]"
@@ -319,7 +319,7 @@ def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str)
 
 
 def _tables_agree(found: list[list[Any]], expected: Any, names: Any, where: str) -> bool:
-    """Tell whether a matrix, whose entries may be complex, is the one expected."""
+    """Return whether a matrix, possibly complex, equals the expected one."""
     table = [[str(cell) for cell in row] for row in found]
     if not isinstance(expected, list) or [len(row) if isinstance(row, list) else 0 for row in expected] != [
         len(row) for row in table

@@ -1,4 +1,4 @@
-"""Roots and numbers that texts stand for: a + b sqrt(c), CRootOf(polynomial, index), sums of square roots."""
+"""Expected roots and numbers: a + b sqrt(c), CRootOf(polynomial, index), sums of square roots."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ COUNTED = re.compile(r"\s*CRootOf\((.*),\s*([0-9]+)\)\s*", re.DOTALL)
 
 
 def key_of(root: Root) -> Any:
-    """Return what is the same for two ways to write one root."""
+    """Return a key independent of the form of a root."""
     exact: Complex | None = root.exact()
     return exact if exact is not None else (root.centre, root.radicand, root.sign, root.factor, root.index)
 
 
 def read_roots(expected: list[Any], names: Any, variable: str, where: str) -> list[Root]:
-    """Return the roots that texts stand for: numbers, a + b sqrt(c), CRootOf(polynomial, index)."""
+    """Return the roots of texts: numbers, a + b sqrt(c), CRootOf(polynomial, index)."""
     roots: list[Root] = []
     for i, entry in enumerate(expected):
         place = f"{where}[{i}]" if len(expected) > 1 else where
@@ -40,7 +40,7 @@ def read_roots(expected: list[Any], names: Any, variable: str, where: str) -> li
 
 
 def rounded_roots(expected: list[Any], names: Any, where: str) -> tuple[Complex, ...]:
-    """Return the numbers of a list with decimals; nothing where it has none."""
+    """Return the numbers of a list with decimals, nothing for a list without."""
     if any(isinstance(entry, str) and "CRootOf" in entry for entry in expected):
         return ()
     texts = ", ".join(str(entry).strip(" []") for entry in expected)
@@ -49,7 +49,7 @@ def rounded_roots(expected: list[Any], names: Any, where: str) -> tuple[Complex,
 
 
 def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: str) -> bool:
-    """Tell whether the roots found round to the decimals of those printed."""
+    """Return whether the roots found round to the printed decimals."""
     exact = polynomial_of_roots(variable, tuple(found))
     try:
         return exact is not None and rounds_to(polynomial_of(printed, variable), exact)
@@ -58,7 +58,7 @@ def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: st
 
 
 def root_rounds_to(printed: Complex, found: Root) -> bool:
-    """Tell whether a root with a closed form rounds to the decimals of a printed number."""
+    """Return whether a root with a closed form rounds to the decimals of a printed number."""
     return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed)
 
 
@@ -97,7 +97,7 @@ def _no_surd(text: str, where: str) -> InputError:
 
 
 def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether complex numbers with square roots, and roots without a form, are those expected, each once."""
+    """Return whether complex numbers with square roots, and roots without closed form, are the expected ones."""
     waiting = list(found)
     for i, entry in enumerate(expected):
         counted = isinstance(entry, str) and "CRootOf" in entry
@@ -110,7 +110,7 @@ def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str)
 
 
 def is_number(found: Complex | Root, expected: Complex) -> bool:
-    """Tell whether a complex number is the one expected, as functions of its symbols."""
+    """Return whether a complex number equals the expected one as a function of its symbols."""
     if isinstance(found, Root):
         return False
     return functions_agree(expected.real, found.real) and functions_agree(expected.imaginary, found.imaginary)

@@ -1,4 +1,4 @@
-"""Values made of several: tables by the keys that are expected, lists entry by entry, down to expressions and words."""
+"""Comparison of structured values: tables by the expected keys, lists by entries, down to expressions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<)(.*)$", re.DOTALL)
 
 
 def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
-    """Tell whether a value is the one expected: of a table the keys that are given are compared."""
+    """Return whether a value equals the expected one; tables are compared in the given keys."""
     if isinstance(found, Mapping):
         alike = isinstance(expected, Mapping) and set(expected) <= set(found)
         return alike and all(agree(found[key], entry, names, f"{where}.{key}") for key, entry in expected.items())
@@ -43,7 +43,7 @@ def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
 
 
 def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
-    """Return a relation as (what is compared with 0, up to a factor that does not matter, operator)."""
+    """Return a relation as (expression compared with 0, up to a factor, operator)."""
     if text == "False":
         return Scalar.of(0), ">"
     match = RELATION.match(str(text))
@@ -71,7 +71,7 @@ def relation(text: Any, names: Any, where: str) -> tuple[Scalar, str]:
 
 
 def relations_agree(expected: tuple[Scalar, str], found: tuple[Scalar, str]) -> bool:
-    """Tell whether a relation is the one found, up to a factor that does not matter; its decimals may be rounded."""
+    """Return whether a relation equals the one found up to a factor; its decimals may be rounded."""
     (printed, operator), (exact, other) = expected, found
     if not decimals_in(printed) or exact.is_zero or operator != other:
         return expected == found
@@ -90,7 +90,7 @@ def relations_agree(expected: tuple[Scalar, str], found: tuple[Scalar, str]) -> 
 
 
 def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: Any, where: str) -> bool:
-    """Tell whether the factors with their powers are those expected, in any order."""
+    """Return whether the factors with their powers equal the expected ones, in any order."""
     read: list[tuple[Scalar, int]] = []
     for i, pair in enumerate(expected):
         if not isinstance(pair, list) or len(pair) != 2 or type(pair[1]) is not int:
@@ -105,7 +105,7 @@ def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: A
 
 
 def factored_table(found: Any) -> Matrix | None:
-    """Return the matrix that a table of factored entries is; None for any other value."""
+    """Return the matrix of a table of factored entries, None for any other value."""
     if not isinstance(found, tuple) or not found or not all(isinstance(row, tuple) and row for row in found):
         return None
     if not all(isinstance(entry, Factored) for row in found for entry in row):
@@ -114,12 +114,12 @@ def factored_table(found: Any) -> Matrix | None:
 
 
 def _knowing(names: Any, value: Scalar | Matrix) -> Any:
-    """Return the names with those that an answer has beside the declared ones: its variable, free parameters."""
+    """Return the names with those of an answer added: its variable, free parameters."""
     return None if names is None else {**dict.fromkeys(sorted(symbols_in(value)), "real"), **names}
 
 
 def _agree_as_mathematics(found: str, expected: str, names: Any, where: str) -> bool:
-    """Tell whether two texts say the same; what is no mathematics says nothing but itself."""
+    """Return whether two texts are equal as expressions, or literally if they are not expressions."""
     try:
         if RELATION.match(found) or RELATION.match(expected):
             return relations_agree(relation(expected, names, where), relation(found, names, where))

@@ -1,4 +1,4 @@
-"""Two values as functions: equal where their exponentials, sines, cosines and square roots are the same."""
+"""Equality of functions of time: exponentials, sines, cosines and square roots."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
-    """Tell whether an expected value is the one found, which rounds to its decimals."""
+    """Return whether the value found equals the expected one, or rounds to its decimals."""
     if not decimals_in(expected):
         return bool(expected == found)
     pairs = [(expected, found)]
@@ -27,7 +27,7 @@ def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
 
 
 def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
-    """Tell whether two values are equal as functions: brought to common exponentials, sines and cosines.
+    """Return whether two values are equal as functions, by common exponentials, sines and cosines.
 
     Decimals of the one on the left may be rounded.
     """

@@ -1,4 +1,4 @@
-"""Text to exact values: the only way from what a user wrote into the field."""
+"""Parsing of expressions: from the text of a user to exact values."""
 
 from symobs.expression.names import declared_name
 from symobs.expression.parse import parse_matrix, parse_poles, parse_polynomial, parse_scalar

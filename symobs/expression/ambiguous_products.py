@@ -1,4 +1,4 @@
-"""A product without a sign after a division, `1/s(s+1)`: what it may mean, each written out."""
+"""Ambiguous products after a division, `1/s(s+1)`: both readings, written out."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LONGEST_READING = 100
 
 
 def division_before(tokens: Sequence[Token]) -> int | None:
-    """Return the place of the "/" whose divisor has just ended, None where there is none."""
+    """Return the place of the "/" whose divisor ends here, None if there is none."""
     for place in _term_backwards(tokens, len(tokens)):
         if tokens[place].type == "MULTIPLY":
             return place if tokens[place] == "/" else None

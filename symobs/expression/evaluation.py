@@ -1,4 +1,4 @@
-"""Third step: the tree is computed with exact values."""
+"""Third step: evaluation of the tree with exact values."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _SMALLER = "write something smaller, with a symbol in place of what is large"
 
 
 def read(text: str, scope: Scope, where: str) -> list[Entry]:
-    """Return the entries of a text, set apart by commas; raises ExpressionError, BudgetExceeded, ShapeMismatch."""
+    """Return the comma-separated entries of a text; raises ExpressionError, BudgetExceeded, ShapeMismatch."""
     source = Source(text, where)
     if len(text) > MOST_CHARACTERS:
         message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
@@ -75,7 +75,7 @@ _SCALAR_OPERATIONS = 12
 
 
 class Evaluator:
-    """Computes a tree on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
+    """Evaluation of a tree on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
 
     def __init__(self, source: Source, scope: Scope) -> None:
         self.source = source
@@ -84,7 +84,7 @@ class Evaluator:
         self.names = scope.names or {}
 
     def entry(self, tree: SyntaxNode) -> Entry:
-        """Return what a tree is worth."""
+        """Return the value of a tree."""
         stack: list[Any] = []
         for node in operands_first(tree):
             start = len(stack) - len(node.parts)
@@ -93,7 +93,7 @@ class Evaluator:
         return found  # type: ignore[no-any-return]
 
     def _value(self, node: SyntaxNode, parts: list[Any]) -> Any:
-        """Return what a node is worth whose parts are worth these."""
+        """Return the value of a node, given the values of its parts."""
         match node.kind:
             case "number":
                 return node.value

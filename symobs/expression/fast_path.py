@@ -1,4 +1,4 @@
-"""The short way for what most texts are: numbers and names, with signs, products and quotients, and no space inside.
+"""The fast path for plain texts: numbers and names with signs, products and quotients, without spaces.
 
 It reads a text or leaves it alone: whatever is wrong, or could mean something else, is for the grammar to say.
 """
@@ -22,7 +22,7 @@ _MOST_NAMES = 100
 
 
 def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | None:
-    """Return rows of entries, and whether brackets stand around them; None where the text is not plain."""
+    """Return rows of entries, and whether they are in brackets; None if the text is not plain."""
     inside = text.strip(" ")
     if scope.rounding and "." in inside:
         return None
@@ -47,7 +47,7 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
 
 
 def _is_symbol(name: str, scope: Scope) -> bool:
-    """Whether a name is declared, or may be a symbol where every name may."""
+    """Return whether a name is declared, or may be a symbol where every name may."""
     if name in FUNCTIONS or scope.is_imaginary_unit(name) or refusal(name):
         return False
     return scope.names is None or scope.declares(name)

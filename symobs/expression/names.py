@@ -1,4 +1,4 @@
-"""What a name in a text may be: a declared symbol, the variable of a polynomial, the imaginary unit, a function."""
+"""Names in a text: declared symbols, the variable of a polynomial, the imaginary unit, functions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _MOST_COMPARED = 1_000
 
 
 def declared_name(name: object, where: str = "") -> str:
-    """Return `name` if a symbol may be called so; raises ExpressionError where it may not."""
+    """Return `name` if it is admissible for a symbol; raises ExpressionError otherwise."""
     if not isinstance(name, str) or not NAME.fullmatch(name):
         came = f'"{shown(name)}"' if isinstance(name, str) else f"a {type(name).__name__}"
         repair = "begin with a letter A-Z or a-z and go on with letters, digits and _"
@@ -43,7 +43,7 @@ def declared_name(name: object, where: str = "") -> str:
 
 
 def refusal(name: str) -> tuple[str, str] | None:
-    """Return why no symbol may have this well-formed name, and what to do instead."""
+    """Return why a well-formed name is reserved, and the repair."""
     if len(name) > LONGEST_NAME:
         return f'the name "{shown(name)}" has more than {LONGEST_NAME} characters', "shorten it"
     if keyword.iskeyword(name):
@@ -58,7 +58,7 @@ def refusal(name: str) -> tuple[str, str] | None:
 
 @dataclass(frozen=True)
 class Scope:
-    """What the texts of one call may use: names, work, and one context for all where there are several."""
+    """The names, the budget and the context of the texts of one call."""
 
     names: Names
     variable: str | None
@@ -69,18 +69,18 @@ class Scope:
 
     @staticmethod
     def of(names: Names, variable: str | None, where: str, *, functions: bool = False, rounding: bool = False) -> Scope:
-        """Return the scope; raises ExpressionError where the variable of the polynomial is declared as a symbol."""
+        """Return the scope; raises ExpressionError if the variable of the polynomial is declared as a symbol."""
         if names is not None and variable in names:
             message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
             raise ExpressionError(message, where=where, repair="give the symbol another name")
         return Scope(names, variable, functions=functions, rounding=rounding)
 
     def declares(self, name: str) -> bool:
-        """Whether the name is declared by name, not only admitted because every name is."""
+        """Return whether the name is declared by name, not only admitted because every name is."""
         return name == self.variable or (self.names is not None and name in self.names)
 
     def is_imaginary_unit(self, name: str) -> bool:
-        """Whether the name stands for the imaginary unit here."""
+        """Return whether the name stands for the imaginary unit here."""
         return name in IMAGINARY and (name in RESERVED or not self.declares(name))
 
     def declared(self) -> list[str]:
@@ -88,6 +88,6 @@ class Scope:
         return [*sorted(self.names or ()), *([self.variable] if self.variable else [])]
 
     def nearest(self, name: str, *, called: bool) -> str | None:
-        """Return the known name most like `name`; functions count where it is called like one."""
+        """Return the known name most similar to `name`, functions included for a call."""
         known = self.declared()[:_MOST_COMPARED] + (list(FUNCTIONS) if called else [])
         return next(iter(get_close_matches(name, known, 1)), None)

@@ -1,4 +1,4 @@
-"""Text to exact values: the only way from what a user wrote into the field.
+"""Parsing of expressions: from the text of a user to exact values.
 
 Three steps.  `tokens` cuts the text, decides what each name means and writes out what was left unsaid.  `parser` makes the
 syntax tree, the same for problem files and printed equations, and `evaluation` computes with exact values; `budget` asks
@@ -141,7 +141,7 @@ def parse_polynomial(value: object, variable: str, names: Names = None, *, where
 
 
 def _entry(value: object, scope: Scope, where: str) -> Number:
-    """Return the one number that a text, or an exact Python number, stands for."""
+    """Return the number of a text or an exact Python number."""
     if not isinstance(value, str):
         return _exact(value, where)
     entries = read(value, scope, where)
@@ -160,7 +160,7 @@ def _single(entry: Number | Grid, where: str) -> Number:
 
 
 def _exact(value: object, where: str) -> Number:
-    """Return an exact Python number; a float is refused with the fraction to write instead."""
+    """Return an exact Python number; raises InexactInput for a float, with the fraction to write instead."""
     if isinstance(value, (Scalar, Complex)):
         return value
     if isinstance(value, bool) or not isinstance(value, numbers.Complex):
@@ -176,7 +176,7 @@ def _exact(value: object, where: str) -> Number:
 
 
 def _exact_text(value: numbers.Complex) -> str:
-    """Return what the shortest decimals of a float say, as a text to write instead of it."""
+    """Return the fraction of the shortest decimal of a float, as a text."""
     decimals = str(value).strip("()")
     try:
         exact = str(Fraction(decimals))
@@ -196,7 +196,7 @@ def _real(value: Number, where: str) -> Scalar:
 
 
 def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
-    """Whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
+    """Return whether this is rows of one length, of integers and fractions that are not large: then nothing can be wrong."""
     if not isinstance(value, list) or not value or not all(isinstance(row, list) and row for row in value):
         return False
     entries = [entry for row in value for entry in row]

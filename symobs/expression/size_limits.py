@@ -1,4 +1,4 @@
-"""How large the result of an operation can get, found before the operation is begun.
+"""Bounds for the size of a result, computed before the operation.
 
 A FLINT call cannot be interrupted, so what is too large must never be started.
 """
@@ -44,12 +44,12 @@ class Size:
 
     @property
     def words(self) -> int:
-        """The machine words it takes."""
+        """The number of machine words."""
         return self.terms * (len(self.names) + 1 + self.bits // 64)
 
     @property
     def excess(self) -> str:
-        """What is too large about it, or nothing."""
+        """The excess over the limits, empty if there is none."""
         if self.bits > MOST_BITS:
             return f"a number of more than {MOST_BITS} bits"
         if self.degree > MOST_DEGREE:
@@ -92,12 +92,12 @@ def parts(value: Number) -> Parts:
 
 @dataclass()
 class Meter:
-    """Adds up what the texts of one call have cost so far."""
+    """The accumulated cost of the texts of one call."""
 
     spent: int = 0
 
     def charge(self, cost: int, sizes: Parts) -> str:
-        """Add an operation that builds these sizes; return what is too large about it, or nothing."""
+        """Charge an operation with results of these sizes; return the excess, empty if there is none."""
         self.spent += cost
         excess = sizes[0].excess or sizes[1].excess
         return excess or ("too much, all operations so far together" if self.spent > MOST_WORK else "")
@@ -132,7 +132,7 @@ def power_size(base: Scalar, exponent: int) -> Parts:
 
 
 def common_denominator_excess(entries: Sequence[Scalar]) -> str:
-    """Return what is too large about bringing these entries over one denominator, or nothing."""
+    """Return the excess of a common denominator of these entries, empty if there is none."""
     fractions = [entry for entry in entries if not entry.denominator_part.is_one()]
     common, whole, spent = _ONE, 1, 0
     for denominator in dict.fromkeys(entry.denominator for entry in fractions):

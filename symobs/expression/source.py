@@ -42,7 +42,7 @@ class Source:
 
 
 class Token(str):
-    """A piece of the text: its type, where it begins, and the number it stands for, None where it stands for none."""
+    """A piece of the text: its type, its start, and its exact number, None if it has none."""
 
     __slots__ = ("start", "type", "value")
 

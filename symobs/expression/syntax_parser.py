@@ -51,7 +51,7 @@ def parse(tokens: Sequence[Token], source: Source, apart: str = "_COMMA") -> tup
 
 
 class _Parser:
-    """Builds the tree.  Invariant: `operands` are the complete ones, which those in `waiting` will take."""
+    """Construction of the tree.  Invariant: `operands` are complete and belong to the operators in `waiting`."""
 
     def __init__(self, source: Source, apart: str) -> None:
         self.source = source
@@ -98,7 +98,7 @@ class _Parser:
                 self._close(token)
 
     def _complete(self, binding: int = 0) -> None:
-        """Build the operators, back to the last open bracket, that bind at least as strongly as the one that comes."""
+        """Build the operators since the last open bracket that bind at least as strongly as the next one."""
         while self.waiting and _BINDING.get(self.waiting[-1].kind, -1) >= binding:
             self._build(*self.waiting.pop())
 
@@ -131,7 +131,7 @@ class _Parser:
         self.operands.append(found)
 
     def _close(self, token: Token) -> None:
-        """Take what ends an entry: a comma or "=", the end of a row, a closing bracket."""
+        """Take the end of an entry: a comma or "=", the end of a row, a closing bracket."""
         kind, inside = token.type, self.waiting[-1].kind if self.waiting else ""
         if kind in ("_COMMA", "_EQUAL"):
             called = inside == "_OPEN" and len(self.waiting) > 1 and self.waiting[-2].kind == "FUNCTION"
@@ -183,7 +183,7 @@ def _joined(kind: str, left: SyntaxNode, right: SyntaxNode, place: tuple[int, ..
 
 
 def unequal_row(rows: Sequence[Sequence[object]]) -> tuple[str, int] | None:
-    """Return what to say of the first row whose length is not that of row 1, and its number."""
+    """Return the message on the first row whose length differs from row 1, and its number."""
     for number, row in enumerate(rows, start=1):
         if len(row) != len(rows[0]):
             entries = "1 entry" if len(row) == 1 else f"{len(row)} entries"

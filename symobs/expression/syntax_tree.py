@@ -1,4 +1,4 @@
-"""The syntax tree of an expression: what is written, before anything is computed."""
+"""The syntax tree of an expression, before evaluation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""First step: a text becomes tokens in which nothing is left unsaid.
+"""First step: from a text to tokens, with every implied product, comma and row end inserted.
 
 The product of two neighbours, the comma MATLAB reads from a space inside brackets and the row a newline ends are
 written out here, so that what comes after needs to know nothing of spaces.
@@ -48,14 +48,14 @@ def sharing(scope: Scope, values: Iterable[object], variable: str | None = None)
 
 
 def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
-    """Return one context for every name in the texts, so that their values need not be carried from one to another."""
+    """Return one context for every name in the texts, so that no value needs conversion."""
     names = {name for text in texts for name in NAME.findall(text)} - set(FUNCTIONS)
     fit = {name for name in names if len(name) <= LONGEST_NAME}
     return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
 
 
 class Tokeniser:
-    """Cuts one text into tokens; each VALUE carries its exact number.
+    """A tokeniser of one text; each VALUE has its exact number.
 
     Invariant: `tokens` says what the text read so far means, `open` holds the brackets still to be closed.
     """
@@ -130,7 +130,7 @@ class Tokeniser:
                 self._add(kind, text, at)
 
     def _imply(self, kind: str, at: int) -> None:
-        """Write out what stands unsaid between the last operand and the token `kind` that begins here."""
+        """Insert the product or comma implied between the last operand and the token `kind`."""
         if not self._after(OPERAND_ENDS):
             return
         apart = self.spaced and self._in_brackets()
@@ -158,7 +158,7 @@ class Tokeniser:
         return is_number and name is not None and self.scope.is_imaginary_unit(name[0])
 
     def _in_brackets(self) -> bool:
-        """Whether spaces count here: inside brackets, but not inside parentheses within them."""
+        """Return whether spaces count here: inside brackets, but not inside parentheses within them."""
         return bool(self.open) and self.open[-1].type == "LEFT"
 
     def _after(self, types: Container[str]) -> bool:
@@ -226,7 +226,7 @@ class Tokeniser:
             raise self.source.error(f'"{name}" is a function', at, f"write its argument in parentheses: {name}( )")
 
     def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
-        """Return the symbol `name`; raises the error that says why there is none."""
+        """Return the symbol `name`; raises the error with the reason if there is none."""
         if name == PI and self.scope.functions:
             return Scalar.symbol(PI)
         reasons = refusal(name)
@@ -281,7 +281,7 @@ _INSTEAD = {
 
 
 def _unreadable(character: str) -> tuple[str, str]:
-    """Return what to say of a character that begins no token, and what to write instead."""
+    """Return the message and the repair for a character that begins no token."""
     words = unicodedata.name(character, "").split()
     plain = unicodedata.normalize("NFKC", character)
     repair = "write numbers, names, + - * / ^ ( ) and, for a matrix, [ , ; ]"

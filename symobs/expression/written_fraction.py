@@ -1,4 +1,4 @@
-"""A fraction as it is written: numerator and denominator with what they have in common, which values do not show."""
+"""Unreduced fractions: numerator and denominator with their common factors, as written."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 class _Written(Evaluator):
-    """Computes with fractions that are not reduced; every operation on their parts is charged for."""
+    """Arithmetic of unreduced fractions within the budget."""
 
     def _combined(self, left: Any, place: int, right: Any, sign: str) -> Any:
         one, other = _fraction(left), _fraction(right)

@@ -1,4 +1,4 @@
-"""Signal-flow figures as data: where every node of a block diagram stands and how the signals run between them.
+"""Block diagrams as data: the grid positions of nodes, and the wires between them.
 
 A figure is written as it looks.  Its grid places the nodes:
 
@@ -33,7 +33,7 @@ Labels: TypeAlias = "Mapping[str, Label]"
 
 @dataclass(frozen=True)
 class Wire:
-    """A line from one node to another; `turn` is `>`, `-|` or `|-`, `gain` the label of a sign or empty."""
+    """A wire from one node to another; `turn` is `>`, `-|` or `|-`, `gain` the label of a sign or empty."""
 
     begin: str
     turn: str
@@ -73,11 +73,11 @@ class Figure:
         return [wire for wire in self.wires if wire.begin == node]
 
     def is_junction(self, node: str) -> bool:
-        """Whether signals are added at a node."""
+        """Return whether signals are added at a node."""
         return not is_box(node) and not is_integrator(node) and len(self.into(node)) > 1
 
     def without_missing(self, labels: Labels) -> Figure:
-        """Return the figure without boxes that have no label, and without what led to them or from them alone."""
+        """Return the figure without unlabelled blocks and the wires and nodes connected to them alone."""
         gone = {node for node in self.place if is_box(node) and key(node) in self.optional and key(node) not in labels}
         while True:
             wires = [wire for wire in self.wires if not {wire.begin, wire.end} & gone]
@@ -89,18 +89,18 @@ class Figure:
         return replace(self, places=places, wires=tuple(wires))
 
     def _is_loose(self, node: str, wires: list[Wire]) -> bool:
-        """Whether a node has lost all wires of one of its sides."""
+        """Return whether a node has lost all wires of one of its sides."""
         has_lost_entry = bool(self.into(node)) and not any(wire.end == node for wire in wires)
         return has_lost_entry or (bool(self.out_of(node)) and not any(wire.begin == node for wire in wires))
 
 
 def is_box(node: str) -> bool:
-    """Whether a node is a box with a gain."""
+    """Return whether a node is a gain block."""
     return node[0].isupper()
 
 
 def is_integrator(node: str) -> bool:
-    """Whether a node is an integrator or a delay."""
+    """Return whether a node is an integrator or a delay."""
     return node[0] == "∫"
 
 
@@ -118,7 +118,7 @@ def without_sign(label: Label) -> tuple[bool, Label]: ...
 
 
 def without_sign(label: Label) -> tuple[bool, Label]:
-    """Return whether a label is the negative of something, and of what."""
+    """Return whether a label is a negative, and its operand."""
     negative = False
     while isinstance(label, Negative):
         negative, label = not negative, label.operand
@@ -295,7 +295,7 @@ def figure_of(name: str) -> Figure:
 
 
 def with_signals(name: str, labels: Mapping[str, Label]) -> dict[str, Label]:
-    """Return the labels together with the figure's own names of signals, and minus where a sign is left open."""
+    """Return the labels with the signal names of the figure added, and minus for open signs."""
     own: dict[str, Label] = {signal: Letter(letter) for signal, letter in figure_of(name).signals}
     own |= {wire.gain: Negative(Literal(Scalar.of(1))) for wire in figure_of(name).wires if wire.gain}
     return {**own, **labels}

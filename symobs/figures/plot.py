@@ -1,4 +1,4 @@
-"""Pictures as data: what is drawn, in coordinates of the plane, before any format decides how it looks."""
+"""Plots as data, in coordinates of the plane, before any format draws them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Interval: TypeAlias = "tuple[Fraction, Fraction]"
 
 @dataclass(frozen=True)
 class Curve:
-    """A piece of the set where `equation` holds; a `boundary` is an edge of the region, other curves only divide the plane."""
+    """A segment of the curve of `equation`, either a `boundary` of the region or a dividing curve."""
 
     points: tuple[Place, ...]
     equation: Relation
@@ -27,7 +27,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class MarkedPoint:
-    """A point that is marked: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
+    """A marked point: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
     place: Place
     kind: str
@@ -50,7 +50,7 @@ class RegionPicture:
 
 @dataclass(frozen=True)
 class End:
-    """An end of an interval on a line: where it is drawn, and the formula or text that is written there."""
+    """An end of an interval on a line: its position, and its label."""
 
     place: Fraction
     label: Scalar | str
@@ -58,7 +58,7 @@ class End:
 
 @dataclass(frozen=True)
 class LinePicture:
-    """Intervals of one parameter, open at both ends; an end that is missing lies beyond the window."""
+    """Open intervals of one parameter; a missing end lies beyond the window."""
 
     axis: str
     window: Interval
@@ -69,7 +69,7 @@ class LinePicture:
 
 @dataclass(frozen=True)
 class PoleMap:
-    """The paths of the poles as a parameter moves from one value to another; begin and end are marked.
+    """A root locus: the paths of the poles over a range of a parameter, with begin and end marked.
 
     The stability boundary is the imaginary axis moved left by `margin`, or in discrete time the circle of radius `radius`.
     `along` are the values of the parameter at the points of each path.
@@ -89,7 +89,7 @@ class PoleMap:
 
 @dataclass(frozen=True)
 class Response:
-    """One component of a signal over time; it is `row` times the state that the picture starts from.
+    """The time response of one signal component: `row` times the state.
 
     `component` counts from 1, and is 0 where the signal has no other; a `dashed` response is an estimate.
     `heights` are its values, in whole parts of one, at equal distances from the begin of the window to its end.
@@ -104,7 +104,7 @@ class Response:
 
 @dataclass(frozen=True)
 class TimeResponse:
-    """Signals over time: `states`, stacked, obey a linear equation of their own and begin at `starts`.
+    """Time responses: the stacked `states` satisfy a linear equation, with initial states `starts`.
 
     Heights of responses are counted in `parts` of one.  In `discrete` time they stand at 0, 1, 2, … and are exact.
     """
@@ -118,7 +118,7 @@ class TimeResponse:
     discrete: bool = False
 
     def points(self, response: Response) -> list[Place]:
-        """Return the places in the plane of one of the responses."""
+        """Return the points of one of the responses."""
         begin, end = self.window[0]
         step = (end - begin) / (len(response.heights) - 1)
         return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(response.heights)]

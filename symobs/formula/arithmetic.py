@@ -21,10 +21,10 @@ class Signal:
 
 
 class Arithmetic(Protocol):
-    """The operations a formula is made of; scalars and matrices are whatever the arithmetic says they are."""
+    """The operations of a formula on the scalars and matrices of one arithmetic."""
 
     def leaf(self, value: Scalar | Matrix) -> Any:
-        """Bring an exact value into the arithmetic."""
+        """Convert an exact value to the arithmetic."""
 
     def shape(self, value: Any) -> tuple[int, int] | None:
         """Return a matrix's shape, None for a scalar."""
@@ -54,7 +54,7 @@ class Arithmetic(Protocol):
         """Return the matrix of blocks."""
 
     def equal(self, left: Any, right: Any) -> bool:
-        """Tell whether two values of equal kind agree."""
+        """Return whether two values of equal kind agree."""
 
 
 def add(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
@@ -88,7 +88,7 @@ def times(left: Any, right: Any, arithmetic: Arithmetic) -> Any:
 
 
 def scalar(value: Any, arithmetic: Arithmetic) -> Any:
-    """Read a 1×1 matrix as its entry."""
+    """Return the entry of a 1×1 matrix, any other value unchanged."""
     if arithmetic.shape(value) == (1, 1):
         return arithmetic.entry(value)
     return value

@@ -25,7 +25,7 @@ def since_start(integrand: Formula, primitive: Formula, upper: Scalar) -> Integr
 
 
 def rate(value: Any, name: str, *, constant: bool) -> Any:
-    """Return d/d(name) of a value, entry by entry; only where time is the variable may it be a constant's."""
+    """Return d/d(name) of a value, entry by entry."""
     if not constant and name not in symbols_in(exact(value)):
         message = "a constant of a plant that does not vary has no derivative"
         raise WrongKind(message)
@@ -38,7 +38,7 @@ def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
 
 
 def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:
-    """Return primitive(upper) − primitive(lower), after holding the primitive's derivative to the integrand."""
+    """Return primitive(upper) − primitive(lower), after checking that the primitive's derivative is the integrand."""
     from symobs.formula.comparison import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
 
     if not agree(derivative(exact(primitive), name), integrand, arithmetic):
@@ -49,7 +49,7 @@ def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Sc
 
 
 def exact(value: Any) -> Any:
-    """Return an exact value; anything else, such as a residue, has no derivative."""
+    """Return an exact value; raises WrongKind for any other, such as a residue, which has no derivative."""
     if not isinstance(value, (Scalar, Matrix)):
         message = f"{type(value).__name__} is not an exact value"
         raise WrongKind(message)

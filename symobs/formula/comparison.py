@@ -1,4 +1,4 @@
-"""Whether two values agree or differ, in any arithmetic."""
+"""Equality of two values in any arithmetic."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
+    """Return whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
     if isinstance(left, Signal) and isinstance(right, Signal):
         difference = add(left, times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
         return all(
@@ -24,13 +24,13 @@ def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
 
 
 def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
-    """Tell whether two values of one kind and shape are different; values that cannot be compared do not count."""
+    """Return whether two values of one kind and shape differ; False if they are not comparable."""
     left, right = _alike(left, right, arithmetic)
     return left is not None and not arithmetic.equal(left, right)
 
 
 def _alike(left: Any, right: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
-    """Return two values as one kind and shape, a 1×1 matrix read as a scalar; (None, None) where they cannot be."""
+    """Return two values in one kind and shape, 1×1 matrices as scalars; (None, None) if that is impossible."""
     if isinstance(left, Signal) or isinstance(right, Signal):
         return None, None
     if arithmetic.shape(left) != arithmetic.shape(right):

@@ -1,4 +1,4 @@
-"""What a formula is worth: evaluation in an environment, in any arithmetic.
+"""Evaluation of formulas in an environment, in any arithmetic.
 
 One function, `evaluate`, walks the tree; an arithmetic supplies the operations.  `Exact` computes in the kernel,
 `Modular` at a random point modulo a prime, and `certificate` adds one that only bounds degrees and heights.
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Environment:
-    """What the letters mean.
+    """The meaning of the letters: values, dynamics, and relations.
 
     values      letter → exact scalar or matrix
     signals     signal → its formula in other signals, or None for a free one
@@ -70,7 +70,7 @@ class Environment:
     above: tuple[Scalar, ...] = ()
 
     def knows(self, name: str) -> bool:
-        """Whether a letter is established."""
+        """Return whether a letter is defined."""
         return name in self.values or name in self.signals or name == "s"
 
     def value(self, name: str) -> Scalar | Matrix:
@@ -91,7 +91,7 @@ class Exact:
     """The exact kernel."""
 
     def __init__(self, environment: Environment) -> None:
-        """Replace named coefficients by what they stand for whenever a value enters."""
+        """Substitute the values of named coefficients in every value."""
         self.coefficients = dict(environment.coefficients)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
@@ -139,7 +139,7 @@ class Modular:
     """Residues at a random point modulo a prime: integers for scalars, FLINT's `nmod_mat` for matrices."""
 
     def __init__(self, environment: Environment, point: Point) -> None:
-        """Give each named coefficient the residue of what it stands for."""
+        """Give each named coefficient the residue of its value."""
         self.point = point
         self.prime = point.prime
         self.known: dict[int, tuple[object, Any]] = {}
@@ -290,7 +290,7 @@ def _polynomial_at(polynomial: object, value: Any, environment: Environment, ari
 
 
 def _block(rows: list[list[Any]], arithmetic: Arithmetic) -> Any:
-    """Put matrices, scalars or (in one column) signals together."""
+    """Return the block matrix of matrices, scalars or (in one column) signals."""
     if not isinstance(rows[0][0], Signal):
         return arithmetic.block(rows)
     parts = [row[0] for row in rows]

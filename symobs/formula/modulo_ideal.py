@@ -1,4 +1,4 @@
-"""Exact values where some polynomials vanish: on a stratum, at an eigenvalue, with c² + s² = 1."""
+"""Exact arithmetic modulo an ideal: on a stratum, at an eigenvalue, with c² + s² = 1."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Restricted(Exact):
-    """The exact kernel, with two values equal where their difference lies in the ideal of the relations.
+    """The exact arithmetic modulo the ideal of the relations.
 
     Nothing may be divided by what vanishes there: cancelling would hide it.  A rank has a meaning where one irreducible
     polynomial vanishes, which leaves a field; on other ideals minors and kernels say the same.
@@ -27,17 +27,17 @@ class Restricted(Exact):
 
     @cached_property
     def ideal(self) -> Ideal:
-        """What vanishes here; raises `TooLarge` where the relations are too long to be decided."""
+        """The ideal of the relations; raises `TooLarge`."""
         return Ideal.of(self.relations)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
-        """Refuse a value that has no meaning here."""
+        """Raise ZeroDivisionError for a value whose denominator vanishes here."""
         found: Scalar | Matrix = super().leaf(value)
         self._meaningful(found)
         return found
 
     def invert(self, value: Any) -> Any:
-        """Refuse to divide by what vanishes here."""
+        """Return the inverse; raises ZeroDivisionError for a value that vanishes here."""
         found = super().invert(value)
         self._meaningful(found)
         return found
@@ -55,7 +55,7 @@ class Restricted(Exact):
         return Scalar.of(len(field.echelon(value)[0]))
 
     def equal(self, left: Any, right: Any) -> bool:
-        """Tell whether two values agree wherever the relations hold."""
+        """Return whether two values agree wherever the relations hold."""
         if isinstance(left, Matrix) != isinstance(right, Matrix):
             return False
         difference = left - right

@@ -1,4 +1,4 @@
-"""The formula tree: what a line of a derivation says, as its author wrote it.
+"""The formula tree: the lines of a derivation as written by their author.
 
 Fifteen kinds of node, frozen, never rewritten: `A - L C` stays `A - L C`.  A formula has a value only in an
 environment (`evaluate`), and is printed only by a format.
@@ -171,18 +171,18 @@ class Relation:
 
     @cached_property
     def derived_by(self) -> frozenset[str]:
-        """The names by which it takes derivatives."""
+        """The names of the variables of its derivatives."""
         return frozenset().union(*map(derived_by, self.members))
 
     @cached_property
     def is_of_instants(self) -> bool:
-        """Whether it speaks of a value at an instant, or of an integral."""
+        """Whether it contains a value at an instant, or an integral."""
         return any(contains(member, (At, Integral)) for member in self.members)
 
 
 @dataclass(frozen=True)
 class Predicate:
-    """A property of a value that no equation states: `stable`, `strictly_proper`, `never_zero`."""
+    """A property of a value other than an equation: `stable`, `strictly_proper`, `never_zero`."""
 
     name: str
     subject: Formula
@@ -190,7 +190,7 @@ class Predicate:
 
 @dataclass(frozen=True)
 class Roots:
-    """The roots of a monic polynomial (of a rational function: its poles), with multiplicity; shown as their list."""
+    """The roots of a monic polynomial (of a rational function: its poles), with multiplicity; printed as their list."""
 
     polynomial: Formula
     values: tuple[Root, ...]
@@ -198,7 +198,7 @@ class Roots:
 
 @dataclass(frozen=True)
 class HoldsExactlyWhere:
-    """A property of a value holds exactly where these inequalities do; shown as their list."""
+    """A property of a value holds if and only if these inequalities do; printed as their list."""
 
     property: Predicate
     where: tuple[Relation, ...]
@@ -206,14 +206,14 @@ class HoldsExactlyWhere:
 
 @dataclass(frozen=True)
 class Conjunction:
-    """Several relations that hold at once; shown as their list."""
+    """The conjunction of several relations; printed as their list."""
 
     relations: tuple[Relation, ...]
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What a formula is worth; shown as the value alone."""
+    """The value of a formula, printed without the formula."""
 
     formula: Formula
     value: Formula
@@ -221,7 +221,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class SymbolList:
-    """Some parameters, which a sentence speaks of; it claims nothing of them."""
+    """A list of parameters in a sentence, without a claim."""
 
     names: tuple[str, ...]
 
@@ -252,7 +252,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
-    """Return the same node over other children."""
+    """Return the node with other children."""
     match formula:
         case Sum():
             return Sum(parts)
@@ -282,18 +282,18 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
 
 
 def contains(formula: Formula, kinds: tuple[type, ...]) -> bool:
-    """Tell whether a formula has a node of one of these kinds."""
+    """Return whether a formula has a node of one of these kinds."""
     return isinstance(formula, kinds) or any(contains(part, kinds) for part in children(formula))
 
 
 def derived_by(formula: Formula) -> frozenset[str]:
-    """Return the names by which a formula takes derivatives."""
+    """Return the names of the variables of all derivatives in a formula."""
     own = {formula.name} if isinstance(formula, Derivative) else set()
     return frozenset(own).union(*(derived_by(part) for part in children(formula)))
 
 
 def roots_written(formula: Formula) -> frozenset[Function]:
-    """Return the square roots in the values that a formula writes out, those in arguments of functions too."""
+    """Return the square roots in the values written out in a formula, also in arguments of functions."""
     own = all_roots(formula.value) if isinstance(formula, Literal) else ()
     return frozenset(own).union(*(roots_written(part) for part in children(formula)))
 

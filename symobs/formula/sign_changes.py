@@ -1,4 +1,4 @@
-"""Letters that mean the negative of what they meant: formulas rewritten so that they say the same in them.
+"""Sign reversal: formulas in a convention in which a letter denotes the negative of its standard meaning.
 
 Where L becomes −M, `A − L C` becomes `A + M C`, and `L = [3; 2]` becomes `M = [−3; −2]`.  Nothing else is rewritten, and
 whoever asks for it has the lines checked again.
@@ -39,30 +39,30 @@ _TURNED_AROUND = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 
 @dataclass(frozen=True)
 class Turned:
-    """The letters that mean the negative, and their values: a matrix written out that is one of these turns too."""
+    """The letters with reversed sign, and their values; a matrix written out that equals one of these is reversed too."""
 
     names: frozenset[str]
     values: Collection[Matrix] = ()
 
     def concerns(self, formula: Formula) -> bool:
-        """Whether a formula has one of the letters."""
+        """Return whether a formula contains one of the letters."""
         return not self.names.isdisjoint(letters(formula))
 
     # -- formulas -------------------------------------------------------------------------------------------------
 
     def formula(self, formula: Formula) -> Formula:
-        """Return the same in the new letters; a letter alone stays one, since it is only named."""
+        """Return the formula in the new letters; a letter alone, which only names, is kept."""
         if isinstance(formula, Letter) or (isinstance(formula, Transpose) and isinstance(formula.operand, Letter)):
             return formula
         return self.whole(formula) if self.concerns(formula) else formula
 
     def whole(self, formula: Formula) -> Formula:
-        """Return the same in the new letters, its sign in front of it."""
+        """Return the formula in the new letters, with its sign in front."""
         negative, turned = self.signed(formula)
         return Negative(turned) if negative else turned
 
     def signed(self, formula: Formula, *, written: bool = False) -> tuple[bool, Formula]:
-        """Return whether the formula is the negative of the second part, which is said in the new letters.
+        """Return (whether a sign is extracted, the rest of the formula in the new letters).
 
         With `written` the values of the letters turn as the letters do.
         """
@@ -97,14 +97,14 @@ class Turned:
         return False, with_children(formula, tuple(self._term(*part) for part in parts))
 
     def _term(self, negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `signed` returns them
-        """Return one of several terms: + N x again for − (−N) x, where N is the value that a letter had."""
+        """Return one of several terms: + N x for − (−N) x, where N is the old value of a letter."""
         match formula:
             case Product((Literal(Matrix() as table), *rest)) if negative and -table in self.values:
                 return Product((Literal(-table), *rest))
         return _with_sign(negative, formula)
 
     def _absorbed(self, formula: Formula) -> Formula:
-        """Return −N x as (−N) x where N is what a letter was: the letter is −N now, and the book writes what it is."""
+        """Return −N x as (−N) x where N is the old value of a letter, since its new value is −N."""
         match formula:
             case Negative(Product((Literal(Matrix() as table), *rest))) | Product(
                 (Negative(Literal(Matrix() as table)), *rest)
@@ -113,7 +113,7 @@ class Turned:
         return formula
 
     def _writes(self, formula: Formula) -> bool:
-        """Whether a formula writes out the value of one of the letters."""
+        """Return whether the value of one of the letters is written out in a formula."""
         if isinstance(formula, Literal):
             return isinstance(formula.value, Matrix) and formula.value in self.values
         return any(self._writes(part) for part in children(formula))
@@ -121,7 +121,7 @@ class Turned:
     # -- relations ------------------------------------------------------------------------------------------------
 
     def relation(self, relation: Relation) -> Relation:
-        """Return the same chain in the new letters; where its first member is a negative, all members turn."""
+        """Return the chain in the new letters; if its first member is a negative, all members change sign."""
         if not any(map(self.concerns, relation.members)):
             first, *rest = relation.members
             return Relation((first, *map(self._absorbed, rest)), relation.operators)
@@ -138,7 +138,7 @@ def _with_sign(negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - a
 
 
 def _member(negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `signed` returns them
-    """Return one side of a relation, where a sum needs no parentheses around it."""
+    """Return one side of a relation, a sum without parentheses."""
     match formula:
         case Sum(terms) if negative:
             return Sum(tuple(part.operand if isinstance(part, Negative) else Negative(part) for part in terms))
@@ -147,7 +147,7 @@ def _member(negative: bool, formula: Formula) -> Formula:  # noqa: FBT001 - as `
 
 
 def negated(formula: Formula) -> Formula:
-    """Return the negative, the sign carried inwards to where a reader expects it."""
+    """Return the negative, with the sign moved inwards to the first factor or the terms."""
     match formula:
         case Negative(operand):
             return operand
@@ -172,7 +172,7 @@ def negated(formula: Formula) -> Formula:
 
 
 def _in_step(before: Sequence[Formula], members: Sequence[Formula]) -> Iterator[Formula]:
-    """Yield the members, written matrices with the signs of the products they are the values of.
+    """Yield the members, each matrix written out with the sign of the product that it is the value of.
 
     After `A − L C = A₀ − N`, which has become `A + M C = A₀ − N`, the last member is `A₀ + (−N)`.
     """
@@ -188,7 +188,7 @@ def _in_step(before: Sequence[Formula], members: Sequence[Formula]) -> Iterator[
 
 
 def _value_in_step(old: Formula, new: Formula, value: Formula) -> Formula:
-    """Return a term −N as the term (−N) where the term it is the value of has lost its minus."""
+    """Return a term −N as (−N) if the minus of the corresponding term is absorbed."""
     match old, value:
         case Negative(), Negative(Literal(Matrix() as table)) if not isinstance(new, Negative):
             return Literal(-table)

@@ -1,4 +1,4 @@
-"""Terms: a formula together with its exact value, so that the code of a method reads like the page of a book.
+"""Terms: a formula together with its exact value, with arithmetic by Python operators.
 
 `A - L @ C` builds the formula A − LC and, when asked, evaluates it.
 """
@@ -39,7 +39,7 @@ class Term:
 
     @cached_property
     def value(self) -> Any:
-        """The exact value in the letters of the page: a `Scalar`, a `Matrix` or a `Signal`."""
+        """The exact value: a `Scalar`, a `Matrix` or a `Signal`."""
         environment = replace(self.environment, coefficients={})
         return evaluate(self.formula, environment, Exact(environment))
 
@@ -98,7 +98,7 @@ class Term:
         return self._with(Derivative(self.formula, name))
 
     def at(self, name: str, instant: Scalar | int) -> Term:
-        """Return the value with a generator (a time) replaced, as it stands where it is the same."""
+        """Return the term at an instant, unchanged if it does not depend on the generator."""
         where = Scalar.of(instant) if isinstance(instant, int) else instant
         return self if Scalar.symbol(name) == where else self._with(At(self.formula, name, where))
 

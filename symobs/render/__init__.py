@@ -1,1 +1,1 @@
-"""From a checked derivation to a page: narrator, printers of formulas, one file per format."""
+"""Rendering of checked derivations: narrator, printers of formulas, and one file per format."""

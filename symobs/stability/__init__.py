@@ -1,1 +1,1 @@
-"""For which parameters are all roots of a polynomial stable: conditions, exact regions, and their proofs."""
+"""Stability of polynomials with parameters: conditions, exact regions, and their proofs."""

@@ -1,4 +1,4 @@
-"""Plants and what they are read from."""
+"""Plants, and the readers of their data."""
 
 from symobs.system.matrices import Matrices
 from symobs.system.other_programs import as_plant

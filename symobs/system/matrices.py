@@ -9,7 +9,7 @@ class Matrices:
     """The four exact matrices of a plant; a missing one has no columns (B) or no rows (C)."""
 
     def __init__(self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None) -> None:
-        """Fill in what is missing: D is zero."""
+        """Complete missing matrices; D is zero."""
         order = A.shape[0]
         self.A = A
         self.B = Matrix.zeros(order, 0) if B is None else B

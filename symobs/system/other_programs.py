@@ -1,4 +1,4 @@
-"""Plants of other programs: python-control's and SymPy's systems, and lists of coefficients."""
+"""Plants from systems of python-control and SymPy, and from lists of coefficients."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MAKE_ONE = 'give a symobs.StateSpace, for example symobs.StateSpace("[0 1; 0 -1
 
 
 def as_plant(value: Any, *, only: bool = True) -> Any:
-    """Return the plant that a system of python-control or SymPy, or a pair of lists of coefficients, stands for.
+    """Return the plant of a system of python-control or SymPy, or of a pair of lists of coefficients.
 
     A `StateSpace` is returned as it is, and what is no plant where it need not be the `only` thing that may come: raises
     `InputError` otherwise, saying how to make one.

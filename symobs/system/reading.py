@@ -1,4 +1,4 @@
-"""Exact values from what callers give: texts, nested lists, SymPy and NumPy objects.  Floats are refused."""
+"""Exact values from texts, nested lists, SymPy and NumPy objects; floats are refused."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DECIMAL = re.compile(r"\d\.\d")
 
 
 def has_decimals(value: object) -> bool:
-    """Tell whether a number is written with a point somewhere in a text or in nested lists of texts."""
+    """Return whether a text, or nested lists of texts, contain a decimal number."""
     if isinstance(value, (list, tuple)):
         return any(has_decimals(entry) for entry in value)
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False

@@ -172,7 +172,7 @@ class StateSpace:
         return isinstance(self.time, TimeVarying)
 
     def _let_vary(self) -> None:
-        """Take t as the time; raises `InputError` where there is no such time."""
+        """Declare t as the time; raises `InputError` in discrete time."""
         if self.is_discrete or self.origin is not None:
             message = "t is the time, and " + (
                 "in discrete time no matrix may contain it" if self.is_discrete else "a transfer function has none"
@@ -197,12 +197,12 @@ class StateSpace:
 
     @property
     def origin(self) -> Scalar | None:
-        """The transfer function in lowest terms where the plant is given by one."""
+        """The transfer function in lowest terms, if the plant was given by one."""
         return None if self.written is None else self.written.value
 
     @property
     def apart(self) -> tuple[Scalar, ...]:
-        """Polynomials in the parameters that the data divide by, though no entry of a matrix does."""
+        """Denominators of the data in the parameters that cancel in every entry of the matrices."""
         return () if self.written is None else self.written.apart
 
     @cached_property
@@ -246,16 +246,16 @@ class StateSpace:
         return plant
 
     def simplified(self, value: Scalar) -> Scalar:
-        """Return a value in the parameters as simple as what is known of them allows; 0 where it is that."""
+        """Return a value simplified modulo the relations between the parameters."""
         return self.ideal.simplified(value) if self.ideal is not None else value
 
     def admits(self, value: Scalar | Matrix) -> bool:
-        """Tell whether a value has a meaning here: whether its denominator is not one of what is known to be 0."""
+        """Return whether a value is defined here: its denominator does not vanish modulo the relations."""
         return self.ideal is None or value.common_denominator() not in self.ideal
 
     @property
     def ideal(self) -> Ideal | None:
-        """What is known to be 0, None where nothing is."""
+        """The ideal of the relations, None if there are none."""
         return Ideal.of(self.equations) if self.equations else None
 
     @property
@@ -264,11 +264,11 @@ class StateSpace:
         return (*self.equations, *map(apart_from_zero, self.nonzero)) if self.equations else ()
 
     def knowing(self, *values: object) -> StateSpace:
-        """Return the plant with the caller's SymPy symbols in `values` known: their signs, and the objects to give back."""
+        """Return the plant with the caller's SymPy symbols in `values`: their signs, and the objects to return."""
         return self.with_symbols(self.symbols.seen(list(values), self.variable))
 
     def with_symbols(self, symbols: Symbols) -> StateSpace:
-        """Return the same plant where these symbols are known."""
+        """Return the same plant with these symbols."""
         if symbols is self.symbols:
             return self
         plant = copy(self)
@@ -276,7 +276,7 @@ class StateSpace:
         return plant
 
     def require(self, *names: str, task: str) -> None:
-        """Raise `InputError` unless the matrices a task uses are given."""
+        """Raise `InputError` unless the matrices of a task are given."""
         missing = [n for n in names if (n == "B" and not self.inputs) or (n == "C" and not self.outputs)]
         if missing:
             message = f"{task} needs {' and '.join(missing)}"
@@ -318,7 +318,7 @@ class StateSpace:
         return True if self.time.period is None else self.time.period.fraction()
 
     def __eq__(self, other: object) -> bool:
-        """Compare entries, time, the symbols with their signs and printed forms, and how the plant was given."""
+        """Return whether entries, time, symbols (with signs and printed forms) and the form of the data are equal."""
         return self._value == other._value if isinstance(other, StateSpace) else NotImplemented
 
     def __hash__(self) -> int:
@@ -337,7 +337,7 @@ class StateSpace:
 
 
 def _as_rows(name: str, value: Any) -> Any:
-    """Return a matrix in rows: a flat list is a column of B, a row of C or D, and a number is one of one entry."""
+    """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix."""
     if (
         name == "A"
         or value is None
@@ -381,5 +381,5 @@ def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
 
 
 def _raise_all(errors: Sequence[SymobsError]) -> None:
-    """Raise one error as it is, several together."""
+    """Raise one error, or several as `ProblemErrors`."""
     raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))

@@ -1,4 +1,4 @@
-"""The names a problem may use: their signs, how they are printed, the caller's own SymPy objects."""
+"""The symbols of a problem: names, signs, printed forms, and the caller's SymPy objects."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from symobs.notation import GREEK, symbol_latex
 
 @dataclass(frozen=True)
 class Symbols:
-    """The names a problem may use: their signs, how they are printed, the caller's own SymPy objects.
+    """The symbols of a problem: names, signs, printed forms, and the caller's SymPy objects.
 
     `closed` means that only these names exist; otherwise every well-formed name is a real symbol.
     """
@@ -31,11 +31,11 @@ class Symbols:
 
     @property
     def names(self) -> Mapping[str, str] | None:
-        """What the expression grammar accepts: the declared names, or None for any."""
+        """The declared names, or None if every name is admitted."""
         return self.signs if self.closed else None
 
     def sign(self, name: str) -> str:
-        """Return a symbol's sign; undeclared ones are real."""
+        """Return the sign of a symbol, `real` if undeclared."""
         return self.signs.get(name, "real")
 
     @staticmethod
@@ -68,7 +68,7 @@ class Symbols:
         return known
 
     def refuse_alike(self, names: Iterable[str], where: str) -> None:
-        """Raise `InputError` where two of the names are printed alike, as x1 and x_1 are."""
+        """Raise `InputError` if two names are printed alike, such as x1 and x_1."""
         printed: dict[str, str] = {}
         for name in sorted(filter(NAME.fullmatch, names)):  # others are generators of our own
             form = re.sub(r"[{}\s]", "", symbol_latex(name, self.latex.get(name)))
@@ -77,11 +77,11 @@ class Symbols:
                 raise InputError(message, where=where, repair="give one of them another name, or a latex of its own")
 
     def with_time(self) -> Symbols:
-        """Return these symbols with the time t among them, which a plant need not declare."""
+        """Return these symbols with the time t added."""
         return replace(self, signs={**self.signs, "t": self.sign("t")}) if self.closed else self
 
     def naming(self, names: object, where: str) -> Symbols:
-        """Return these symbols with the names of a list or a text among them, real unless they are declared."""
+        """Return these symbols with the names of a list or a text added, real unless declared."""
         listed = re.split(r"[,;\s]+", names.strip(" []")) if isinstance(names, str) else names
         if not self.closed or not isinstance(listed, (list, tuple)):
             return self
@@ -89,7 +89,7 @@ class Symbols:
         return replace(self, signs={**self.signs, **{declared_name(name, where): sign for name, sign in fresh.items()}})
 
     def seen(self, values: object, variable: str = "") -> Symbols:
-        """Return these symbols with those of SymPy objects in `values` added, the variable of polynomials left out.
+        """Return these symbols with those of SymPy objects in `values` added, except the variable of polynomials.
 
         Their assumptions are read as signs.  Raises `InputError` where two of one name are different symbols, and where
         one is no real parameter or cannot have the sign that is declared.
@@ -110,19 +110,19 @@ class Symbols:
 
 
 def _name_of(symbol: Any) -> str:
-    """Return the name of a SymPy symbol; that of a Dummy is the one it was given, without what SymPy prints before it."""
+    """Return the name of a SymPy symbol, of a Dummy without the underscore of its printed form."""
     return str(getattr(symbol, "name", symbol))
 
 
 def _alike(name: str, place: str) -> InputError:
-    """Return the error for two SymPy symbols that nobody could tell apart on paper."""
+    """Return the error for two different SymPy symbols with one printed form."""
     message = f"two different symbols are both called {name}"
     repair = "give each a name of its own, or use one symbol everywhere (symbols with other assumptions are others)"
     return InputError(message, where=place, repair=repair)
 
 
 def _require_parameter(symbol: Any, name: str, sign: str | None, place: str) -> None:
-    """Raise `InputError` where what is known of a SymPy symbol keeps it from being a real parameter of this sign."""
+    """Raise `InputError` if the assumptions of a SymPy symbol contradict a real parameter of this sign."""
     if symbol.is_commutative is False:
         raise InputError(f"{name} does not commute", where=place, repair="parameters are real numbers: declare it anew")
     if symbol.is_real is False:
@@ -143,7 +143,7 @@ _LATEX_LIMIT = 40
 
 
 def _latex(entry: object, place: str) -> str:
-    """Return a declared LaTeX form, which may be letters, digits, sub- and superscripts and named letters only."""
+    """Return a declared LaTeX form; only letters, digits, sub- and superscripts and named letters are admitted."""
     allowed = isinstance(entry, str) and 0 < len(entry) <= _LATEX_LIMIT and _is_plain_latex(entry)
     if not allowed:
         message = f"{str(entry)[:40]!r} is not a printed form of a symbol"
@@ -163,7 +163,7 @@ _INNERMOST = re.compile(rf"\{{{_FORM}\}}")
 
 
 def _is_plain_latex(text: str) -> bool:
-    """Whether TeX can set a form anywhere: named commands only, whole groups, no script twice, and no `^^` code."""
+    """Return whether a LaTeX form is safe: named commands, balanced groups, no double script, no `^^` code."""
     if _GROUP in text or text != text.strip() or not re.search("[A-Za-z]", text):
         return False
     shorter = _INNERMOST.sub(_GROUP, text)
@@ -196,5 +196,5 @@ def _symbols_in(values: object) -> Iterator[Any]:
 
 
 def is_sympy(value: object) -> bool:
-    """Tell whether a value is a SymPy object, without importing SymPy."""
+    """Return whether a value is a SymPy object, without importing SymPy."""
     return "sympy" in sys.modules and type(value).__module__.startswith("sympy")

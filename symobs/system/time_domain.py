@@ -39,7 +39,7 @@ TimeDomain = Continuous | Discrete
 
 
 def read_time(dt: object, symbols: Symbols) -> TimeDomain:
-    """Return the time domain that `dt` names: 0 continuous, True or a positive value discrete."""
+    """Return the time domain of `dt`: 0 is continuous, True or a positive value discrete."""
     if dt is True:
         return Discrete()
     if dt is False or dt is None or dt == 0:

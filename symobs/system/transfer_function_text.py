@@ -1,4 +1,4 @@
-"""Transfer functions as they are written, and their controllable canonical form."""
+"""Transfer functions as given, and their controllable canonical form."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_STATES = 200
 
 @dataclass(frozen=True)
 class WrittenTransferFunction:
-    """A rational function of the variable as it is written: above / below, with what they have in common."""
+    """An unreduced rational function of the variable: above / below, with common factors."""
 
     above: Scalar
     below: Scalar
@@ -39,17 +39,17 @@ class WrittenTransferFunction:
 
     @property
     def cancelled(self) -> Scalar:
-        """What cancels of the poles: a polynomial, 1 where nothing does."""
+        """The cancelled factor of the denominator, 1 if nothing cancels."""
         return product_of(factor**power for factor, power in self._common if self.variable in factor.names)
 
     @property
     def apart(self) -> tuple[Scalar, ...]:
-        """What cancels and has only parameters: polynomials that are 0 nowhere that the function has a meaning."""
+        """The cancelled factors in the parameters alone, which are nonzero wherever the function is defined."""
         return tuple(factor for factor, _ in self._common if self.variable not in factor.names)
 
 
 def read_transfer_function(value: object, symbols: Symbols, variable: str, where: str) -> WrittenTransferFunction:
-    """Return the function that a text, a SymPy expression, a number or two lists of coefficients stand for."""
+    """Return the transfer function of a text, a SymPy expression, a number or two lists of coefficients."""
     if isinstance(value, str):
         found = parse_scalar(value, symbols.names, variable=variable, where=where)
         written = parse_fraction(value, symbols.names, variable=variable, where=where)
@@ -66,7 +66,7 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
 
 
 def _of_sympy(value: Any, where: str) -> tuple[Scalar, Scalar] | None:
-    """Return numerator and denominator of a SymPy expression as they stand, None where they are complex."""
+    """Return the unreduced numerator and denominator of a SymPy expression, None if they are complex."""
     from symobs.exact.sympy_bridge.conversion import fraction_from_sympy  # noqa: PLC0415 - a SymPy object came in
 
     above, below = fraction_from_sympy(value, where)

@@ -1,4 +1,4 @@
-"""What a printed tree is worth: an exact value or a signal, or a `Misfit` that says which sizes do not fit."""
+"""Evaluation of printed equations: exact values or signals, or a `Misfit` of sizes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def value_of(node: SyntaxNode, reading: Reading) -> Printed:
-    """Return what a tree is worth; raises Misfit, Unknown and BudgetExceeded."""
+    """Return the value of a tree; raises Misfit, Unknown and BudgetExceeded."""
     found = _value(node, reading)
     if isinstance(found, Term):
         _bounded(found)
@@ -263,7 +263,7 @@ def _block(rows: Sequence[Sequence[SyntaxNode]], reading: Reading) -> Printed:
 
 
 def _in_blocks(found: Sequence[Sequence[Printed]]) -> bool:
-    """Whether a bracket holds matrices, so that a number 0 stands for a zero matrix."""
+    """Return whether a bracket contains matrices, so that a number 0 denotes a zero matrix."""
     values = [value for row in found for value in row]
     return any(isinstance(value, Flexible) or shape(value) not in (None, (1, 1)) for value in values)
 
@@ -275,7 +275,7 @@ def _zero(value: Printed) -> Printed:
 
 
 def _spread(found: Sequence[Sequence[Printed]], heights: list[int | None], widths: list[int | None]) -> None:
-    """Let identity matrices carry the height of their row to the width of their column, and back, until all is said."""
+    """Propagate sizes between block rows and columns through identity matrices, until nothing changes."""
     for _ in range(len(heights) + len(widths)):
         for i, row in enumerate(found):
             for j, value in enumerate(row):
@@ -330,7 +330,7 @@ def _integral(parts: Sequence[SyntaxNode], reading: Reading) -> Term:
 
 
 def as_printed(node: SyntaxNode, reading: Reading) -> Matrix | Scalar | None:
-    """Return what is printed of a value, decimals as generators; None where decimals are used and not compared.
+    """Return a printed value with decimals as generators, None if decimals are operands of a computation.
 
     They are compared where numbers, symbols, sums, products and quotients make up a number or the entries of one bracket.
     """
@@ -362,7 +362,7 @@ def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
 
 
 def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
-    """Tell whether an equation is true; one whose sizes do not fit is not."""
+    """Return whether an equation holds; sizes that do not match make it false."""
     try:
         return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
     except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
@@ -370,6 +370,6 @@ def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
 
 
 def is_rounded(node: SyntaxNode, reading: Reading) -> bool:
-    """Whether a side is a value written out with decimals."""
+    """Return whether a side is a value written out with decimals."""
     value = as_printed(node, reading)
     return value is not None and bool(decimals_in(value))

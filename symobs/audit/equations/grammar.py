@@ -1,4 +1,4 @@
-"""From the text of a printed equation to its trees.
+"""The grammar of printed equations: from text to trees.
 
 The tokens and the tree are those of every other expression (`symobs.expression`), and three tokens more: `'` after an operand,
 its transpose or, behind a signal, its derivative; `=`; and the argument of a function, `P(s)`.  A name is a letter, and is
@@ -113,7 +113,7 @@ class _Printed(Tokeniser):
             super()._imply(kind, at)
 
     def _is_applied(self, at: int) -> bool:
-        """Whether the "(" that begins here holds the argument of the letter before it."""
+        """Return whether the "(" here opens the argument of the preceding letter."""
         letter = next((token for token in reversed(self.tokens) if token.type != "PRIME"), None)
         if (
             self.spaced

@@ -1,4 +1,4 @@
-"""What the letters of a source are worth: the plant and the checked answers, in the source's own letters and signs.
+"""Values of the letters of a source: the plant and the checked answers, in its letters and signs.
 
 `values` is the one place that knows a convention's letters for matrices, `signals` the one for signals.
 """
@@ -35,7 +35,7 @@ HIDDEN = frozenset({"Phi_", "F_z", "G_u", "G_y"})
 
 @dataclass(frozen=True)
 class PlantMatrices:
-    """The matrices of a plant, None for what it does not have."""
+    """The matrices of a plant, None for missing ones."""
 
     A: Matrix
     B: Matrix | None
@@ -74,7 +74,7 @@ def values(plant: StateSpace, results: Sequence[Result], convention: Convention)
 
 
 def answers_of(results: Sequence[Result]) -> dict[str, Any]:
-    """Return the answers that are matrices or numbers; of two with one name the first."""
+    """Return the answers that are matrices or numbers, the first of each name."""
     found: dict[str, Any] = {}
     for result in results:
         if (reference := getattr(result, "reference", None)) is not None:
@@ -88,7 +88,7 @@ def answers_of(results: Sequence[Result]) -> dict[str, Any]:
 
 
 def _transition(answers: Mapping[str, Any]) -> Matrix | None:
-    """Return the transition matrix from `BEGIN` to `END`, where a result has one."""
+    """Return the transition matrix from `BEGIN` to `END`, if a result has one."""
     begin, end = Scalar.symbol(BEGIN), Scalar.symbol(END)
     if "transition_matrix" in answers:
         kept: Matrix = substitute(answers["transition_matrix"], {"t": end, "t0": begin})

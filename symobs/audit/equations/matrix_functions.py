@@ -1,4 +1,4 @@
-"""The functions of printed equations, and what they refuse: misfits of size, and what would take too long."""
+"""The functions of printed equations, with errors for sizes that do not match and costly arguments."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ MOST_MINORS = 60
 
 
 class Misfit(Exception):
-    """What is printed has no value: sizes do not fit, or a matrix has no inverse."""
+    """A printed expression without a value: sizes do not match, or a matrix has no inverse."""
 
 
 class Unknown(Exception):
-    """A letter that names nothing here."""
+    """An unknown letter."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -49,12 +49,12 @@ def no_fit(message: str) -> Misfit:
 
 
 def too_large() -> BudgetExceeded:
-    """Return the error for what would build too much."""
+    """Return the error for an expression beyond the limits."""
     return BudgetExceeded("what is printed would build something too large", repair="print something smaller")
 
 
 def require_small(matrix: Matrix) -> None:
-    """Refuse a matrix whose determinant or inverse would take too long."""
+    """Raise BudgetExceeded for a matrix whose determinant or inverse is too costly."""
     order = max(matrix.shape)
     if order > MOST_ORDER or (order > MOST_GENERIC and len(matrix.names) > MOST_GENERIC):
         raise too_large()
@@ -143,7 +143,7 @@ def _transition(instants: Sequence[Scalar], environment: Environment) -> Matrix:
 
 
 def _function(name: str, part: SyntaxNode, argument: Matrix, reading: Reading) -> Scalar:
-    """Return exp, sin, … of a number, as a generator; where it has a value in the field, that."""
+    """Return exp, sin, … of a number: its value in the field, or a generator."""
     if argument.shape != (1, 1):
         raise Misfit(f"{part} is {sized(argument.shape)}, but {name} takes a number")
     number = argument[0, 0]
@@ -155,7 +155,7 @@ def _function(name: str, part: SyntaxNode, argument: Matrix, reading: Reading) -
 
 
 def _root(part: SyntaxNode, radicand: Scalar, reading: Reading) -> Scalar:
-    """Return the root that is not negative: of f² it is f or -f, as the sign of f says."""
+    """Return the nonnegative root: of f² it is f or -f, by the sign of f."""
     unit, factors = radicand.factors()
     odd = product_of([unit, *(factor for factor, power in factors if power % 2)])
     try:
@@ -172,7 +172,7 @@ def _root(part: SyntaxNode, radicand: Scalar, reading: Reading) -> Scalar:
 
 
 def integrated(integrand: Matrix, name: str, ends: tuple[Scalar, Scalar]) -> Matrix | None:
-    """Return an integral by an antiderivative, which is differentiated to check it; None where none is found."""
+    """Return an integral by a checked antiderivative, None if none is found."""
     whole = antiderivative(integrand, name)
     if whole is None or derivative(whole, name) != integrand:
         return None

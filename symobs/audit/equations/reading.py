@@ -1,4 +1,4 @@
-"""One reading of an equation: what its letters mean, under which conditions, and where it has no value or another one."""
+"""A reading of an equation: its letters, its conditions, and where it is undefined or different."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class EquationConditions:
 
     @staticmethod
     def of(text: str, signs: Mapping[str, str], place: str) -> EquationConditions:
-        """Return what a text such as `c != 0, d > 0` says; raises InputError where it says nothing."""
+        """Return the conditions of a text such as `c != 0, d > 0`; raises InputError for any other text."""
         apart, above = [], []
         for part in re.split(r",|\band\b", text):
             group = [_condition(each, signs, place) for each in re.split(r"\bor\b", part)]
@@ -57,7 +57,7 @@ class EquationConditions:
         return EquationConditions(text.strip(), _stronger(signs, apart, above), tuple(apart), tuple(above))
 
     def sign(self, value: Scalar) -> str:
-        """Return what is certain of a sign."""
+        """Return the certain sign of a value."""
         found = sign_of(value, self.signs)
         ratios = [value / other for other in self.above]
         known = next((ratio.fraction() for ratio in ratios if ratio.is_constant and not ratio.is_zero), None)
@@ -66,7 +66,7 @@ class EquationConditions:
         return "nonnegative" if known > 0 else "nonpositive"
 
     def excludes(self, values: Sequence[Scalar], nonzero: tuple[Scalar, ...]) -> bool:
-        """Tell whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""
+        """Return whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""
         single = [value for group in self.apart if len(group) == 1 for value in group]
         try:
             if never_together_zero(values, (), self.signs, (*nonzero, *vanishing_factors(single, self.signs))):
@@ -89,7 +89,7 @@ def _condition(text: str, signs: Mapping[str, str], place: str) -> tuple[Scalar,
 
 
 def _stronger(signs: Mapping[str, str], apart: Sequence[tuple[Scalar, ...]], above: Sequence[Scalar]) -> dict[str, str]:
-    """Return the signs with what conditions on single symbols say."""
+    """Return the signs strengthened by conditions on single symbols."""
     found = {}
     for name, declared in signs.items():
         symbol = Scalar.symbol(name)
@@ -103,7 +103,7 @@ def _stronger(signs: Mapping[str, str], apart: Sequence[tuple[Scalar, ...]], abo
 
 @dataclass(frozen=True)
 class Gap:
-    """Where all values vanish something fails; where one that has to be real is negative, too (`below`)."""
+    """An exception: the common zeros of the values, or (`below`) negative values of a radicand."""
 
     values: tuple[Scalar, ...]
     says: str
@@ -112,7 +112,7 @@ class Gap:
 
 @dataclass()
 class Reading:
-    """What letters mean, under which conditions; `rounding` reads decimals as generators.
+    """Letters and conditions of an equation; with `rounding`, decimals are read as generators.
 
     `gaps` are found as the equation is evaluated.  So are `squares`, f of a root of f² where the sign of f is open: its value
     is f, and for those in `turned` it is -f.
@@ -161,7 +161,7 @@ def _norm(value: Scalar) -> Scalar:
 
 
 def exceptions(reading: Reading, nonzero: tuple[Scalar, ...]) -> tuple[list[str], list[str]]:
-    """Return what an equation needs beside its conditions, and what fails where that is not so.
+    """Return the further conditions of an equation, and the failures where they are violated.
 
     Letters have no value where one of `nonzero` vanishes, so that nothing is said of that.
     """
@@ -180,7 +180,7 @@ def exceptions(reading: Reading, nonzero: tuple[Scalar, ...]) -> tuple[list[str]
 
 
 def _parts(values: Sequence[Scalar], where: EquationConditions, nonzero: tuple[Scalar, ...]) -> list[list[Scalar]]:
-    """Return the groups of polynomials of which one has to vanish: each common factor, and what is left of all together."""
+    """Return the components of the common zeros: each common factor, and the cofactors together."""
     factored: list[dict[Scalar, int]] = [dict(value.factors()[1]) for value in values if not value.is_zero]
     common = [factor for factor in factored[0] if all(factor in other for other in factored)]
     groups = [[factor] for factor in common if not where.excludes([factor], nonzero)]

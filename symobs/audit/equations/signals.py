@@ -1,4 +1,4 @@
-"""What the signals of a source are: the plant's, the observer's and the law's equations, in the source's own names."""
+"""Signals of a source: the equations of plant, observer and control law, in its names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass()
 class _Signals:
-    """The signals of an environment, as they are written down one by one."""
+    """The signals of an environment, collected one by one."""
 
     formulas: dict[str, Formula | None] = field(default_factory=dict)
     sizes: dict[str, int] = field(default_factory=dict)
@@ -33,7 +33,7 @@ class _Signals:
             self.dynamics[name] = rate
 
     def stacked(self, name: str, size: int, rate: Formula, mentioned: Collection[str]) -> None:
-        """Add a signal; it is made of its components, each a signal, where one of them is spoken of."""
+        """Add a signal, stacked from its components if the equation contains one of them."""
         parts = [f"{name}_{i + 1}" for i in range(size)]
         if not set(parts) & set(mentioned):
             self.free(name, size, rate)
@@ -63,7 +63,7 @@ def signals(
     mentioned: Collection[str],
     right: Collection[str],
 ) -> Environment:
-    """Return the environment of the signals, made of those that an equation speaks of.
+    """Return the environment of the signals of an equation.
 
     y stands by itself where nothing of x is `mentioned`, u where it is; the error replaces the estimate where it stands
     on the `right`.

@@ -1,4 +1,4 @@
-"""Values of printed equations beside one another: which sizes fit, and whether two sides are equal."""
+"""Sizes of values in printed equations, and equality of two sides."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from symobs.formula.term import Term
 
 @dataclass(frozen=True)
 class Flexible:
-    """A multiple of the identity matrix whose order its neighbours decide; 0 is the zero matrix of any size."""
+    """A multiple of the identity matrix of undetermined order; 0 is the zero matrix of any size."""
 
     factor: Scalar
 
@@ -32,12 +32,12 @@ def shape(term: Term) -> tuple[int, int] | None:
 
 
 def is_signal(printed: Printed) -> bool:
-    """Whether a value is made of signals."""
+    """Return whether a value is made of signals."""
     return isinstance(printed, Term) and isinstance(printed.value, Signal)
 
 
 def fitted(flexible: Flexible, like: Term) -> Term:
-    """Return a multiple of the identity in the size of another value; raises Misfit where that is not square."""
+    """Return a multiple of the identity in the size of another value; raises Misfit unless that is square."""
     size = shape(like)
     if is_signal(like):
         raise no_fit("the identity matrix stands beside a signal")
@@ -51,7 +51,7 @@ def fitted(flexible: Flexible, like: Term) -> Term:
 
 
 def kind_of(term: Term) -> str:
-    """Return what size a value has, in words."""
+    """Return the size of a value in words."""
     size = shape(term)
     if size is not None and is_signal(term):
         return f"has {size[0]} component{'s' if size[0] > 1 else ''}"
@@ -59,7 +59,7 @@ def kind_of(term: Term) -> str:
 
 
 def alike(left: Term, right: Term) -> bool:
-    """Whether two values can be added."""
+    """Return whether two values can be added."""
     single = ((1, 1), None)
     if is_signal(left) != is_signal(right):
         return False
@@ -86,7 +86,7 @@ def _is_zero(term: Term) -> bool:
 
 
 def equal(left: Term, right: Term) -> bool:
-    """Tell whether two sides are equal, by a certificate."""
+    """Return whether two sides are equal, by a certificate."""
     environment = left.environment
     exact = [value for value in (left.value, right.value) if isinstance(value, (Scalar, Matrix))]
     meanings, relations = identities(exact)

@@ -12,7 +12,7 @@ from symobs.expression.syntax_tree import SyntaxNode
 
 
 def spectral(left: SyntaxNode, right: SyntaxNode, variable: str) -> tuple[SyntaxNode, SyntaxNode]:
-    """Return both sides, a list of numbers beside `eigenvalues` read as the polynomial with these roots."""
+    """Return both sides, a list of eigenvalues replaced by the polynomial with these roots."""
     if is_spectrum(left) and right.kind == "block":
         return left, _polynomial(right, variable)
     if is_spectrum(right) and left.kind == "block":
@@ -21,7 +21,7 @@ def spectral(left: SyntaxNode, right: SyntaxNode, variable: str) -> tuple[Syntax
 
 
 def is_spectrum(node: SyntaxNode) -> bool:
-    """Whether this is `eigenvalues(X)`."""
+    """Return whether a node is `eigenvalues(X)`."""
     return node.kind == "call" and node.text == "eigenvalues"
 
 
@@ -37,7 +37,7 @@ def _polynomial(node: SyntaxNode, variable: str) -> SyntaxNode:
 
 
 def spectrum_text(spectrum: SyntaxNode, polynomial: Scalar, variable: str) -> str:
-    """Return the equation that lists the eigenvalues, or that gives their polynomial where they have no short form."""
+    """Return the equation of the eigenvalues, or of their polynomial if they have no short form."""
     roots = [str(root) for root in roots_of(polynomial, variable)]
     if not any("CRootOf" in root for root in roots):
         return f"{spectrum} = [{', '.join(root.replace(' ', '') for root in roots)}]".replace("**", "^")

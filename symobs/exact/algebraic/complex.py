@@ -1,4 +1,4 @@
-"""Complex numbers real + imaginary·i with exact real parts: poles and roots, nothing else."""
+"""Complex numbers with exact real and imaginary part, for poles and roots."""
 
 from __future__ import annotations
 

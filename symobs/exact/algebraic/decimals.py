@@ -1,4 +1,4 @@
-"""Decimals beside exact numbers: rounded, written, and whether what is written is a rounding."""
+"""Decimals of exact numbers: rounding, digits, and the test of a printed rounding."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _HARD_TO_READ = 10
 
 
 def decimal_places(value: Scalar) -> int | None:
-    """Return how many places after the point a number has, None where it is none or does not end so soon."""
+    """Return the number of decimal places, None where the expansion is infinite or too long."""
     if not value.is_constant:
         return None
     below = value.fraction().denominator
@@ -38,7 +38,7 @@ def decimal_digits(value: Scalar) -> str:
 
 
 def is_rounding(exact: Scalar, shown: Scalar) -> bool:
-    """Tell whether a decimal is off by at most half a unit of its last place; without a point it must be exact."""
+    """Return whether a decimal is within half a unit of its last place; an integer must be exact."""
     count = decimal_places(shown)
     if count is None:
         return False
@@ -50,7 +50,7 @@ def is_rounding(exact: Scalar, shown: Scalar) -> bool:
 
 
 def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
-    """Return the decimals of a number or a matrix, with as many places as suit its size; ends of 0 are left out.
+    """Return a number or matrix rounded to decimals that suit its magnitude, trailing zeros omitted.
 
     None where they help nobody: nothing in it is a fraction with a large denominator, or an entry would be rounded to a
     whole number, which reads as if it were exact.
@@ -72,7 +72,7 @@ def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
 
 
 def _number(value: Scalar) -> Fraction | None:
-    """Return a rational number, or one that a real root without a closed form is nearly."""
+    """Return a rational number; of a real root without a closed form, an approximation."""
     if value.is_constant:
         return value.fraction()
     counted = any(f.kind == "CRootOf" for name in value.names if (f := function_named(name)) is not None)

@@ -1,4 +1,4 @@
-"""Certified enclosures of numbers made of square roots, exponentials and π, and the signs that follow (trusted)."""
+"""Certified enclosures, and signs, of numbers built from square roots, exponentials and π (trusted)."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _BITS = (64, 256, 1024, 4096)
 
 
 def is_number(value: Scalar) -> bool:
-    """Whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
+    """Return whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
     kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
     return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
 
 
 def sign_of_number(value: Scalar) -> str:
-    """Return `positive` or `negative`, and `real` where the value is no number or may be 0."""
+    """Return `positive` or `negative`, or `real` if the value has parameters or may be 0."""
     if not is_number(value):
         return "real"
     for bits in _BITS:
@@ -40,12 +40,12 @@ def sign_of_number(value: Scalar) -> str:
 
 
 def decimal(value: Scalar) -> float:
-    """Return a number near an exact one, for a choice that is proved afterwards or a warning."""
+    """Return a floating-point approximation, for heuristics and warnings only."""
     return float(_enclosed(value, _BITS[0]).mid())
 
 
 def near(value: Scalar, bits: int = 40) -> Fraction | None:
-    """Return a rational number closer to a number than 2^-bits, None where no enclosure is as narrow."""
+    """Return a rational approximation with error below 2^-bits, None if no enclosure is that narrow."""
     if not is_number(value):
         return None
     for precision in _BITS:

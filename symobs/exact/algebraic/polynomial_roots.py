@@ -1,4 +1,4 @@
-"""Roots and factored forms: what is shown of a polynomial beside its coefficients."""
+"""Roots and factored forms of polynomials."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _unwrapped(text: str) -> str:
 
 
 def factored(value: Scalar, variable: str, *, monic: bool = True) -> Factored:
-    """Return a rational function with its factors in the variable; the rest is the unit.
+    """Return the factored form of a rational function in the variable; the other factors form the unit.
 
     Factors are made monic; with `monic` False only where their leading coefficient is a number.
     """
@@ -100,7 +100,7 @@ class Root:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the root is given by centre and radicand."""
+        """Whether the root has a closed form: centre ± √radicand."""
         return self.index < 0
 
     def exact(self) -> Complex | None:
@@ -183,7 +183,7 @@ def _square_part(number: int) -> tuple[int, int]:
 
 
 def roots_of(polynomial: Scalar, variable: str) -> tuple[Root, ...]:
-    """Return the roots of a polynomial with multiplicity, those of simpler factors first."""
+    """Return the roots of a polynomial with multiplicity, those of factors of lower degree first."""
     roots: list[Root] = []
     for factor, power in factored(polynomial, variable).factors:
         for _ in range(power):
@@ -204,12 +204,12 @@ def _roots_of_factor(factor: Scalar, variable: str) -> list[Root]:
 
 
 def roots_are(polynomial: Scalar, variable: str, roots: tuple[Root, ...]) -> bool:
-    """Tell whether these are the roots of a monic polynomial."""
+    """Return whether these are all roots of a monic polynomial, with multiplicity."""
     return polynomial_of_roots(variable, roots) == polynomial
 
 
 def polynomial_of_roots(variable: str, roots: tuple[Root, ...]) -> Scalar | None:
-    """Return Π (s − root), multiplied out pair by pair; None where a root is there without its partners."""
+    """Return Π (s − root), expanded; None if conjugate roots are missing."""
     s = Scalar.symbol(variable)
     waiting, product = list(roots), Scalar.of(1)
     while waiting:

@@ -1,4 +1,4 @@
-"""Polynomials at places given by rational numbers, all by FLINT: pictures and regions ask at thousands of them."""
+"""Values of polynomials at rational points, computed by FLINT for plots and regions."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _prepared(polynomial: Scalar) -> tuple[tuple[str, ...], fmpq_mpoly]:
 
 
 def vanishes_near(polynomial: fmpz_poly, middle: Fraction, off: Fraction) -> bool:
-    """Tell whether a polynomial has a root that is at most `off` away from a number.
+    """Return whether a polynomial has a root within distance `off` of a number.
 
     With p(middle + off t) = Σ cₖ tᵏ there is none where |c₀| > |c₁| + |c₂| + …, one where the ends differ in sign, and
     else Sturm's theorem tells.

@@ -1,4 +1,4 @@
-"""Real algebraic numbers: a root of an irreducible polynomial, known by its number among the real roots.
+"""Real algebraic numbers: a root of an irreducible polynomial, given by its index among the real roots.
 
 Isolation is FLINT's, certified: the balls are disjoint, and a ball with imaginary part exactly 0 holds a real root.
 """
@@ -79,7 +79,7 @@ class RealNumber:
             bits *= 2
 
     def ball(self, bits: int = FIRST_BITS) -> arb:
-        """Return an enclosure by a ball that is at least this precise."""
+        """Return an enclosing ball of at least this precision."""
         kept = self.enclosed
         if kept is None or bits > kept[0]:  # kept in one piece, so that no ball is called more precise than it is
             most = max(bits, FIRST_BITS)
@@ -93,7 +93,7 @@ class RealNumber:
         return ends_of(self.ball(bits), bits)
 
     def between(self) -> tuple[Fraction, Fraction]:
-        """Return short decimals on either side between which the minimal polynomial has no other root."""
+        """Return short decimals on either side that isolate the root."""
         others, digits = [root for root in real_roots(self.polynomial) if root != self], 2
         while True:
             unit, (low, high) = 10**digits, self.interval()
@@ -121,11 +121,11 @@ class RealNumber:
             bits *= 2
 
     def closed_form(self) -> Scalar | None:
-        """Return the number written with square roots: of degree 1 and 2, and ±√a ± √b."""
+        """Return the closed form by square roots, for degree 1 and 2 and ±√a ± √b."""
         return _closed_form(self)
 
     def truncated(self, digits: int = 5) -> str:
-        """Return the digits of an irrational number up to this place, as it would be begun on paper: 1.41421."""
+        """Return the first digits of an irrational number, truncated: 1.41421."""
         bits = FIRST_BITS
         while True:
             low, high = (int(end * 10**digits) for end in self.interval(bits))
@@ -153,7 +153,7 @@ class RealNumber:
         return str(closed) if closed is not None else f"CRootOf({self.minimal_polynomial(variable)}, {self.index})"
 
     def scalar(self, variable: str = "x") -> Scalar:
-        """Return the number as a value: its closed form, or a generator that stands for it."""
+        """Return the number as a scalar: its closed form, or a generator."""
         closed = self.closed_form()
         return closed if closed is not None else RealRoot("CRootOf", self.minimal_polynomial(variable), self).value
 
@@ -203,7 +203,7 @@ def _from_coefficients(coefficients: tuple[int, ...], index: int) -> RealNumber:
 
 
 def ends_of(ball: arb, bits: int) -> tuple[Fraction, Fraction]:
-    """Return rational bounds of a ball; they are rounded to twice the bits, outwards."""
+    """Return rational bounds of a ball, rounded outwards to twice the bits."""
     with Precision(2 * bits):
         return _fraction(ball.lower()), _fraction(ball.upper())
 

@@ -1,4 +1,4 @@
-"""Whether all roots of a polynomial with rational coefficients lie in the open left half-plane, in three ways."""
+"""Location of the roots of a rational polynomial relative to the imaginary axis, by three methods."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def all_to_the_left(coefficients: Sequence[Fraction]) -> bool:
-    """Tell it by Routh's table without fractions; the leading coefficient must not be 0 for the answer to be yes."""
+    """Return whether all roots have Re s < 0, by the fraction-free Routh array; a zero leading coefficient gives False."""
     whole = integers(coefficients)
     if not whole[0]:
         return False
@@ -36,7 +36,7 @@ def all_to_the_left(coefficients: Sequence[Fraction]) -> bool:
 
 
 def has_positive_minors(coefficients: Sequence[Fraction]) -> bool:
-    """Tell it by Hurwitz's theorem: for a₀ > 0 all leading minors Δ₁, …, Δₙ of the matrix a₂ⱼ₋ᵢ are positive."""
+    """Return whether all roots have Re s < 0, by Hurwitz: Δ₁, …, Δₙ of (a₂ⱼ₋ᵢ) are positive for a₀ > 0."""
     whole = integers(coefficients)
     if not whole[0]:
         return False
@@ -49,7 +49,7 @@ def has_positive_minors(coefficients: Sequence[Fraction]) -> bool:
 
 
 def count_roots_by_half_plane(coefficients: Sequence[Fraction]) -> tuple[int, int, int]:
-    """Return how many roots lie to the left of the imaginary axis, on it and to the right, by isolating them.
+    """Return the numbers of roots to the left of, on, and to the right of the imaginary axis, by isolation.
 
     Those on the axis, and pairs r, −r, are roots of the greatest common divisor of p(s) and p(−s), which is sᵏ q(s²):
     they lie on the axis where s² is real and not positive.
@@ -87,13 +87,13 @@ def _roots(polynomial: fmpz_poly, bits: int) -> list[Any]:
 
 
 def integers(coefficients: Sequence[Fraction]) -> list[int]:
-    """Return rational coefficients times a positive number that makes them whole."""
+    """Return rational coefficients scaled to integers by a positive factor."""
     below = lcm(*(c.denominator for c in coefficients))
     return [int(c * below) for c in coefficients]
 
 
 def complex_roots(coefficients: Sequence[Fraction]) -> list[tuple[Fraction, Fraction]]:
-    """Return all roots with multiplicity as rational points near them, real and imaginary part."""
+    """Return rational approximations (real, imaginary) of all roots, with multiplicity."""
     found = []
     for root, multiplicity in _roots(fmpz_poly(list(reversed(integers(coefficients)))), 64):
         place = tuple(Fraction(round(float(part.mid()) * (1 << 40)), 1 << 40) for part in (root.real, root.imag))

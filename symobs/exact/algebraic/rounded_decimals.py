@@ -1,4 +1,4 @@
-"""Decimals as they are printed: a number is meant that rounds to them.
+"""Printed decimals, each of which stands for the numbers that round to it.
 
 A decimal is read as a generator (`0.866@17`, by its text and its place), so that a printed value is a rational function of its
 decimals.  It agrees with an exact value where numbers that round to the decimals make both equal: a system of polynomial
@@ -35,7 +35,7 @@ _BITS, _RADIUS, _STEPS = 256, 60, 60
 
 @dataclass(frozen=True)
 class PrintedDecimal:
-    """A decimal as it is printed: so many units of its last place, with the power of ten written beside it."""
+    """A printed decimal: an integer number of units in the last place, times a power of ten."""
 
     units: int
     places: int
@@ -43,7 +43,7 @@ class PrintedDecimal:
 
     @staticmethod
     def of(text: str) -> PrintedDecimal | None:
-        """Return the decimal that a text is; None where it has neither a point nor a power of ten."""
+        """Return the decimal of a text, None without a point or a power of ten."""
         match = _DECIMAL.fullmatch(text)
         if match is None or (match["places"] is None and match["power"] is None):
             return None
@@ -55,35 +55,35 @@ class PrintedDecimal:
 
     @property
     def unit(self) -> Fraction:
-        """What one in the last place is worth."""
+        """The unit of the last place."""
         return Fraction(10) ** (int(self.power or 0) - self.places)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The least and the largest number that it may stand for."""
+        """The least and the largest number that rounds to it."""
         half = Fraction(1, 2)
         return (self.units - half) * self.unit, (self.units + half) * self.unit
 
     def agrees(self, exact: Fraction) -> bool:
-        """Whether this is the exact value, rounded to its last place."""
+        """Return whether this is the exact value, rounded to its last place."""
         return self.ends[0] <= exact <= self.ends[1]
 
     def rounded(self, exact: Fraction) -> str:
-        """Return an exact value, rounded as this is written."""
+        """Return an exact value rounded to the same place."""
         units = round(exact / self.unit)
         digits = str(abs(units)).rjust(self.places + 1, "0")
         text = digits if self.places == 0 else f"{digits[: -self.places]}.{digits[-self.places :]}"
         return f"{'-' if units < 0 else ''}{text}{f'e{self.power}' if self.power else ''}"
 
     def slip(self, exact: Fraction) -> str:
-        """Return what happened to the exact value on its way into print, empty where that is not plain."""
+        """Return the likely misprint of an exact value (a digit, a sign, an exchange), empty if none fits."""
         if int(exact / self.unit) == self.units:  # towards 0
             return "truncated, not rounded"
         return "the sign is wrong" if self.agrees(-exact) else ""
 
 
 def as_generator(text: str, place: int) -> Scalar | None:
-    """Return the generator of a decimal; None for a text that is none."""
+    """Return the generator of a decimal, None for another text."""
     return None if PrintedDecimal.of(text) is None else Scalar.symbol(f"{text}@{place}")
 
 
@@ -94,13 +94,13 @@ def decimals_in(value: Scalar | Matrix) -> dict[str, PrintedDecimal]:
 
 
 def written_out(value: Any) -> Any:
-    """Return a value with every decimal as the number that it is."""
+    """Return a value with every decimal replaced by its exact number."""
     names = decimals_in(value)
     return value.substitute({name: Scalar.of(each.units * each.unit) for name, each in names.items()})
 
 
 def rounds_to(printed: Scalar, exact: Scalar) -> bool:
-    """Tell whether numbers that round to the decimals of a printed value make it the exact one."""
+    """Return whether the printed value equals the exact one for some numbers that round to its decimals."""
     decimals = decimals_in(printed)
     if written_out(printed) == exact:
         return True
@@ -140,14 +140,14 @@ def _equations(difference: Scalar, decimals: Mapping[str, PrintedDecimal]) -> li
 
 
 class _DecimalBox:
-    """What decimals may stand for, and what equations say of them: `meanings` holds those that are solved for."""
+    """The ranges of decimals and the equations between them; `meanings` holds the decimals solved for."""
 
     def __init__(self, decimals: Mapping[str, PrintedDecimal]) -> None:
         self.decimals = dict(decimals)
         self.meanings = {name: Scalar.symbol(name) for name in decimals}
 
     def holds_solution(self, equations: Iterable[Scalar]) -> bool:
-        """Tell whether the equations are seen to have a solution in the box."""
+        """Return whether the equations are proved to have a solution in the box."""
         left = self._solved([each for each in equations if not each.is_zero])
         if left is None:
             return False
@@ -168,7 +168,7 @@ class _DecimalBox:
         return Scalar.of(self.decimals[name].units * self.decimals[name].unit)
 
     def _solved(self, equations: list[Scalar], known: Mapping[str, Scalar] | None = None) -> list[Scalar] | None:
-        """Return what is left of equations when each that is linear in a decimal is solved; None where one is false."""
+        """Solve the equations that are linear in a decimal; return the others, None on a contradiction."""
         while True:
             if known:
                 self.meanings = {name: value.substitute(known) for name, value in self.meanings.items()}
@@ -189,7 +189,7 @@ class _DecimalBox:
         return {}
 
     def _free(self, names: Sequence[str]) -> bool:
-        """Tell whether decimals that nothing is said of can be chosen: all but one as printed, that one by intervals."""
+        """Return whether a free decimal can be chosen by intervals, all others as printed."""
         for name in names[1:]:
             self._solved([], {name: self._printed(name)})
         if not names:
@@ -210,7 +210,7 @@ class _DecimalBox:
         return low <= high
 
     def _with_root(self, name: str, equations: Sequence[Scalar]) -> bool:
-        """Tell whether a common root of equations in one decimal puts all of them into the box."""
+        """Return whether a common root of the equations in one decimal lies in the box."""
         common = integer_factor(equations[0], name)
         for equation in equations[1:]:
             common = common.gcd(integer_factor(equation, name))
@@ -223,7 +223,7 @@ class _DecimalBox:
         )
 
     def _near(self, names: Sequence[str], equations: Sequence[Scalar]) -> bool:
-        """Tell whether Newton's method finds, and an interval step proves, a root that puts all decimals into the box."""
+        """Return whether Newton's method finds a root in the box and an interval step proves it."""
         with Precision(_BITS):
             return self._is_root_near(names, equations)
 

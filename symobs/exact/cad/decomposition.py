@@ -1,4 +1,4 @@
-"""The plane divided by algebraic curves: slabs between vertical lines, stacks of cells in them, what borders on what.
+"""The plane divided by algebraic curves: slabs between vertical lines, the stacks of cells over them, and adjacency.
 
 A cylindrical decomposition after Collins (1975) of the open cells alone.  Over a slab no curve meets another, turns back
 or runs off to infinity, so the branches keep their number and their order, and one rational point stands for a cell.
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PlaneCurve:
-    """f(x, y) = 0 for an irreducible polynomial with integer coefficients, ready to be cut by lines."""
+    """The curve f(x, y) = 0 of an irreducible polynomial with integer coefficients."""
 
     def __init__(self, polynomial: Scalar, names: tuple[str, str]) -> None:
         """Take an irreducible polynomial in these two names."""
@@ -65,7 +65,7 @@ def _collected(polynomial: fmpz_mpoly, outer: int, inner: int) -> list[fmpz_poly
 
 
 def _cut(coefficients: Sequence[fmpz_poly], at: Fraction) -> fmpz_poly:
-    """Return Σ cₖ(at) yᵏ times a positive number, so that its coefficients are whole and have nothing in common."""
+    """Return a positive multiple of Σ cₖ(at) yᵏ that is primitive over the integers."""
     place = fmpq(at.numerator, at.denominator)
     polynomial = fmpq_poly([coefficient(place) for coefficient in coefficients]).numer()
     content = polynomial.content()
@@ -74,7 +74,7 @@ def _cut(coefficients: Sequence[fmpz_poly], at: Fraction) -> fmpz_poly:
 
 @dataclass(frozen=True)
 class Event:
-    """A polynomial in x that vanishes where one curve runs off or meets itself, or where two curves meet."""
+    """A projection factor: a polynomial in x that vanishes where curves are unbounded, singular, or meet."""
 
     polynomial: fmpz_poly
     curves: tuple[int, ...]
@@ -98,7 +98,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class Slab:
-    """What lies between two neighbouring walls (None: no wall on that side), over the rational point `x`."""
+    """The cylinder between two neighbouring walls (None: unbounded on that side), with the sample point `x`."""
 
     left: RealNumber | None
     right: RealNumber | None
@@ -109,7 +109,7 @@ class Slab:
 
 @dataclass(frozen=True)
 class Wall:
-    """A vertical line over which something changes, between slab `index` and the next one."""
+    """A vertical line at a root of the projection, between slab `index` and the next one."""
 
     index: int
     x: RealNumber
@@ -125,7 +125,7 @@ class Plane:
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Where a leading coefficient, a discriminant or a resultant may vanish."""
+        """The projection factors: leading coefficients, discriminants and resultants."""
         found: list[Event] = []
         for index, curve in enumerate(self.curves):
             found.append(Event(curve.by_second[-1], (index,), "lead"))
@@ -140,7 +140,7 @@ class Plane:
 
     @cached_property
     def projection(self) -> tuple[fmpz_poly, ...]:
-        """The irreducible polynomials in x at whose real roots something may change."""
+        """The irreducible projection factors in x."""
         factors = [f for event in self.events for f in irreducible_factors(event.polynomial)]
         return tuple({_key(f): f for f in factors}.values())
 
@@ -166,11 +166,11 @@ class Plane:
         return Slab(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
 
     def roots_over(self, x: Fraction) -> list[list[RealNumber]]:
-        """Return the real roots in y of every curve over x, which must lie inside a slab."""
+        """Return the real roots in y of every curve over a point x of a slab."""
         return [real_roots(curve.on_vertical(x)) if curve.degree else [] for curve in self.curves]
 
     def vertical_at(self, wall: Wall) -> tuple[int, ...]:
-        """Return the curves of which the wall itself is a part."""
+        """Return the curves that contain the wall."""
         return tuple(
             index
             for index, curve in enumerate(self.curves)
@@ -178,7 +178,7 @@ class Plane:
         )
 
     def runs_off(self, wall: Wall) -> bool:
-        """Tell whether a branch may run off to infinity at a wall: a leading coefficient vanishes there."""
+        """Return whether a branch may be unbounded at a wall: a leading coefficient vanishes there."""
         return any(curve.degree and wall.x.sign_of(curve.by_second[-1]) == 0 for curve in self.curves)
 
 

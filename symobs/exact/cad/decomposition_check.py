@@ -1,4 +1,4 @@
-"""Whether a divided plane is what it says, by other means than those that divided it (trusted).
+"""Check of a cylindrical decomposition by independent means (trusted).
 
 Discriminants and resultants are held against Sylvester's determinants at random points modulo random 64-bit primes, the
 numbers of walls and of branches against Sturm's theorem.  Where these hold, no curve turns back, runs off to infinity or
@@ -29,12 +29,12 @@ _POINTS = 2
 
 
 def holds(plane: Plane) -> bool:
-    """Tell whether the projection is whole, and every wall and every branch is there and in its place."""
+    """Return whether the projection is complete and every wall and branch correctly isolated."""
     return _projection_is_whole(plane) and _walls_are_all(plane) and all(_is_stack(plane, s) for s in plane.slabs)
 
 
 def is_line(points: Sequence[RealNumber], factors: Iterable[fmpz_poly]) -> bool:
-    """Tell whether these are all real roots of irreducible polynomials, in ascending order, by Sturm's theorem."""
+    """Return whether these are all real roots of irreducible polynomials, in ascending order, by Sturm's theorem."""
     counted = {_key(factor): count_roots(factor, None, None) for factor in factors}
     listed: dict[tuple[int, ...], list[int]] = {key: [] for key in counted}
     for point in points:
@@ -50,7 +50,7 @@ def _key(polynomial: fmpz_poly) -> tuple[int, ...]:
 
 
 def _is_isolated(point: RealNumber) -> bool:
-    """Tell whether the enclosure of a number holds the root of its number, and no other."""
+    """Return whether the enclosure of a number contains the root of its index, and no other."""
     if point.is_rational:
         return point.index == 0
     low, high = point.interval()
@@ -58,7 +58,7 @@ def _is_isolated(point: RealNumber) -> bool:
 
 
 def _before(one: RealNumber, other: RealNumber) -> bool:
-    """Tell whether the enclosures stand apart, refined as far as it takes."""
+    """Return whether the isolating intervals are disjoint, refining until decided."""
     bits = 64
     while bits <= 1 << 14:
         if one.interval(bits)[1] < other.interval(bits)[0]:
@@ -68,7 +68,7 @@ def _before(one: RealNumber, other: RealNumber) -> bool:
 
 
 def _projection_is_whole(plane: Plane) -> bool:
-    """Tell whether all leading coefficients, discriminants and resultants are products of the factors listed."""
+    """Return whether all leading coefficients, discriminants and resultants are products of the factors listed."""
     values = [curve.by_second[-1] for curve in plane.curves]
     risen = [curve for curve in plane.curves if curve.degree]
     name = plane.names[1]
@@ -90,7 +90,7 @@ def _projection_is_whole(plane: Plane) -> bool:
 
 
 def _is_product(value: fmpz_poly, factors: Iterable[fmpz_poly]) -> bool:
-    """Tell whether nothing but a number is left when a polynomial is divided by all powers of these."""
+    """Return whether a polynomial is a product of powers of these, up to a number."""
     for factor in factors:
         while value.degree() >= factor.degree() and not value % factor:
             value = value // factor
@@ -125,7 +125,7 @@ def _sylvester(one: Sequence[int], other: Sequence[int]) -> tuple[int, int, list
 
 
 def _walls_are_all(plane: Plane) -> bool:
-    """Tell whether the walls are all real roots of the projection, and every slab's point lies between its walls."""
+    """Return whether the walls are all real roots of the projection, and each sample point lies between its walls."""
     inside = all(
         (slab.left is None or _before(slab.left, RealNumber.of(slab.x)))
         and (slab.right is None or _before(RealNumber.of(slab.x), slab.right))
@@ -137,7 +137,7 @@ def _walls_are_all(plane: Plane) -> bool:
 
 
 def _is_stack(plane: Plane, slab: Slab) -> bool:
-    """Tell whether over the slab's point every branch lies alone between the two samples around it."""
+    """Return whether over the slab's point every branch lies alone between the two samples around it."""
     if list(slab.samples) != sorted(slab.samples) or len(slab.samples) != len(slab.branches) + 1:
         return False
     cuts = [curve.on_vertical(slab.x) if curve.degree else None for curve in plane.curves]

@@ -1,4 +1,4 @@
-"""What lies on a wall of a divided plane, and which cells on its two sides meet there.
+"""The fibre over a wall of a decomposition, and the adjacency of the cells on its two sides.
 
 Over an irrational wall x = α the curves have coefficients in Q(α).  Their common square-free part is found there
 exactly, by Euclid's algorithm modulo the minimal polynomial of α; its roots are then isolated in balls.
@@ -49,7 +49,7 @@ class Fibre:
 
     @property
     def alone(self) -> tuple[int, ...]:
-        """The numbers of the points on the wall to which no branch leads: isolated points of the curves."""
+        """The indices of the isolated points of the curves on the wall."""
         return tuple(
             j
             for j in range(len(self.separators) - 1)
@@ -57,12 +57,12 @@ class Fibre:
         )
 
     def unbounded(self, side: tuple[int, ...], count: int) -> frozenset[int]:
-        """Return which cells of a stack of `count` reach to infinity at this wall."""
+        """Return the cells of a stack of `count` that are unbounded at this wall."""
         return frozenset(range(side[-1], count)) | frozenset(range(side[0] + 1))
 
 
 def fibre(plane: Plane, wall: Wall) -> Fibre:
-    """Return what lies on a wall."""
+    """Return the fibre over a wall."""
     separators = _separators(plane, wall.x)
     before, after = plane.slabs[wall.index], plane.slabs[wall.index + 1]
     left_end, right_end = before.left, after.right
@@ -157,7 +157,7 @@ def _by_euclid(curves: Sequence[PlaneCurve], x: RealNumber) -> list[tuple[Fracti
 
 
 def _around_one_event(plane: Plane, x: RealNumber, event: Event) -> list[tuple[Fraction, Fraction]]:
-    """Return intervals around the points on a line where exactly two roots fall together, by balls alone.
+    """Return intervals around the points on a line with exactly one double root, by balls alone.
 
     A simple root of the discriminant leaves one double root, a simple root of the resultant one common root: both are
     −s₀/s₁ for the subresultant s₁ y + s₀, and one of the two is divided out.
@@ -289,7 +289,7 @@ class _Tower:
 
 
 def _isolated(coefficients: Sequence[arb], bits: int) -> list[tuple[Fraction, Fraction]] | None:
-    """Return intervals around the real roots, None where this precision does not tell.
+    """Return intervals around the real roots, None if this precision does not suffice.
 
     The balls hold one root each; the conjugate of a root lies in the conjugate ball, so a root is real where that meets
     no ball but its own.

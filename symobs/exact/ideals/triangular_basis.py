@@ -1,4 +1,4 @@
-"""Systems of polynomial equations in triangular form: lexicographic Gröbner bases, of limited size."""
+"""Triangular systems of polynomial equations by lexicographic Gröbner bases of limited size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Canonical text of exact values, in SymPy's syntax: `19*s/4 + omega**2`, `(s + 1)/(s**2 + b*s)`."""
+"""Canonical text of exact values in SymPy's syntax: `19*s/4 + omega**2`, `(s + 1)/(s**2 + b*s)`."""
 
 from __future__ import annotations
 

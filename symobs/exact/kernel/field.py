@@ -34,7 +34,7 @@ class NamedFunction(Protocol):
 
 
 class Generator(str):
-    """The name of a generator that stands for a function: the function's text, and the function itself."""
+    """The name of a generator that denotes a function: the text of the function, with the function attached."""
 
     __slots__ = ("function",)
 
@@ -63,7 +63,7 @@ class Field:
     context: fmpz_mpoly_ctx
 
     def __init__(self, names: tuple[str, ...]) -> None:
-        """Use `Field.of`, which returns the one field of a set of names."""
+        """Create the field; use `Field.of` instead, which returns one field per set of names."""
         self.names = names
         self.functions = {name: name.function for name in names if isinstance(name, Generator)}
         for name in names:
@@ -88,7 +88,7 @@ class Field:
         return _join(self, other)
 
     def __le__(self, other: Field) -> bool:
-        """Tell whether every generator of this field is one of `other`."""
+        """Return whether every generator of this field is one of `other`."""
         return all(name in other.position for name in self.names)
 
     def __repr__(self) -> str:
@@ -98,11 +98,11 @@ class Field:
         return (Field.of, (self.names,))
 
     def lift(self, polynomial: fmpz_mpoly, source: Field) -> fmpz_mpoly:
-        """Carry a polynomial of `source` over; raises ValueError where it uses a generator that is missing here."""
+        """Convert a polynomial of `source`; raises ValueError if a generator is missing here."""
         return polynomial if source is self else self.route_from(source).carry(polynomial)
 
     def route_from(self, source: Field) -> Route:
-        """Return the way of polynomials from `source` to here."""
+        """Return the conversion of polynomials from `source`."""
         route = self.routes.get(source.names)
         if route is None:
             if len(self.routes) == _ROUTES:  # the rational numbers are met from every field there is
@@ -112,12 +112,12 @@ class Field:
 
 
 class Route:
-    """The way of polynomials from one context into another."""
+    """The conversion of polynomials from one context to another."""
 
     __slots__ = ("generators", "images", "mapping", "missing", "target")
 
     def __init__(self, target: Field, source: Field) -> None:
-        """Find where each generator goes."""
+        """Map each generator to the target."""
         self.target = target.context
         self.generators = source.context.gens()
         found = {i: target.position[name] for i, name in enumerate(source.names) if name in target.position}
@@ -151,7 +151,7 @@ _ROUTES = 256
 
 
 def context_of(names: Iterable[str], ordering: Ordering) -> fmpz_mpoly_ctx:
-    """Return a new context, freed with its last polynomial; the library's `get` keeps all it has ever made."""
+    """Return a new context, freed with its last polynomial; FLINT's own cache would keep it for ever."""
     maker: Any = fmpz_mpoly_ctx
     return cast("fmpz_mpoly_ctx", maker._new_(*maker.create_context_key(tuple(names), ordering)))
 

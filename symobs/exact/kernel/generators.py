@@ -1,4 +1,4 @@
-"""Functions of time as generators: exp, cos, sin, cosh, sinh of an argument, and square roots that stand in arguments.
+"""Functions as generators: exp, cos, sin, cosh and sinh of an argument, and square roots.
 
 A generator's name is SymPy's text, `exp(-2*t)` or `cos(sqrt(3)*t)`, and carries the function (`Generator`), so that its
 derivative follows from the value alone: d/dt is Σ ∂/∂generator · generator′.  Different generators may depend on each
@@ -33,7 +33,7 @@ _COSINES |= {Fraction(1, 3): (Fraction(1, 2), 1), Fraction(1, 2): (Fraction(0), 
 
 
 class NotWritten(ArithmeticError):
-    """A value that is not written with square roots here."""
+    """A value has no closed form by square roots."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Function:
 
     @property
     def name(self) -> Generator:
-        """The generator's name, which carries the function."""
+        """The name of the generator, with the function attached."""
         return Generator(self)
 
     @property
@@ -71,7 +71,7 @@ class Function:
         return derivative(self.argument, time) * generator(kind, self.argument) * sign
 
     def moved(self, values: Mapping[str, Scalar]) -> Scalar:
-        """Return the function with symbols of its argument replaced."""
+        """Return the function with symbols substituted in its argument."""
         argument = substitute(self.argument, values)
         return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
 
@@ -80,12 +80,12 @@ _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, 
 
 
 def function_named(name: str) -> Function | None:
-    """Return the function a generator's name stands for, None for a plain symbol."""
+    """Return the function that a generator denotes, None for a plain symbol."""
     return cast("Function", name.function) if isinstance(name, Generator) else None
 
 
 def generator(kind: str, argument: Scalar) -> Scalar:
-    """Return kind(argument) as a generator, whatever the argument."""
+    """Return kind(argument) as a generator, without simplification."""
     return Function(kind, argument).value
 
 
@@ -114,7 +114,7 @@ def _cosine(turns: Fraction) -> Scalar:
 
 
 def leads_with_minus(value: Scalar) -> bool:
-    """Whether the first term of the numerator, plain symbols before roots, is negative."""
+    """Return whether the first term of the numerator, plain symbols before roots, is negative."""
     return value.terms()[0][0] < 0
 
 
@@ -139,7 +139,7 @@ def square_root(radicand: Scalar) -> Scalar:
 
 
 def square_part(number: int) -> int:
-    """Return the largest number whose square divides a positive integer, 1 where that is too long to find."""
+    """Return the largest integer whose square divides a positive integer, 1 if factoring is too costly."""
     root = isqrt(number)
     if root * root == number:
         return root
@@ -181,7 +181,7 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
 
 
 def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
-    """Return the functions among the generators that occur; most fields have none, which is soon seen."""
+    """Return the functions among the generators that occur."""
     having = [value for value in values if value.field.functions]
     return frozenset(f for value in having for name in value.names if (f := function_named(name)) is not None)
 
@@ -324,7 +324,7 @@ def _coordinates(argument: Scalar) -> Coordinates:
 def identities(
     values: Iterable[Scalar | Matrix], *, falling: bool = False
 ) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
-    """Return (what each generator is in a common base, the polynomials in the base that vanish).
+    """Return (each generator in a common base, the polynomials in the base that vanish).
 
     Base exponentials rise with their monomial, or with `falling` fall with it.
 

@@ -83,7 +83,7 @@ class Matrix:
 
     @staticmethod
     def block(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
-        """Return the matrix put together from blocks whose sizes fit."""
+        """Return the matrix of blocks of matching sizes."""
         rows: list[list[Scalar]] = []
         for line in blocks:
             heights = {part.shape[0] for part in line}
@@ -94,7 +94,7 @@ class Matrix:
         return Matrix.of(rows, sum(part.shape[1] for part in blocks[0]))
 
     def within(self, field: Field) -> Matrix:
-        """Return the same matrix over `field`; kept, since a design asks for A, B and C again and again."""
+        """Return the same matrix over `field`; cached."""
         if field is self.field:
             return self
         if field not in self._elsewhere:
@@ -168,7 +168,7 @@ class Matrix:
         return above, length_bits(self.denominator)
 
     def fingerprint(self) -> str:
-        """Return a text that differs between different matrices in practice."""
+        """Return a text that identifies the matrix in practice."""
         if isinstance(self.table, fmpz_mat):
             return f"{self.table.tolist()} {self.denominator}"
         texts = [polynomial_fingerprint(entry) for row in self.table for entry in row]
@@ -286,7 +286,7 @@ class Matrix:
         return Matrix(self.field, ring.transpose(self.table), self.denominator, shape)
 
     def normal(self) -> Matrix:
-        """Return the same matrix with what all entries and the denominator share cancelled."""
+        """Return the same matrix with the common factor of entries and denominator cancelled."""
         if isinstance(self.table, fmpz_mat):
             return _lowest(self)
         if ring.coprime(self.denominator, (entry for row in self.table for entry in row)):
@@ -308,7 +308,7 @@ class Matrix:
     # -- determinants and what follows from them ------------------------------------------------------------------
 
     def determinant(self) -> Scalar:
-        """Return the determinant of a square matrix.  Raises ValueError for another one."""
+        """Return the determinant of a square matrix; raises ValueError for any other."""
         order, width = self.shape
         if order != width:
             raise ValueError(self.shape)
@@ -374,7 +374,7 @@ class Matrix:
 
 
 def build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]) -> Matrix:
-    """Return the matrix of a table of polynomials, in the form its field asks for."""
+    """Return the matrix of a table of polynomials, as integers if the field has no generators."""
     if field.names:
         return Matrix(field, table, denominator, shape)
     numbers = [ring.number_of(entry) for row in table for entry in row]
@@ -382,7 +382,7 @@ def build(field: Field, table: ring.Rows, denominator: fmpz_mpoly, shape: tuple[
 
 
 def _lowest(matrix: Matrix) -> Matrix:
-    """Cancel the integer that a numeric table and its denominator share."""
+    """Cancel the common integer of a numeric table and its denominator."""
     if not isinstance(matrix.table, fmpz_mat) or matrix.denominator.is_one():
         return matrix
     below = matrix.denominator.leading_coefficient()

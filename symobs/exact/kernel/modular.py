@@ -1,4 +1,4 @@
-"""Exact values at a random point modulo a prime: the arithmetic in which large claims are checked.
+"""Exact values at a random point modulo a prime, for the randomised check of large claims.
 
 A polynomial identity of total degree d that is false survives a random point of {0, …, 2⁶¹−1}ᵏ with probability at most
 d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random 64-bit prime with probability at
@@ -45,7 +45,7 @@ class Point:
         self.bits: dict[int, tuple[int, int]] = {}
 
     def scalar(self, value: Scalar) -> int:
-        """Return the residue of a scalar; the sizes of the integers it comes from are kept in `bits`."""
+        """Return the residue of a scalar, recording the bit lengths of its integers in `bits`."""
         arguments = [self.values[name] for name in value.field.names]
         above = value.numerator_part(*arguments)
         over, below_bits = self._denominator(value.denominator_part, arguments)
@@ -53,7 +53,7 @@ class Point:
         return int(above % self.prime) * over % self.prime
 
     def matrix(self, value: Matrix) -> nmod_mat:
-        """Return the matrix of residues; the sizes of the integers it comes from are kept in `bits`."""
+        """Return the matrix of residues, recording the bit lengths of its integers in `bits`."""
         arguments = [self.values[name] for name in value.field.names]
         table = value.table
         if not isinstance(table, fmpz_mat):
@@ -65,7 +65,7 @@ class Point:
         return residues if over == 1 else residues * nmod(over, self.prime)
 
     def _denominator(self, polynomial: fmpz_mpoly, arguments: list[int]) -> tuple[int, int]:
-        """Return the inverse of a denominator's residue, and the size of the integer it comes from."""
+        """Return the inverse of the residue of a denominator, and the bit length of its value."""
         if polynomial.is_one():
             return 1, 1
         number = polynomial(*arguments)

@@ -1,4 +1,4 @@
-"""Polynomials in one variable whose coefficients are scalars: building them, and applying them to a matrix."""
+"""Polynomials in one variable with scalar coefficients: construction, and evaluation at a matrix."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
 
 
 def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:
-    """Return the coefficients of a numerator, as a polynomial in all but these names: where all vanish, it does."""
+    """Return the coefficients of a numerator as a polynomial in all other names."""
     found: dict[tuple[tuple[str, int], ...], Scalar] = {}
     for coefficient, powers in value.numerator.terms():
         inner = Scalar.of(coefficient)
@@ -94,7 +94,7 @@ def companion(coefficients: Sequence[Scalar]) -> Matrix:
 
 
 def hankel_of(coefficients: Sequence[Scalar]) -> Matrix:
-    """Return [c₁ … cₙ₋₁ 1; c₂ … 1 0; …; 1 0 … 0] read from cₙ₋₁ down: the matrix that carries 𝒞 to canonical form.
+    """Return [cₙ₋₁ … c₁ 1; …; c₁ 1 0 …; 1 0 … 0], which transforms 𝒞 to canonical form.
 
     For s² + c₁ s + c₂ it is [c₁ 1; 1 0].
     """

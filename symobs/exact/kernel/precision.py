@@ -1,4 +1,4 @@
-"""The precision of enclosures: FLINT has one for the whole process, which is lent to one thread at a time."""
+"""The precision of enclosures: FLINT has one for the process, held by one thread at a time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IN_USE = RLock()
 
 
 class Precision:
-    """A block of a program that computes with this many bits: `with Precision(128): ...`; blocks may be nested."""
+    """A context manager that computes with this many bits, `with Precision(128): ...`; it may be nested."""
 
     __slots__ = ("before", "bits")
 

@@ -71,7 +71,7 @@ def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_
 
 
 def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
-    """Tell whether it is easily seen that no factor divides the denominator and all entries.
+    """Return whether entries and denominator are coprime by an inexpensive test; False if undecided.
 
     A factor of the denominator is free of the generators that the denominator lacks, so it divides the coefficients
     of the entries in those; the leading ones are much shorter than the entries, and mostly two of them suffice.
@@ -89,7 +89,7 @@ def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
 
 
 def common_factor(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
-    """Return the greatest common divisor; of a long numerator its leading coefficient mostly leaves little to look for.
+    """Return the greatest common divisor; of a long numerator that of its leading coefficient is tried first.
 
     What divides both divides the coefficients of the numerator in the generators that the denominator lacks.
     """
@@ -100,7 +100,7 @@ def common_factor(numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
 
 
 def _foreign(polynomial: fmpz_mpoly) -> list[int]:
-    """Return the generators that a polynomial lacks."""
+    """Return the generators that do not occur in a polynomial."""
     return [index for index, degree in enumerate(polynomial.degrees()) if degree <= 0]
 
 
@@ -254,7 +254,7 @@ def number_of(constant: fmpz_mpoly) -> fmpz:
 
 
 def polynomial_fingerprint(polynomial: fmpz_mpoly) -> str:
-    """Return FLINT's text of a polynomial where it is short, else a summary of it."""
+    """Return FLINT's text of a short polynomial, else a summary."""
     length = len(polynomial)
     if length <= _WHOLE_TEXT:
         return str(polynomial)

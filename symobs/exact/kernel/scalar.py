@@ -31,7 +31,7 @@ class Scalar:
     __slots__ = ("denominator_part", "field", "known_hash", "numerator_part")
 
     def __init__(self, field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> None:
-        """Take parts that are already reduced; `reduced` is the general constructor."""
+        """Take reduced parts; `reduced` is the general constructor."""
         self.field = field
         self.numerator_part = numerator
         self.denominator_part = denominator
@@ -164,7 +164,7 @@ class Scalar:
         return bool(a.numerator_part == b.numerator_part and a.denominator_part == b.denominator_part)
 
     def __hash__(self) -> int:
-        """Hash by invariants that do not depend on the surrounding field; kept, since they take a while."""
+        """Return a hash of invariants that do not depend on the field; cached."""
         if not hasattr(self, "known_hash"):
             self.known_hash: int = self._hash()
         return self.known_hash
@@ -216,7 +216,7 @@ class Scalar:
         return length_bits(self.numerator_part), length_bits(self.denominator_part)
 
     def fingerprint(self) -> str:
-        """Return a text that differs between different values in practice: whole where short, else a summary."""
+        """Return a text that identifies the value in practice: the whole text if short, else a summary."""
         return f"{polynomial_fingerprint(self.numerator_part)}/{polynomial_fingerprint(self.denominator_part)}"
 
     @property
@@ -230,7 +230,7 @@ class Scalar:
         return Scalar(self.field, self.denominator_part, self.field.one)
 
     def common_denominator(self) -> Scalar:
-        """Return the denominator, as a matrix does."""
+        """Return the denominator; the same method as of a matrix."""
         return self.denominator
 
     def fraction(self) -> Fraction:
@@ -263,7 +263,7 @@ class Scalar:
         return 0 if index is None else int(self.numerator_part.degrees()[index])
 
     def is_polynomial_in(self, variable: str) -> bool:
-        """Whether the denominator is free of `variable`."""
+        """Return whether the denominator is free of `variable`."""
         index = self.field.position.get(variable)
         return index is None or self.denominator_part.degrees()[index] <= 0
 
@@ -317,7 +317,7 @@ def _from_terms(
 
 @lru_cache(maxsize=1024)
 def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
-    """Return what `factors` does of a value that is not 0; the same polynomials are asked about again and again."""
+    """Return the factors of a nonzero value; cached."""
     field = value.field
     above, over = _factor(field, value.numerator_part)
     below, under = _factor(field, value.denominator_part)

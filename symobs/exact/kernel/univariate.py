@@ -1,4 +1,4 @@
-"""A polynomial in several generators as one in a single generator."""
+"""Coefficients of a multivariate polynomial in one generator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rank, kernel and bases: what fraction-free elimination of a matrix gives."""
+"""Rank, kernel and bases by fraction-free elimination."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rows c, cA, …, cAⁿ⁻¹ and what observer design needs of them, without fractions.
+"""Krylov rows c, cA, …, cAⁿ⁻¹: the observability matrix, its determinant and Ackermann's gain, fraction-free.
 
 Row k is kept as an integral row over its own denominator dₖ, so 𝒪 = diag(1/dₖ) N, det 𝒪 = det N / Π dₖ and 𝒪⁻¹ eₙ =
 dₙ₋₁ N⁻¹ eₙ.
@@ -90,7 +90,7 @@ class Krylov:
 
     @cached_property
     def determinant(self) -> Scalar:
-        """The determinant of 𝒪 as it comes: common factors with nothing cancelled but within the fraction itself."""
+        """The determinant of 𝒪."""
         bottom = self.field.one
         for row in self.rows:
             bottom = bottom * row.denominator
@@ -143,7 +143,7 @@ class Krylov:
 
 
 def _times(row: Matrix, A: Matrix) -> Matrix:
-    """Return row · A; numbers with nothing cancelled, so that all rows are those of integral matrices."""
+    """Return row · A; numeric rows are not reduced and stay integral over known denominators."""
     if isinstance(row.table, fmpz_mat) and isinstance(A.table, fmpz_mat):
         return Matrix(A.field, row.table * A.table, row.denominator * A.denominator, row.shape)
     return row @ A

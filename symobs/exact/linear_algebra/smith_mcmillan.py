@@ -23,7 +23,7 @@ def minors(matrix: Matrix, order: int) -> Iterator[Scalar]:
 
 
 def pole_and_zero_polynomial(matrix: Matrix, variable: str) -> tuple[Scalar, Scalar]:
-    """Return (p, z): p the least common denominator of all minors, z the greatest common divisor of what stands above p.
+    """Return (p, z): p the least common denominator of all minors, z the greatest common divisor of their numerators over p.
 
     For z the minors of the largest order that does not vanish are written over p.  Both are monic; z is 1 for the matrix 0.
     """
@@ -40,7 +40,7 @@ def pole_and_zero_polynomial(matrix: Matrix, variable: str) -> tuple[Scalar, Sca
 
 
 def _common(left: Scalar, right: Scalar, variable: str) -> Scalar:
-    """Return what two polynomials share that contains the variable."""
+    """Return the common factor of two polynomials that contains the variable."""
     quotient = left / right
     shared = left / quotient.numerator
     return _monic(shared, variable) if shared.degree(variable) > 0 else Scalar.of(1)

@@ -1,4 +1,4 @@
-"""SymPy in and out.  Imported only when SymPy objects come in or are asked for."""
+"""Conversion to and from SymPy, imported only if SymPy objects are given or requested."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def scalar_to_sympy(
     value: Scalar, objects: Mapping[str, Any] | None = None, made: dict[Scalar, Any] | None = None
 ) -> sympy.Expr:
-    """Return the SymPy expression of a scalar; `objects` gives the Symbol a name stands for.
+    """Return the SymPy expression of a scalar; `objects` maps names to Symbols.
 
     `made` keeps the denominators that several entries share.
     """
@@ -74,7 +74,7 @@ def _long_polynomial(text: str, generators: dict[str, Any], divisor: int) -> sym
 
 @contextmanager
 def _without_collection() -> Iterator[None]:
-    """Let no garbage be looked for meanwhile: among a million new parts there is none, and the search doubles the time."""
+    """Suspend garbage collection: it doubles the time of building a million parts."""
     was_on = gc.isenabled()
     gc.disable()
     try:
@@ -85,7 +85,7 @@ def _without_collection() -> Iterator[None]:
 
 
 def _put_together(text: str, generators: dict[str, Any], divisor: int) -> sympy.Expr:
-    """Return a sum of many terms, its parts where SymPy sorts them to.
+    """Return a sum of many terms in SymPy's order.
 
     SymPy's order is by class, number of parts, and part by part; so each distinct factor is compared once, and a term
     stands where the places of its factors say.
@@ -126,7 +126,7 @@ def _term(text: str) -> tuple[int, list[str]]:
 
 
 def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
-    """Return the Symbol of a name, or the function it is the name of."""
+    """Return the Symbol of a name, or the function that it denotes."""
     found = functions.function_named(name)
     if found is None:
         return sympy.pi if name == functions.PI else objects.setdefault(name, sympy.Symbol(name))
@@ -213,7 +213,7 @@ def complex_from_sympy(expression: Any, where: str) -> Complex:
 
 
 def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:
-    """Return numerator and denominator as they stand, those of a sum brought over the least common denominator."""
+    """Return numerator and denominator without cancellation, those of a sum over the least common denominator."""
     if isinstance(expression, sympy.Add | sympy.Mul):
         above, below = fraction_from_sympy(expression.args[0], where)
         for argument in expression.args[1:]:
@@ -261,7 +261,7 @@ def sign_from_assumptions(symbol: Any) -> str:
 
 
 def rectangles(factor: Scalar, variable: str, first: int) -> tuple[tuple[Fraction, Any], ...]:
-    """Return where SymPy has isolated the roots of a polynomial from `CRootOf(polynomial, first)` on.
+    """Return SymPy's isolating rectangles of the roots from `CRootOf(polynomial, first)` on.
 
     Each is a number times what lies in a rectangle.
     """

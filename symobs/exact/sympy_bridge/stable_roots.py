@@ -1,4 +1,4 @@
-"""On which side of the stability boundary each root of a polynomial without parameters lies, by certified enclosures."""
+"""Location of the roots of a numeric polynomial relative to the stability boundary, by certified enclosures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FIRST_BITS = 64
 
 
 def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool, ...]:
-    """Return for each root of an irreducible polynomial whether it lies in Re s < 0 (|z| < 1).
+    """Return, for each root of an irreducible polynomial, whether Re s < 0 (|z| < 1).
 
     The order is that of SymPy's `CRootOf`: the real roots ascending, then the others.  Where the others do not all lie on
     one side, SymPy's isolation tells which comes first.
@@ -34,7 +34,7 @@ def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool
 
 
 def _decided(polynomial: fmpz_poly, *, discrete: bool) -> tuple[list[acb], list[bool]]:
-    """Return enclosures of the roots, and of each whether it is stable; the bits grow until all is told."""
+    """Return enclosures of the roots and whether each is stable, increasing the precision until all are decided."""
     bits = _FIRST_BITS
     while True:
         with Precision(bits):
@@ -50,7 +50,7 @@ def _decided(polynomial: fmpz_poly, *, discrete: bool) -> tuple[list[acb], list[
 
 
 def _is_on_boundary(number: int, roots: Sequence[acb], polynomial: fmpz_poly, *, discrete: bool) -> bool:
-    """Tell whether a root is surely its own mirror image: that is a root too, and lies near no other one."""
+    """Return whether a root certainly lies on the boundary: its mirror image is a root and no other root is near."""
     coefficients = polynomial.coeffs()
     image = coefficients[::-1] if discrete else [-c if k % 2 else c for k, c in enumerate(coefficients)]
     if fmpz_poly(image) not in (polynomial, -polynomial):
@@ -61,7 +61,7 @@ def _is_on_boundary(number: int, roots: Sequence[acb], polynomial: fmpz_poly, *,
 
 
 def _as_counted(factor: Scalar, variable: str, roots: Sequence[acb], numbers: Sequence[int]) -> list[int]:
-    """Return the numbers of the roots that are not real in SymPy's order: each lies alone in its rectangle."""
+    """Return the indices of the nonreal roots in SymPy's order, by their isolating rectangles."""
     from symobs.exact.sympy_bridge.conversion import rectangles  # noqa: PLC0415 - rarely needed
 
     found = []
@@ -74,7 +74,7 @@ def _as_counted(factor: Scalar, variable: str, roots: Sequence[acb], numbers: Se
 
 
 def _meets(root: acb, rectangle: Any) -> bool:
-    """Tell whether an enclosure reaches into a rectangle of SymPy's."""
+    """Return whether an enclosure intersects a rectangle."""
     ends = ((root.real, rectangle.ax, rectangle.bx), (root.imag, rectangle.ay, rectangle.by))
     return all(not (part < _number(low) or part > _number(high)) for part, low, high in ends)
 

@@ -25,7 +25,7 @@ DEGREE_UP_TO = 12
 
 
 def antiderivative(value: Value, name: str) -> Value | None:
-    """Return a function whose derivative is `value`, None where none is found in closed form without logarithms."""
+    """Return an antiderivative, None if none is found in closed form without logarithms."""
     if isinstance(value, Matrix):
         found = [[_antiderivative(entry, name) for entry in row] for row in value.rows]
         entries = [[entry for entry in row if entry is not None] for row in found]
@@ -97,7 +97,7 @@ def _of_proper(value: Scalar, name: str) -> Scalar | None:
 
 
 def _combination(parts: Sequence[Scalar], whole: Scalar, name: str) -> list[Scalar] | None:
-    """Return c with Σ cᵢ parts[i] = whole, all of them polynomials in `name`; None where there is none."""
+    """Return c with Σ cᵢ parts[i] = whole for polynomials in `name`, None if there is none."""
     height = max(part.degree(name) for part in (*parts, whole)) + 1
 
     def column(value: Scalar) -> list[Scalar]:
@@ -112,7 +112,7 @@ def _combination(parts: Sequence[Scalar], whole: Scalar, name: str) -> list[Scal
 
 
 def exponential_of_integral(value: Scalar, name: str) -> Scalar | None:
-    """Return ρ = e^p Π fᵢ^nᵢ with ρ' = value · ρ, None where there is none: value = p' + Σ nᵢ fᵢ'/fᵢ, p a polynomial."""
+    """Return ρ = e^p Π fᵢ^nᵢ with ρ' = value · ρ, None unless value = p' + Σ nᵢ fᵢ'/fᵢ for a polynomial p."""
     if any(depends_on_time(other, name) for other in value.names):
         return None
     whole, rest = _divided(value, name)
@@ -121,7 +121,7 @@ def exponential_of_integral(value: Scalar, name: str) -> Scalar | None:
 
 
 def _of_logarithms(value: Scalar, name: str) -> Scalar | None:
-    """Return a rational ρ with ρ' = value · ρ: value = Σ nᵢ fᵢ'/fᵢ with whole numbers nᵢ."""
+    """Return a rational ρ with ρ' = value · ρ, where value = Σ nᵢ fᵢ'/fᵢ with integers nᵢ."""
     if value.is_zero:
         return Scalar.of(1)
     below = value.denominator

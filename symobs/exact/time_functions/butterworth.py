@@ -1,4 +1,4 @@
-"""Cosines of rational angles by square roots, and the factors of Butterworth polynomials made of them."""
+"""Butterworth polynomials, with cosines of rational angles by square roots."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def twice_cosine(turns: Fraction) -> Scalar:
 
 
 def butterworth_angles(count: int) -> tuple[Fraction, ...]:
-    """Return the angles, in half turns, between the negative real axis and the poles above it: those of the pairs."""
+    """Return the angles of the complex pairs from the negative real axis, in half turns."""
     return tuple(Fraction(2 * k + 1 - count % 2, 2 * count) for k in range(count % 2, count // 2 + count % 2))
 
 

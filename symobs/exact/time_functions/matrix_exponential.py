@@ -41,7 +41,7 @@ class NoClosedForm(ArithmeticError):
 
 
 class OpenBranch(ArithmeticError):
-    """The sign of a discriminant decides between oscillation and none, and is not known."""
+    """The sign of a discriminant, which decides between real and complex roots, is not known."""
 
     def __init__(self, discriminant: Scalar) -> None:
         """Keep the discriminant δ of s² − 2σs + σ² − δ."""
@@ -51,7 +51,7 @@ class OpenBranch(ArithmeticError):
 
 @dataclass(frozen=True)
 class Mode:
-    """The functions of one factor: e^{rate · t}, or the pair of a quadratic one with its δ (0 for a real rate)."""
+    """The functions of one factor: e^{rate · t}, or the pair of a quadratic factor with its δ (0 for a real rate)."""
 
     rate: Scalar
     discriminant: Scalar
@@ -129,7 +129,7 @@ class Exponential:
 
     @property
     def is_closed(self) -> bool:
-        """Whether no sum over roots is needed."""
+        """Whether there is no sum over roots."""
         return all(isinstance(mode, Mode) for mode, _, _ in self.parts)
 
     def matrix(self, time: Scalar) -> Matrix:
@@ -142,7 +142,7 @@ class Exponential:
         return total
 
     def table(self) -> Table:
-        """Return the entries, as far as their functions are closed forms."""
+        """Return the entries with closed forms."""
         zero = Quasipolynomial({})
         rows = [[zero] * self.order for _ in range(self.order)]
         for mode, power, matrices in self.parts:
@@ -159,7 +159,7 @@ class Exponential:
 def modes_of(
     polynomial: Scalar, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False
 ) -> tuple[tuple[Mode | RootMode, int], ...]:
-    """Return the modes of a characteristic polynomial with multiplicities; sums over roots only where asked for.
+    """Return the modes of a characteristic polynomial with multiplicities; with `sums`, sums over roots too.
 
     `sign` returns what is known of a discriminant's sign.  Raises `NoClosedForm`, `OpenBranch`.
     """

@@ -31,7 +31,7 @@ _HALF = Fraction(1, 2)
 
 
 class Key(NamedTuple):
-    """tⁿ e^{rate · t}, times cos or sin of frequency · t where `wave` says so."""
+    """The function tⁿ e^{rate · t}, times cos or sin of frequency · t if `wave` is one of them."""
 
     power: int
     rate: Scalar
@@ -47,7 +47,7 @@ class Quasipolynomial:
 
     @staticmethod
     def of(terms: Iterable[tuple[Key, Scalar]]) -> Quasipolynomial:
-        """Return the sum of terms, those of one function collected."""
+        """Return the sum of terms, collected by function."""
         total: dict[Key, Scalar] = {}
         for key, coefficient in terms:
             total[key] = total[key] + coefficient if key in total else coefficient
@@ -133,7 +133,7 @@ class Quasipolynomial:
 
 
 def _key(power: int, rate: Scalar, wave: str, frequency: Scalar, c: Scalar) -> list[tuple[Key, Scalar]]:
-    """Return a term in the form a sum has: positive frequencies, none where it is 0."""
+    """Return a term in normal form: a positive frequency, or none."""
     if frequency.is_zero:
         return [] if wave == "sin" else [(Key(power, rate, "", ZERO), c)]
     if leads_with_minus(frequency):
@@ -142,7 +142,7 @@ def _key(power: int, rate: Scalar, wave: str, frequency: Scalar, c: Scalar) -> l
 
 
 def _times(a: Key, b: Key, c: Scalar) -> list[tuple[Key, Scalar]]:
-    """Return a product of two functions: of two waves those of sum and difference."""
+    """Return a product of two functions as a sum, that of two waves by sum and difference of angles."""
     power, rate = a.power + b.power, normal_form(a.rate + b.rate)
     if not a.wave or not b.wave:
         return [(Key(power, rate, a.wave or b.wave, a.frequency + b.frequency), c)]
@@ -204,7 +204,7 @@ def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
-    """Return a scalar in functions of time as a sum; raises ValueError for what is none, such as exp(t²) or 1/t."""
+    """Return the quasipolynomial of a scalar; raises ValueError if it is none, such as exp(t²) or 1/t."""
     below = Quasipolynomial.constant(ONE)
     for name, power in _monomial_below(value, time):
         below = below * _power(_inverse(name, time), power)
@@ -216,7 +216,7 @@ def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
 
 
 def _monomial_below(value: Scalar, time: str) -> list[tuple[str, int]]:
-    """Return the exponentials of the denominator; raises ValueError where anything else there moves."""
+    """Return the exponentials of the denominator; raises ValueError if it has other functions of time."""
     moving = [name for name in value.denominator.names if _moves(name, time)]
     found = [(name, min(dict(powers).get(name, 0) for _, powers in value.denominator.terms())) for name in moving]
     rest = value.denominator

@@ -1,4 +1,4 @@
-"""Sums over the roots of a polynomial: φⱼ(t) = Σ λʲ e^{λt} / q′(λ), the roots λ of q being all different.
+"""Sums over the roots of a square-free polynomial q: φⱼ(t) = Σ λʲ e^{λt} / q′(λ).
 
 Every symmetric sum Σ g(λ) e^{λt} is a combination of φ₀, …, φ_{d−1} with coefficients from the field of q.  Differentiating
 multiplies the summand by λ, and at t = 0 the sum is the trace of λʲ / q′(λ) in the field of a root.
@@ -36,7 +36,7 @@ class RootSum(Function):
 
     @property
     def summand(self) -> Scalar:
-        """What is summed over the roots."""
+        """The summand."""
         root = Scalar.symbol(EIGENVALUE)
         return root**self.power * function("exp", root * self.argument) / self.slope
 
@@ -47,12 +47,12 @@ class RootSum(Function):
 
     @property
     def discriminant(self) -> Scalar:
-        """What vanishes exactly where two of the roots are equal: the product of q′ over all roots."""
+        """The product of q′ over all roots, which vanishes exactly where two roots coincide."""
         return AlgebraicExtension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
 
     @property
     def bound(self) -> str:
-        """The name of the root in the text: one that no parameter has."""
+        """The name of the root in the text, different from every parameter."""
         taken = self.polynomial.names | self.argument.names
         return next(name for name in (BOUND + "_" * k for k in range(len(taken) + 1)) if name not in taken)
 
@@ -81,7 +81,7 @@ class RootSum(Function):
         return total * derivative(self.argument, time)
 
     def moved(self, values: Mapping[str, Scalar]) -> Scalar:
-        """Return the sum with symbols replaced; where the time is 0, the trace of λᵖ / q′(λ)."""
+        """Return the sum with symbols substituted; at time 0 the trace of λᵖ / q′(λ)."""
         argument, q = substitute(self.argument, values), substitute(self.polynomial, values)
         slope = partial(q, EIGENVALUE)
         field = AlgebraicExtension(q, EIGENVALUE)

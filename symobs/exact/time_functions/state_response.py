@@ -1,4 +1,4 @@
-"""How a linear system with numbers runs from a state: enclosures of e^{Mt} v, and how fast its modes are."""
+"""Responses of a numeric linear system from an initial state: enclosures of e^{Mt} v, and spectral bounds."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _HALF = arb(0.5)
 
 
 def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
-    """Return the largest and the smallest real part among the eigenvalues of a matrix of numbers, nearly."""
+    """Return the largest and smallest real part of the eigenvalues of a numeric matrix, approximately."""
     roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
     real = [float(root.real.mid()) for root, _ in roots]
     return max(real), min(real)
 
 
 def spectral_radius(matrix: Matrix) -> float:
-    """Return the largest absolute value among the eigenvalues of a matrix of numbers, nearly."""
+    """Return the spectral radius of a numeric matrix, approximately."""
     roots: Any = _rational(matrix).charpoly().complex_roots()
     return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
 
@@ -36,7 +36,7 @@ def spectral_radius(matrix: Matrix) -> float:
 def state_response(
     matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int
 ) -> list[list[int]]:
-    """Return e^{Mt} v at `count` instants from 0 on, in whole numbers of 1/parts, each off by at most one.
+    """Return e^{Mt} v at `count` instants from 0 on, in integer multiples of 1/parts, with errors of at most one.
 
     The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again: an enclosure goes through few products.
     Raises `ArithmeticError` where the enclosures stay too wide.

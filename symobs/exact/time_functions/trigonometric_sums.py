@@ -15,7 +15,7 @@ _WAVES = {"cos", "sin"}
 
 
 def depends_on_time(name: str, by: str) -> bool:
-    """Whether a generator is a function of another one."""
+    """Return whether a generator is a function of the generator `by`."""
     found = function_named(name)
     return found is not None and found.kind != "sqrt" and by in found.symbols
 
@@ -68,7 +68,7 @@ def value_of(waves: Quasipolynomial) -> Scalar:
 
 
 def collected(value: Scalar) -> Scalar:
-    """Return a value with one exponential and at most one cosine or sine in each term, where it can be so written."""
+    """Return a value with one exponential and at most one cosine or sine in each term, if possible."""
     if not any(function_named(name) for name in value.names):
         return value
     waves = to_quasipolynomial(value)
@@ -76,7 +76,7 @@ def collected(value: Scalar) -> Scalar:
 
 
 def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] | None:
-    """Return (antiderivative of what moves as a function of `name`, the rest of the integrand).
+    """Return (an antiderivative of the terms with functions of `name`, the rest of the integrand).
 
     None where a term has no elementary antiderivative, or is not treated here: exponents and coefficients are polynomials.
     """
@@ -98,7 +98,7 @@ def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] |
 
 
 def _solved(p: Scalar, q: Scalar, wanted: tuple[Scalar, Scalar], name: str) -> tuple[Scalar, Scalar] | None:
-    """Return polynomials u, v with u' + p'u + q'v = a and v' + p'v − q'u = b; None where there are none."""
+    """Return polynomials u, v with u' + p'u + q'v = a and v' + p'v − q'u = b, None if there are none."""
     if any(name in symbols_in(part.denominator) for part in (p, q, *wanted)):
         return None
     a, b = wanted

@@ -1,4 +1,4 @@
-"""Where everything in a block diagram stands: columns as wide as their boxes, gaps as wide as what is written in them.
+"""Layout of block diagrams: columns as wide as their boxes, gaps as wide as their labels.
 
 The format says how wide it writes a label; x grows to the right, y downwards, in the unit of the format (em, or columns
 and lines of a terminal).  A sign before the gain of a box moves on to the junction behind it, where readers look for it.
@@ -26,7 +26,7 @@ Measure: TypeAlias = "Callable[[Label], Point]"
 
 @dataclass(frozen=True)
 class Metrics:
-    """What a format sets: the measure of a label, and space.
+    """The measures of a format: size of a label, and spacing.
 
     inside      between a box and its label, across and down
     smallest    height of a box
@@ -60,7 +60,7 @@ class DiagramBox:
 
 @dataclass(frozen=True)
 class Line:
-    """A wire from corner to corner; `is_arrow` where it ends at something."""
+    """A wire from corner to corner; with `is_arrow` it ends in an arrow head."""
 
     points: tuple[Point, ...]
     is_arrow: bool
@@ -68,7 +68,7 @@ class Line:
 
 @dataclass(frozen=True)
 class DiagramMark:
-    """Something written: in the middle of `place`, `above` it or to its `right`."""
+    """A label: centred at `place`, `above` it or to its `right`."""
 
     label: Label
     place: Point
@@ -86,7 +86,7 @@ class SignMark:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """A block diagram, settled."""
+    """A block diagram with all positions."""
 
     size: Point
     boxes: tuple[DiagramBox, ...]
@@ -98,7 +98,7 @@ class Arrangement:
 
 
 def arranged(drawing: Drawing, metrics: Metrics, width: float, *, discrete: bool) -> Arrangement:
-    """Return a drawing settled within a width; labels that are too wide make room for their letters, the widest first."""
+    """Return the layout of a diagram within a width; labels that are too wide are replaced by letters, widest first."""
     labels = dict(drawing.labels)
     figure = figure_of(drawing.name).without_missing(labels)
     letters = dict(figure.letters)
@@ -113,7 +113,7 @@ def arranged(drawing: Drawing, metrics: Metrics, width: float, *, discrete: bool
 
 
 class _Arranging:
-    """A figure with its labels on the way to its places."""
+    """The computation of the layout of a figure with labels."""
 
     def __init__(self, figure: Figure, labels: dict[str, Label], metrics: Metrics, *, discrete: bool) -> None:
         self.figure, self.labels, self.metrics = figure, labels, metrics
@@ -127,7 +127,7 @@ class _Arranging:
     # -- sizes --------------------------------------------------------------------------------------------------------
 
     def shown(self, node: str) -> Label | None:
-        """Return what is written in a box, or at an end of the figure."""
+        """Return the label of a box, or of an end of the figure."""
         if is_integrator(node):
             return self.integrator
         label = self.labels.get(key(node))
@@ -136,17 +136,17 @@ class _Arranging:
         return label if self.is_end(node) else None
 
     def hands_on_its_sign(self, node: str) -> bool:
-        """Whether a box leads straight to a junction."""
+        """Return whether a box is followed by a junction, which takes over its sign."""
         ends = [wire.end for wire in self.figure.out_of(node)]
         return len(ends) == 1 and self.figure.is_junction(ends[0])
 
     def is_end(self, node: str) -> bool:
-        """Whether a node is an input or output of the figure."""
+        """Return whether a node is an input or output of the figure."""
         is_between = bool(self.figure.into(node)) and bool(self.figure.out_of(node))
         return not (is_between or is_box(node) or is_integrator(node))
 
     def size_of(self, node: str) -> Point:
-        """Return how wide and high a node is."""
+        """Return the width and height of a node."""
         shown, metrics = self.shown(node), self.metrics
         if shown is not None:
             width, height = metrics.measure(shown)
@@ -159,7 +159,7 @@ class _Arranging:
     # -- what is written over wires -------------------------------------------------------------------------------------
 
     def written_over(self) -> Iterator[tuple[Wire, tuple[Label, bool]]]:
-        """Yield the wires that something is written over, and whether it stands at their beginning."""
+        """Yield the labelled wires, and whether the label is at their beginning."""
         at_ends = {key(node) for node in self.figure.place if self.is_end(node)}
         for node in self.figure.place:
             label = self.labels.get(key(node))
@@ -178,11 +178,11 @@ class _Arranging:
                 yield arriving[0], (label, False)
 
     def begins_across(self, wire: Wire) -> bool:
-        """Whether a wire begins horizontally."""
+        """Return whether a wire begins horizontally."""
         return wire.turn == "-|" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
 
     def ends_across(self, wire: Wire) -> bool:
-        """Whether a wire ends horizontally."""
+        """Return whether a wire ends horizontally."""
         return wire.turn == "|-" or (wire.turn == ">" and self.row(wire.begin) == self.row(wire.end))
 
     def row(self, node: str) -> int:
@@ -190,12 +190,12 @@ class _Arranging:
         return self.figure.place[node][1]
 
     def is_entered_from_above(self, node: str) -> bool:
-        """Whether the sign of a wire stands where something over the wire that leaves would stand."""
+        """Return whether the sign of an entering wire occupies the place of the label of the leaving wire."""
         arriving = [wire for wire in self.figure.into(node) if not self.ends_across(wire)]
         return self.figure.is_junction(node) and any(self.row(wire.begin) < self.row(node) for wire in arriving)
 
     def widths_of_gaps(self) -> dict[tuple[int, int], float]:
-        """Return the widths of gaps between neighbouring columns that something is written in."""
+        """Return the widths of the gaps with labels between neighbouring columns."""
         used = sorted({column for column, _ in self.figure.place.values()})
         wanted: dict[tuple[int, int], float] = {}
         for wire, (label, _) in self.over.items():
@@ -210,7 +210,7 @@ class _Arranging:
     # -- places -------------------------------------------------------------------------------------------------------
 
     def positions(self, axis: int, gaps: dict[tuple[int, int], float]) -> dict[int, float]:
-        """Return the middle of every column (row) that is used."""
+        """Return the centre of every column (row) in use."""
         used = sorted({place[axis] for place in self.figure.place.values()})
         middles: dict[int, float] = {}
         edge, last = 0.0, None
@@ -224,12 +224,12 @@ class _Arranging:
         return middles
 
     def at(self, node: str) -> Point:
-        """Return the middle of a node."""
+        """Return the centre of a node."""
         column, row = self.figure.place[node]
         return self.columns[column], self.rows[row]
 
     def border(self, node: str, towards: Point) -> Point:
-        """Return where a wire that comes from `towards` meets a node."""
+        """Return the point where a wire from `towards` meets a node."""
         (x, y), (width, height) = self.at(node), self.sizes[node]
         if not self.is_drawn(node):
             return x, y
@@ -248,7 +248,7 @@ class _Arranging:
     # -- the whole ----------------------------------------------------------------------------------------------------
 
     def arrangement(self) -> Arrangement:
-        """Return everything in its place."""
+        """Return the complete layout."""
         nodes = list(self.figure.place)
         boxes = [node for node in nodes if is_box(node) or is_integrator(node)]
         ends = [node for node in nodes if self.is_end(node)]
@@ -267,11 +267,11 @@ class _Arranging:
         )
 
     def is_drawn(self, node: str) -> bool:
-        """Whether wires end at the border of a node: at a box, a junction, what is written at an end of the figure."""
+        """Return whether wires end at the border of a node: a box, a junction, or a label at an end of the figure."""
         return self.shown(node) is not None or self.figure.is_junction(node)
 
     def mark(self, wire: Wire, label: Label, at_beginning: bool) -> DiagramMark:  # noqa: FBT001
-        """Return what is written over a wire, in the middle of its first or last stretch."""
+        """Return the label of a wire, in the middle of its first or last segment."""
         points = self.corners(wire)
         (x0, y0), (x1, y1) = points[:2] if at_beginning else points[-2:]
         return DiagramMark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")

@@ -1,4 +1,4 @@
-"""Block diagrams in SVG: one element that needs nothing from outside, in the colour of the text around it."""
+"""Block diagrams in SVG: one self-contained element in the colour of the surrounding text."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ class _Row(NamedTuple):
 
 
 class _Letters(TextPrinter):
-    """Formulas on one line, as a terminal has them, but a rate has its dot."""
+    """Formulas on one line as on a terminal, derivatives with a dot."""
 
     def letter(self, name: str, mark: str) -> TextBox:
-        """A letter; a dot goes above an accent that is there."""
+        """Return a letter, with a dot above an existing accent."""
         if mark == "dot":
             text = self.letter_text(name)
             return text_box(text + (DOT if unicodedata.combining(text[-1]) else _DOT), Level.POWER)
@@ -68,7 +68,7 @@ class _Letters(TextPrinter):
 
 
 def svg(drawing: Drawing, printer: TextPrinter) -> str:
-    """Return a drawing as an `svg` element to stand in a page."""
+    """Return a diagram as an `svg` element of a page."""
     letters = _letters(printer)
     arrangement = arranged(drawing, metrics_of(printer), _WIDTH, discrete=printer.discrete)
     left, top = -_MARGIN * _EM, -_MARGIN * _EM
@@ -85,7 +85,7 @@ def svg(drawing: Drawing, printer: TextPrinter) -> str:
 
 
 def metrics_of(printer: TextPrinter) -> Metrics:
-    """Return the measures of a drawing; the reader's fonts are not known."""
+    """Return the measures of a diagram for unknown fonts."""
     letters = _letters(printer)
 
     def measure(label: Label) -> Point:
@@ -120,7 +120,7 @@ def _row(formula: Formula, printer: TextPrinter) -> _Row:
 
 
 def _text(item: Formula | Relation, printer: TextPrinter) -> str:
-    """Return mathematics on one line; what stands below a letter is marked."""
+    """Return mathematics on one line, with subscripts marked."""
     written = _FACTORS.sub(_THIN_SPACE, printer.inline(item)).replace("-", "−")
     return _BELOW.sub(lambda found: "".join(BELOW + character for character in found[1]), written)
 
@@ -160,7 +160,7 @@ def _path(points: tuple[Point, ...]) -> str:
 
 
 def _head(line: Line) -> str:
-    """The head of an arrow, its tip at the end of the wire."""
+    """Return the head of an arrow at the end of a wire."""
     (x0, y0), (x1, y1) = line.points[-2:]
     long = abs(x1 - x0) + abs(y1 - y0)
     across, down = (x1 - x0) / long, (y1 - y0) / long
@@ -170,7 +170,7 @@ def _head(line: Line) -> str:
 
 
 def _label(label: Label, centre: Point, printer: TextPrinter, anchor: str = "middle") -> Iterator[str]:
-    """Rows below one another around a place."""
+    """Return rows, one below another, centred at a place."""
     rows = _rows(label, printer)
     top = centre[1] - sum(row.height for row in rows) / 2
     for row in rows:
@@ -205,7 +205,7 @@ def _sign(sign: SignMark) -> str:
 
 
 def _written(text: str, centre: Point, anchor: str = "middle", size: float = 1.0) -> str:
-    """A line of text with its middle at a height."""
+    """Return a line of text with its middle at a height."""
     inside = spans([TextRun(text, is_math=True)], size * _EM)
     place = f'x="{_length(centre[0])}" y="{_length(centre[1] + 0.32 * size)}"'
     font = f' font-size="{_length(size)}"' if size != 1 else ""

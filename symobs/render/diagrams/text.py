@@ -1,4 +1,4 @@
-"""Block diagrams in the characters of a terminal: boxes of rules, a sign where a wire ends at a junction."""
+"""Block diagrams in characters of a terminal, with boxes of rules and signs at junctions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _GAPS = (4, 3, 2)
 
 
 def sketch(drawing: Drawing, printer: TextPrinter, width: int) -> str:
-    """Return a drawing, at most `width` columns wide where that can be."""
+    """Return a diagram, if possible at most `width` columns wide."""
     arrangements = (
         arranged(drawing, cells_of(printer, gap), room, discrete=printer.discrete)
         for room in (inf, float(width))
@@ -49,7 +49,7 @@ def _rows(label: Label, printer: TextPrinter) -> list[str]:
 
 
 def cells_of(printer: TextPrinter, gap: int) -> Metrics:
-    """Return the measures of a terminal: everything is an odd number of cells wide and high and has a middle cell."""
+    """Return the measures of a terminal: odd widths and heights, so that every node has a middle cell."""
 
     def measure(label: Label) -> Point:
         rows = _rows(label, printer)
@@ -59,7 +59,7 @@ def cells_of(printer: TextPrinter, gap: int) -> Metrics:
 
 
 class _Canvas:
-    """Cells of characters; a cell of wires knows the sides that they go to."""
+    """A grid of characters; a cell of wires records their directions."""
 
     def __init__(self, arrangement: Arrangement, printer: TextPrinter) -> None:
         self.printer = printer
@@ -94,7 +94,7 @@ class _Canvas:
         return "\n".join(line.rstrip() for line in lines)
 
     def draw(self, line: Line) -> None:
-        """Draw a wire; at its end the head of the arrow."""
+        """Draw a wire with the head of its arrow."""
         last = len(line.points) - 2
         for index in range(last + 1):
             begin, end = line.points[index : index + 2]
@@ -124,13 +124,13 @@ class _Canvas:
         self.write_rows(_rows(box.label, self.printer), box.centre)
 
     def write_rows(self, rows: list[str], centre: Point) -> None:
-        """Write lines around a place, an empty one between two."""
+        """Write lines centred at a place, separated by empty ones."""
         column, row = _cell(centre)
         for index, text in enumerate(rows):
             self.write(text, column - (text_width(text) - 1) // 2, row - len(rows) + 1 + 2 * index)
 
     def write(self, text: str, column: int, row: int) -> None:
-        """Write characters from a cell on; an accent stays with its letter."""
+        """Write characters from a cell on, accents in the cells of their letters."""
         for character in text:
             if text_width(character):
                 self.cells[column, row] = character
@@ -163,7 +163,7 @@ def _cell(place: Point) -> tuple[int, int]:
 
 
 def _is_middle(place: Point) -> bool:
-    """Whether a place is the middle of a cell, not the border of a box."""
+    """Return whether a place is the middle of a cell and not the border of a box."""
     return place[0] % 1 == 0.5 and place[1] % 1 == 0.5
 
 
@@ -173,7 +173,7 @@ def _direction(begin: Point, end: Point) -> tuple[int, int]:
 
 
 def _between(begin: Point, end: Point) -> Iterator[tuple[int, int]]:
-    """Yield the cells whose middles lie on a stretch, in its direction."""
+    """Yield the cells with their middles on a segment, in its direction."""
     axis = 0 if begin[1] == end[1] else 1
     low, high = sorted((begin[axis], end[axis]))
     indices = [index for index in range(floor(low), floor(high) + 1) if low <= index + 0.5 <= high]

@@ -1,4 +1,4 @@
-"""Block diagrams in TikZ: every place is settled by the arrangement, in em, so that a diagram grows with its page's font."""
+"""Block diagrams in TikZ, with positions in em, so that a diagram scales with the font."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ALONG, _BESIDE = 0.5, 0.45
 
 
 def tikz(drawing: Drawing, printer: LatexPrinter) -> str:
-    """Return a drawing in TikZ, in the middle of the page; needs tikz and its library arrows.meta."""
+    """Return a diagram in TikZ, centred on the page; requires tikz and its library arrows.meta."""
     arrangement = arranged(drawing, metrics_for(printer), printer.width, discrete=printer.discrete)
     lines = "\n".join(_written(arrangement, printer))
     options = "x=1em,y=-1em,>=Stealth,every node/.style={inner sep=0pt}"

@@ -1,4 +1,4 @@
-"""Block diagrams: one description of each (`flow`), one arrangement, written in TikZ, in SVG and for terminals."""
+"""Writers of block diagrams in TikZ, in SVG and for terminals."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ if TYPE_CHECKING:
 
 
 def tikz(drawing: Drawing, printer: LatexPrinter) -> str:
-    """Return a drawing in TikZ, in the middle of the page."""
+    """Return a diagram in TikZ, centred on the page."""
     from symobs.render.diagrams import tikz as diagrams_tikz  # noqa: PLC0415 - only pages with a diagram pay for it
 
     return diagrams_tikz.tikz(drawing, printer)
 
 
 def svg(drawing: Drawing, printer: TextPrinter) -> str:
-    """Return a drawing as an `svg` element to stand in a page, in the colour of the text around it."""
+    """Return a diagram as an `svg` element of a page, in the colour of the surrounding text."""
     from symobs.render.diagrams import svg as diagrams_svg  # noqa: PLC0415
 
     return diagrams_svg.svg(drawing, printer)
 
 
 def sketch(drawing: Drawing, printer: TextPrinter, width: int) -> str:
-    """Return a drawing in the characters of a terminal, at most `width` columns wide where that can be."""
+    """Return a diagram in characters of a terminal, if possible at most `width` columns wide."""
     from symobs.render.diagrams import text  # noqa: PLC0415
 
     return text.sketch(drawing, printer, width)

@@ -1,4 +1,4 @@
-r"""Slides: the format `beamer`, one frame a section, which TeX breaks by the height it measures."""
+r"""Slides: the format `beamer`, one frame a section, broken by TeX."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TALL = 6
 
 @output_format
 class Beamer:
-    """Slides for LaTeX's class `beamer`; chosen by name only, since its suffix is that of LaTeX."""
+    """Slides for LaTeX's class `beamer`; selected by name only, since its suffix is that of LaTeX."""
 
     name: ClassVar[str] = "beamer"
     suffix: ClassVar[str] = ".tex"
@@ -40,7 +40,7 @@ class Beamer:
         return _slides([self.part(document)], document.templates)
 
     def part(self, document: Document) -> dict[str, Any]:
-        """Return what the template says of a document: its title and its frames."""
+        """Return the template values of a document: its title and its frames."""
         title, blocks = opened(narrate(document))
         printer = printer_for(document, LatexPrinter)
         printer.width = WIDTH
@@ -73,12 +73,12 @@ def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
 
 
 def _title(text: str) -> dict[str, Any]:
-    """Return slides that are a title only."""
+    """Return slides with a title only."""
     return {"title": escape(text).strip(), "source": "", "conventions": "", "frames": [], "drawings": False}
 
 
 def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
-    """Yield what stands under each heading of the first level, its title first; what stands above all goes with the first."""
+    """Yield the blocks of each heading of the first level after its title; leading blocks belong to the first."""
     title: Inlines = ()
     body: list[Block] = []
     for block in blocks:
@@ -94,7 +94,7 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...
 
 
 class _SlideWriter(LatexWriter):
-    """Writes blocks for slides: what cannot be broken is fitted."""
+    """Writer of blocks for slides, which fits unbreakable ones."""
 
     def block(self, block: Block) -> str:
         """Return one block."""

@@ -1,4 +1,4 @@
-"""HTML: the format `html` (one page that needs nothing from outside) and `html_fragment` (to be put into another page).
+"""HTML: the formats `html` (one self-contained page) and `html_fragment` (for insertion into another page).
 
 Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style.
 """
@@ -66,7 +66,7 @@ _ROOTS = RootGlyphs(
 
 @output_format
 class Html:
-    """A page of its own."""
+    """A self-contained HTML page."""
 
     name: ClassVar[str] = "html"
     suffix: ClassVar[str] = ".html"
@@ -77,7 +77,7 @@ class Html:
         return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
 
     def part(self, document: Document) -> str:
-        """Return a question or a solution below its title; where it will stand is not known yet."""
+        """Return a question or a solution below its title, independent of its place."""
         title, blocks = opened(narrate(document))
         writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=_SOMEWHERE, level=3)
         return writer.body((replace(title, text=""), *blocks))
@@ -97,7 +97,7 @@ class Html:
 
 @output_format
 class HtmlFragment:
-    """The body alone with its style, which touches nothing outside."""
+    """The body alone, with a style that affects nothing outside."""
 
     name: ClassVar[str] = "html_fragment"
     suffix: ClassVar[str] = ".html"
@@ -128,12 +128,12 @@ def page(title: str, body: str) -> str:
 
 
 def style() -> str:
-    """Return the style of what stands inside `class="symobs"`."""
+    """Return the style of the content of `class="symobs"`."""
     return (_FOLDER / "html_body.css").read_text(encoding="utf-8")
 
 
 def plain(text: str) -> str:
-    """Return text from outside as HTML that shows it, its quotation marks curled as LaTeX curls them.
+    """Return external text as escaped HTML, with quotation marks as in LaTeX.
 
     Characters that would steer the reader's screen, and those that no page may contain, are left out.
     """
@@ -143,7 +143,7 @@ def plain(text: str) -> str:
 
 
 class HtmlWriter:
-    """Writes blocks as HTML: the text around the mathematics, which the printer writes."""
+    """Writer of blocks as HTML; mathematics is written by its printer."""
 
     def __init__(self, printer: MathmlPrinter, *, prefix: str | None = "", level: int = 1, inset: float = 0.0) -> None:
         """Write mathematics with `printer`, on lines shorter by `inset` em.
@@ -195,7 +195,7 @@ class HtmlWriter:
                 return self._columns(block)
 
     def sentence(self, inlines: Inlines) -> str:
-        """Return running text: words escaped, mathematics as MathML."""
+        """Return running text, words escaped and mathematics as MathML."""
         return "".join(self._inline(part) for part in inlines)
 
     def _inline(self, part: Inline) -> str:
@@ -210,7 +210,7 @@ class HtmlWriter:
         return "\n".join(filter(None, (heading, f'<p class="source">{below}</p>' if below else "")))
 
     def _heading(self, number: str, words: str) -> str:
-        """A heading, one level deeper for each part of its number; on a page it does not end with a full stop."""
+        """Return a heading without a full stop, one level deeper for each part of its number."""
         depth = min(6, self.level + max(1, number.count(".")))
         words = f"{number} {words}".strip().removesuffix(".")
         if self.prefix is None:
@@ -219,7 +219,7 @@ class HtmlWriter:
         return f'<h{depth} id="{self.prefix}s-{place}">{words}</h{depth}>'
 
     def _columns(self, block: Columns) -> str:
-        """A table with a column of blocks for each head."""
+        """Return a table with a column of blocks for each head."""
         inset = self.printer.width - (self.printer.width - _INSET) / len(block.heads)
         inside = HtmlWriter(self.printer, prefix=None, level=self.level + 1, inset=inset)
         heads = "".join(f'<th scope="col">{self.sentence(head)}</th>' for head in block.heads)
@@ -246,7 +246,7 @@ class HtmlWriter:
         )
 
     def _text_printer(self) -> TextPrinter:
-        """The printer of the words inside pictures."""
+        """Return the printer of text inside plots."""
         own = self.printer
         printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete)
         printer.letters = own.letters

@@ -53,7 +53,7 @@ class Json:
 
 
 def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mapping[str, str]) -> str:
-    """Return what there is of these tasks: those without a result took too much, are undecided, and claim nothing."""
+    """Return the JSON of tasks of which some are beyond their budget: those are undecided, without claims."""
     empty: dict[str, list[str]] = {"conditions": [], "condition_kinds": [], "cases": [], "certificates": []}
     names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": document.convention.name}}
     found = {result.task: result_object(result, document.convention) for result in document.results}
@@ -68,7 +68,7 @@ def _written(whole: Mapping[str, object]) -> str:
 
 
 def _pieces(value: object, line: str) -> Iterator[str]:
-    """Yield indented JSON as `json.dumps(indent=2)` writes it; that one leaves the fast encoder where it indents."""
+    """Yield the text of `json.dumps(indent=2)`, by the fast encoder."""
     if not isinstance(value, (dict, list, tuple)) or not value:
         yield _encoded(value)
         return
@@ -86,7 +86,7 @@ _encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
-    """Return the object of one result: what every task has, its own fields, and what a convention writes in another way."""
+    """Return the object of one result: common fields, its own fields, and its forms in a convention."""
     own = Viewed(result, convention).own
     answers = {name: to_json(value) for name, value in result.fields.items()}
     differing = {name: to_json(value) for name, value in own.items() if value is not result.fields.get(name)}
@@ -106,7 +106,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
 
 
 def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
-    """Return a stratum: when it holds, and what differs there."""
+    """Return a stratum: its conditions, and the fields that differ there."""
     when = [to_json(condition) for condition in case.when]
     if case.result is None:
         return {"when": when, "verdict": "undecided"}

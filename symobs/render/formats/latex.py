@@ -1,4 +1,4 @@
-"""LaTeX: the formats `latex` (a page of its own) and `fragment` (to be put into somebody's document)."""
+"""LaTeX: the formats `latex` (a complete document) and `fragment` (for insertion into another document)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class LatexArticle:
         return typeset(document, self.template, folder=document.templates)
 
     def part(self, document: Document) -> dict[str, object]:
-        """Return what a template says of a question or a solution."""
+        """Return the template values of a question or a solution."""
         return values_of(document)
 
     def sheet(self, sheet: Sheet) -> str:
@@ -66,7 +66,7 @@ class LatexArticle:
 
 @output_format
 class LatexFragment:
-    """The body alone, with the few commands it needs."""
+    """The body alone, with the definitions of its commands."""
 
     name: ClassVar[str] = "fragment"
     suffix: ClassVar[str] = ".tex"
@@ -78,12 +78,12 @@ class LatexFragment:
 
 
 def typeset(document: Document, template: str, *, folder: Path | None = None) -> str:
-    """Return a document in a template; the user's own templates lie in `folder`."""
+    """Return a document in a template; `folder` has the user's templates."""
     return fill(template, values_of(document), folder=folder)
 
 
 def values_of(document: Document) -> dict[str, object]:
-    """Return what a template says of a document."""
+    """Return the template values of a document."""
     title, blocks = opened(narrate(document))
     writer = LatexWriter(printer_for(document, LatexPrinter))
     return {
@@ -96,12 +96,12 @@ def values_of(document: Document) -> dict[str, object]:
 
 
 def has_drawings(blocks: Sequence[Block]) -> bool:
-    """Whether a page needs TikZ."""
+    """Return whether a page needs TikZ."""
     return any(isinstance(block, Drawing | PictureBlock) for block in every(blocks))
 
 
 def typeset_sheet(sheet: Sheet, template: str) -> str:
-    """Return a sheet in a template; a problem's values are those of its part, its number, and what failed."""
+    """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
     chapters: list[dict[str, Any]] = []
     for name, parts in sheet.chapters():
         problems: list[dict[str, Any]] = [
@@ -121,7 +121,7 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
 
 
 class LatexWriter:
-    """Writes blocks as LaTeX: the text around the mathematics, which the printer writes."""
+    """Writer of blocks as LaTeX; mathematics is written by its printer."""
 
     def __init__(self, printer: LatexPrinter, *, inset: float = 0.0) -> None:
         """Write mathematics with `printer`, on lines shorter by `inset` em."""
@@ -129,7 +129,7 @@ class LatexWriter:
         self.printer.width = printer.width - inset
 
     def body(self, blocks: Sequence[Block]) -> str:
-        """Return all blocks, each where TeX reads it as going on with the paragraph or as beginning a new one."""
+        """Return all blocks, each continuing its paragraph or beginning a new one."""
         pieces = [self.block(block) for block in blocks]
         gaps = [_gap(before, after) for before, after in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
@@ -169,7 +169,7 @@ class LatexWriter:
                 return escape(text)
 
     def _columns(self, block: Columns) -> str:
-        """Return rows of boxes, which a page may end between; the line between the columns goes through."""
+        """Return rows of boxes with a continuous rule between the columns; a page may break between rows."""
         count = len(block.heads)
         part = round((1 - _GUTTER * (count - 1)) / count, 4)
         writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
@@ -185,7 +185,7 @@ class LatexWriter:
         return f"\\par\\medskip{{\\parskip=0pt\n{body}\n}}\\medskip"
 
     def sentence(self, inlines: Inlines) -> str:
-        """Return running text: words escaped, mathematics between dollars."""
+        """Return running text, words escaped and mathematics between dollars."""
         return "".join(self._inline(part) for part in inlines)
 
     def _inline(self, part: Inline) -> str:
@@ -197,7 +197,7 @@ class LatexWriter:
 
 
 def _gap(before: Block, after: Block) -> str:
-    """Return what stands between two blocks; TeX begins a new paragraph at an empty line."""
+    """Return the separator of two blocks; an empty line begins a new paragraph."""
     if isinstance(before, Heading) and isinstance(after, Paragraph):
         return " "
     begins = isinstance(after, Heading | CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))

@@ -68,7 +68,7 @@ _AT_START = re.compile(r"^(\s*\d*)(?=[-+=:.)])")
 
 @output_format
 class Markdown:
-    """What a notebook or a forge shows."""
+    """Markdown for notebooks and forges."""
 
     name: ClassVar[str] = "markdown"
     suffix: ClassVar[str] = ".md"
@@ -106,12 +106,12 @@ def _renamed(match: re.Match[str]) -> str:
 
 
 def plain(text: str) -> str:
-    """Return text from outside as Markdown that shows it, on one line."""
+    """Return external text as escaped Markdown on one line."""
     return _SPECIAL.sub(_harmless, printable(text))
 
 
 def paragraph(line: str) -> str:
-    """Return a line that begins with no mark of a list or a heading."""
+    """Return a line, a leading mark of a list or heading escaped."""
     return _AT_START.sub(r"\1\\", line)
 
 
@@ -120,7 +120,7 @@ def _harmless(match: re.Match[str]) -> str:
 
 
 class MarkdownWriter:
-    """Writes blocks as Markdown: the text around the mathematics, which the printer of LaTeX writes."""
+    """Writer of blocks as Markdown; mathematics is written by the printer of LaTeX."""
 
     def __init__(self, printer: LatexPrinter, *, level: int = 1) -> None:
         """Write mathematics with `printer`; a title is a heading of `level`."""
@@ -177,7 +177,7 @@ class MarkdownWriter:
         return re.sub(r"\$\$ (.*?) \$\$", r"$\\displaystyle \1$", self.block(block)).replace("\n", "<br>")
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
-        """Return a display on one line: lines of their own would begin with the marks of what stands around them."""
+        """Return a display on one line, since further lines would need the marks of the surrounding blocks."""
         rows, are_aligned = Layout(self.printer, self.printer.width, boxed=boxed, end=end).rows(relations)
         if len(rows) == 1 and not are_aligned:
             return f"$$ {portable(rows[0].right.source)} $$"
@@ -189,7 +189,7 @@ class MarkdownWriter:
         return rf"$$ \begin{{{kind}}}{body}\end{{{kind}}} $$"
 
     def sentence(self, inlines: Inlines) -> str:
-        """Return running text: words escaped, mathematics between dollars."""
+        """Return running text, words escaped and mathematics between dollars."""
         return "".join(self._inline(part) for part in inlines)
 
     def _inline(self, part: Inline) -> str:
@@ -204,7 +204,7 @@ class MarkdownWriter:
         return f"${portable(latex).strip()}$"
 
     def _text_printer(self) -> TextPrinter:
-        """The printer of what is drawn with characters."""
+        """Return the printer of text in character drawings."""
         own = self.printer
         printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete, width=_SKETCH)
         printer.letters = own.letters
@@ -212,10 +212,10 @@ class MarkdownWriter:
 
 
 def fenced(text: str) -> str:
-    """Return characters that are shown as they stand."""
+    """Return a fenced block of characters."""
     return f"```text\n{text}\n```"
 
 
 def quoted(text: str) -> str:
-    """Return blocks set apart from the others."""
+    """Return blocks in a quotation."""
     return "\n".join(f"> {line}".rstrip() for line in text.splitlines())

@@ -1,4 +1,4 @@
-"""PDF: the article, typeset by the TeX found on PATH.
+"""PDF: the LaTeX article, typeset by TeX.
 
 TeX reads and writes inside a temporary folder only, runs no other program, and has a minute and 200 MB for its files.
 """
@@ -68,7 +68,7 @@ class Pdf:
         return compiled(typeset(document, self.template, folder=document.templates))
 
     def part(self, document: Document) -> dict[str, object]:
-        """Return what a template says of a question or a solution."""
+        """Return the template values of a question or a solution."""
         _commands()  # without TeX there is no need to go on
         return values_of(document)
 
@@ -79,7 +79,7 @@ class Pdf:
 
 
 def compiled(source: str, *, time_limit: float = TIME_LIMIT) -> bytes:
-    """Return the PDF that TeX makes of a LaTeX document."""
+    """Return the PDF of a LaTeX document by TeX."""
     commands = _commands()
     try:
         with _ending_in_order(), tempfile.TemporaryDirectory(prefix="symobs-", ignore_cleanup_errors=True) as name:
@@ -96,7 +96,7 @@ def compiled(source: str, *, time_limit: float = TIME_LIMIT) -> bytes:
 
 
 def _commands() -> tuple[tuple[str, ...], ...]:
-    """Return what to run: latexmk, which knows how often; without it pdflatex twice, for its references."""
+    """Return the commands: latexmk, or else pdflatex twice, for its references."""
     pdflatex, latexmk = shutil.which("pdflatex"), shutil.which("latexmk")
     if pdflatex is None:
         raise TypesettingError("pdflatex is not on PATH", repair=_INSTALL)
@@ -107,7 +107,7 @@ def _commands() -> tuple[tuple[str, ...], ...]:
 
 
 def _run(command: Sequence[str], folder: Path, time_limit: float) -> int:
-    """Run a command in `folder` and return its exit code; whatever ends this ends all it has started."""
+    """Run a command in `folder` and return its exit code; its children are always ended with it."""
     try:
         process = subprocess.Popen(  # noqa: S603 - a program found on PATH, a source that is escaped, no shell
             command,
@@ -132,7 +132,7 @@ def _run(command: Sequence[str], folder: Path, time_limit: float) -> int:
 
 
 def _waited(process: subprocess.Popen[bytes], folder: Path, time_limit: float) -> int:
-    """Return the exit code of TeX; raises `TypesettingError` where it takes more time or room than it may."""
+    """Return the exit code of TeX; raises `TypesettingError` beyond its limits of time and disk space."""
     end = time.monotonic() + time_limit
     while True:
         left = end - time.monotonic()
@@ -148,7 +148,7 @@ def _waited(process: subprocess.Popen[bytes], folder: Path, time_limit: float) -
 
 
 def _size(folder: Path) -> int:
-    """Return how many bytes the files of a folder have."""
+    """Return the total size in bytes of the files of a folder."""
     with suppress(OSError):  # a file that is gone before it is measured
         return sum(path.stat().st_size for path in folder.iterdir())
     return 0
@@ -156,7 +156,7 @@ def _size(folder: Path) -> int:
 
 @contextmanager
 def _ending_in_order() -> Iterator[None]:
-    """Let the first request to end this process end TeX and its folder too, and no second one disturb that."""
+    """On the first request to end this process, end TeX and remove its folder, undisturbed by a second one."""
     usual: dict[signal.Signals, Any] = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
     if hasattr(signal, "SIGHUP"):
         usual[signal.SIGHUP] = signal.SIG_DFL
@@ -182,7 +182,7 @@ def _environment() -> Mapping[str, str]:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and its children, unless it has ended by itself."""
+    """End a process and its children, unless it has exited."""
     if process.poll() is not None:
         return
     with suppress(ProcessLookupError):
@@ -221,7 +221,7 @@ def _log(folder: Path) -> str:
 
 
 def _temporary() -> str:
-    """Return where temporary files go."""
+    """Return the folder of temporary files."""
     try:
         return tempfile.gettempdir()
     except OSError:

@@ -1,4 +1,4 @@
-r"""LaTeX templates: where they lie, and how a page is filled in.
+r"""LaTeX templates: their location, and their values.
 
 Jinja2 with marks that LaTeX leaves alone: `\VAR{…}` prints, `\BLOCK{…}` directs, a line that begins with `%%` is a
 directive and one with `%#` a comment.  A name that is not there is an error, never an empty place.  A template of the
@@ -28,7 +28,7 @@ def template_folder() -> Path:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise `InputError` unless a folder has a template that takes the place of a built-in one."""
+    """Raise `InputError` unless a folder has a template with the name of a built-in one."""
     names = sorted(path.name for path in template_folder().glob("*.tex"))
     if not any((folder / name).is_file() for name in names):
         message = f"none of the templates {', '.join(names)} is there"
@@ -60,7 +60,7 @@ _REPAIR = "compare it with the built-in one: `symobs templates copy FOLDER`"
 
 
 def _reason(error: Exception) -> str:
-    """Return what is wrong with a template, on one line."""
+    """Return the error of a template on one line."""
     from jinja2 import TemplateNotFound  # noqa: PLC0415 - as below
 
     if isinstance(error, TemplateNotFound):
@@ -69,7 +69,7 @@ def _reason(error: Exception) -> str:
 
 
 def _place(error: Exception, template: str) -> str:
-    """Return the name of the template in which an error arose, and the line."""
+    """Return the name of the template of an error, and the line."""
     name = Path(getattr(error, "filename", None) or template).name
     line = getattr(error, "lineno", None)
     trace = error.__traceback__ if line is None else None
@@ -83,7 +83,7 @@ def _place(error: Exception, template: str) -> str:
 
 @cache
 def _of_built_in() -> Environment:
-    """Return the environment of the built-in templates, which are compiled once in a process."""
+    """Return the environment of the built-in templates, compiled once in a process."""
     return _environment(None)
 
 

@@ -48,7 +48,7 @@ _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 @output_format
 class Text:
-    """What a terminal shows."""
+    """Plain text for terminals."""
 
     name: ClassVar[str] = "text"
     suffix: ClassVar[str] = ".txt"
@@ -76,16 +76,16 @@ class Text:
 
 
 class TextWriter:
-    """Writes blocks as lines: the text around the mathematics, which the printer writes."""
+    """Writer of blocks as lines of text; mathematics is written by its printer."""
 
     def __init__(self, printer: TextPrinter, width: int) -> None:
-        """Write mathematics with `printer`, no line longer than `width` where it can be broken."""
+        """Write mathematics with `printer`, in lines of at most `width` columns where they can be broken."""
         self.printer = copy(printer)
         self.printer.width = width - len(INDENT)
         self.width = width
 
     def body(self, blocks: Sequence[Block]) -> str:
-        """Return all blocks, an empty line between two; a heading stands directly above what it heads."""
+        """Return all blocks, separated by empty lines except after headings."""
         pieces = [self.block(block) for block in blocks]
         gaps = ["\n" if isinstance(before, Heading) else "\n\n" for before, _ in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
@@ -138,7 +138,7 @@ class TextWriter:
         return "".join(self._inline(part) for part in inlines)
 
     def remark(self, inlines: Inlines) -> str:
-        """Return words that are not wrapped."""
+        """Return words without wrapping."""
         return self.sentence(inlines).replace(_NO_BREAK, " ")
 
     def _inline(self, part: Inline) -> str:
@@ -151,7 +151,7 @@ class TextWriter:
 
 
 def _kept_inside(written: str) -> str:
-    """Return a formula that breaks outside its parentheses and brackets only, unless one of them is itself too long."""
+    """Return a formula with breaks only outside parentheses and brackets, unless one of them is too long."""
     depth, start, kept = 0, 0, list(written)
     for place, character in enumerate(written):
         if character in "([":
@@ -165,7 +165,7 @@ def _kept_inside(written: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return text from outside without what would steer a terminal: control and format characters."""
+    """Return external text without control and format characters."""
     return "".join(_harmless(character) for character in text)
 
 
@@ -192,10 +192,10 @@ def wrapped(text: str, width: int, *, first: str = "") -> str:
 
 
 def underlined(text: str, mark: str, width: int) -> str:
-    """Return the text with a line of `mark` below it, as wide as its last line; nothing under nothing."""
+    """Return the text underlined with `mark`, as wide as its last line; empty text is returned unchanged."""
     return f"{text}\n{mark * min(width, text_width(text.splitlines()[-1]))}" if text else ""
 
 
 def indented(text: str) -> str:
-    """Return the text set in from the margin."""
+    """Return the indented text."""
     return "\n".join(f"{INDENT}{line}".rstrip() for line in text.splitlines())

@@ -1,4 +1,4 @@
-"""Blocks: what a page is made of, before any format decides how it looks.
+"""Blocks of a page, independent of the output format.
 
 The narrator writes them, the formats read them, and neither knows the other.  Text is plain; a format escapes it.
 """
@@ -23,7 +23,7 @@ Inlines: TypeAlias = tuple[Inline, ...]
 
 @dataclass(frozen=True)
 class Title:
-    """What the page is about, where the problem comes from, and the conventions it keeps."""
+    """The title of a page, the source of the problem, and its conventions."""
 
     text: str
     source: str
@@ -83,7 +83,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class TableBlock:
-    """Routh's table; each row with the remarks that may stand beside it, of which one is chosen, the first if it fits.
+    """The Routh array; each row has alternative remarks, of which the first that fits is printed.
 
     `where` goes before what the entries stand for that are too wide for the table.
     """
@@ -96,7 +96,7 @@ class TableBlock:
 
 @dataclass(frozen=True)
 class PictureBlock:
-    """A picture and what stands below it."""
+    """A plot and its caption."""
 
     picture: Picture
     caption: Inlines
@@ -104,7 +104,7 @@ class PictureBlock:
 
 @dataclass(frozen=True)
 class CaseBlock:
-    """What holds in a special case: the label says which, the blocks are set in from the margin."""
+    """A special case: a label with its condition, and indented blocks."""
 
     label: Inlines
     blocks: tuple[Block, ...]
@@ -112,7 +112,7 @@ class CaseBlock:
 
 @dataclass(frozen=True)
 class Columns:
-    """Blocks side by side under their heads, row by row; each row has a cell for each head."""
+    """Blocks in columns under heads, row by row, with a cell for each head."""
 
     heads: tuple[Inlines, ...]
     rows: tuple[tuple[tuple[Block, ...], ...], ...]
@@ -134,7 +134,7 @@ Block: TypeAlias = (
 
 
 def every(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Yield all blocks, those inside cases and columns too."""
+    """Yield all blocks, including those of cases and columns."""
     for block in blocks:
         yield block
         if isinstance(block, CaseBlock):
@@ -144,7 +144,7 @@ def every(blocks: Iterable[Block]) -> Iterator[Block]:
 
 
 def opened(page: tuple[Block, ...]) -> tuple[Title, tuple[Block, ...]]:
-    """Return a page's title and what stands below it."""
+    """Return the title of a page and the blocks below it."""
     title, *body = page
     if not isinstance(title, Title):
         raise TypeError(f"a page begins with its title, not with {type(title).__name__}")

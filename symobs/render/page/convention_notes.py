@@ -1,4 +1,4 @@
-"""Which conventions a page has to state: those about the letters it uses."""
+"""Conventions stated on a page: those of its letters."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ if TYPE_CHECKING:
 
 
 def letters_used(steps: Iterable[Step]) -> frozenset[str]:
-    """Return the names of all letters that the steps speak of."""
+    """Return the names of all letters in the steps."""
     return frozenset().union(*(letters(formula) for step in steps for formula in _formulas(step)))
 
 
 def stated_conventions(
     used: frozenset[str], convention: Convention, words: dict[str, str]
 ) -> tuple[tuple[Inline, ...], ...]:
-    """Return the conventions that concern the letters used, each as a few words and a formula."""
+    """Return the conventions of the letters used, each as words and a formula."""
     turned = Turned(convention.turned)
     conventions: list[tuple[Inline, ...]] = []
     if "K" in used:

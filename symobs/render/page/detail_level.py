@@ -1,4 +1,4 @@
-"""How much of a page is told: the filter on steps that every format shares.
+"""Levels of detail: the filter on the steps of a page.
 
 `full` tells everything. `outline` keeps headings, what is defined, tables and pictures, without the running
 explanation. `answer` keeps what is given, conditions, cases, findings, the answers and their checks.  Both leave out only
@@ -33,7 +33,7 @@ def detail_named(name: str) -> str:
 
 
 def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
-    """Return the steps that a page of this detail tells."""
+    """Return the steps of a page at this level of detail."""
     if detail_named(detail) == "full":
         return tuple(steps)
     kept: list[Step] = []
@@ -51,7 +51,7 @@ def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
 
 
 def _shortened(step: Step, detail: str) -> Iterator[Step]:
-    """Yield what is left of a step: itself, itself without its sentence, its findings, or nothing."""
+    """Yield the rest of a step: the step, the step without its sentence, its findings, or nothing."""
     match step:
         case Section(steps=steps):
             if inner := at_detail(steps, detail):
@@ -86,7 +86,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
 
 
 def conditions(sentence: Sentence | None) -> bool:
-    """Whether a sentence may condition an answer: it holds an inequality, or asserts a property."""
+    """Return whether a sentence may condition an answer: it contains an inequality, or asserts a property."""
     if sentence is None:
         return False
     slots = [slot for _, slot in sentence.slots]
@@ -98,14 +98,14 @@ def conditions(sentence: Sentence | None) -> bool:
 
 
 def _introduces(sentence: Sentence | None) -> bool:
-    """Whether a sentence says what the answer below it is, not how it was found, and needs no sentence before it."""
+    """Return whether a sentence introduces the answer below it and is complete by itself."""
     if sentence is None or conditions(sentence):
         return sentence is not None
     return _begins(sentence) and sentence.key not in EXPLAINS
 
 
 def _result_alone(step: Define | Equal) -> Define | Equal:
-    """Return an answer without the way to it: a = d for a = b = c = d, and no transposed rows beside the gain."""
+    """Return an answer without its derivation: a = d for a = b = c = d, without transposed rows beside the gain."""
     if isinstance(step, Define):
         return replace(step, relation=_ends(step.relation))
     firsts = [relation.members[0] for relation in step.relations]
@@ -114,7 +114,7 @@ def _result_alone(step: Define | Equal) -> Define | Equal:
 
 
 def _ends(relation: Relation) -> Relation:
-    """Return a chain without what stands between its first member and the last that equals it."""
+    """Return a chain without the members between its first and the last equal one."""
     equals = next(
         (place for place, operator in enumerate(relation.operators) if operator != "="), len(relation.operators)
     )
@@ -127,23 +127,23 @@ def _is_transposed(first: Formula, others: Sequence[Formula]) -> bool:
 
 
 def _spells_out(step: Define | Equal) -> bool:
-    """Whether a step says what short names stand for, in which answers are written."""
+    """Return whether a step defines short names of an answer."""
     return step.sentence is not None and step.sentence.key in SPELLS_OUT
 
 
 def _is_seen(step: Step) -> bool:
-    """Whether a step leaves anything on the page."""
+    """Return whether a step prints anything."""
     is_bare_fact = isinstance(step, Conclude) and step.sentence is None
     return not (getattr(step, "silent", False) or is_bare_fact)
 
 
 def _begins(sentence: Sentence | None) -> bool:
-    """Whether a sentence can be read without the one before it."""
+    """Return whether a sentence is complete without the one before it."""
     return sentence is not None and PHRASES[sentence.key][:1].isupper()
 
 
 def _speaks_of_before(step: Step) -> bool:
-    """Whether a step is about what was shown before it: a finding, a condition, or what short names stand for."""
+    """Return whether a step refers to the one before it: a finding, a condition, or a definition of short names."""
     if isinstance(step, Define | Equal):
         return _spells_out(step)
     return getattr(step, "sentence", None) is not None and not isinstance(step, Case)

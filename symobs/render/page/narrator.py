@@ -78,7 +78,7 @@ LABELS: dict[str, str] = {
 
 
 def narrate(document: Document) -> tuple[Block, ...]:
-    """Return the blocks of a document; a derivation with a false line raises before a word is written."""
+    """Return the blocks of a document; raises `DerivationRejected` for a false line, before any output."""
     for derivation in document.derivations:
         derivation.check()
     parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
@@ -101,7 +101,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
 
 
 def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
-    """Return the theorems that the sentences appeal to, numbered in the order of the page."""
+    """Return the theorems cited by the sentences, numbered in the order of the page."""
     keys = dict.fromkeys(
         RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
     )
@@ -117,7 +117,7 @@ def _sources(numbers: Mapping[str, int]) -> list[Block]:
 
 
 def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
-    """Return what is given at the top, and apart from it the statements from the first one on that contradicts it."""
+    """Return the data stated at the top, and the statements from the first contradicting one on."""
     seen: dict[Formula, Relation] = {}
     together: list[Step] = []
     apart: dict[int, list[Step]] = {}
@@ -142,7 +142,7 @@ def _given_relations(step: Step) -> Iterator[Relation]:
 
 
 def _inside(steps: Sequence[Step]) -> set[Step]:
-    """Return the steps of the sections, which later derivations need not repeat, though they be answers only once."""
+    """Return the steps of the sections, which later derivations need not repeat."""
     told = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
     return {*told, *(replace(step, answer=False) for step in told if isinstance(step, (Define, Equal, Where)))}
 
@@ -157,7 +157,7 @@ def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
 
 
 def printer_for(document: Document, kind: type[P]) -> P:
-    """Return a printer of some format for a document's mathematics: variable, symbols, letters, kind of time."""
+    """Return a printer for the mathematics of a document: variable, symbols, letters, time domain."""
     if not document.derivations:
         return kind()
     first = document.derivations[0]
@@ -168,7 +168,7 @@ def printer_for(document: Document, kind: type[P]) -> P:
 
 
 def _letters(document: Document) -> Mapping[str, LetterForm]:
-    """Return the forms of the letters that are not written as usual."""
+    """Return the forms of the letters that differ from the standard."""
     if document.convention.is_standard:
         return {}
     steps = [step for derivation in document.derivations for step in derivation.steps]
@@ -176,7 +176,7 @@ def _letters(document: Document) -> Mapping[str, LetterForm]:
 
 
 class _PageBlocks:
-    """The blocks written so far, and what the next ones depend on."""
+    """The blocks emitted so far, and the state for the next ones."""
 
     def __init__(
         self,
@@ -196,14 +196,14 @@ class _PageBlocks:
         self.numbered = numbered
 
     def tell(self, steps: Sequence[Step]) -> None:
-        """Tell a derivation: what is given first."""
+        """Emit a derivation, the given data first."""
         self.tell_given([step for step in steps if _is_statement(step)])
         for step in steps:
             if not _is_statement(step):
                 self.tell_step(step)
 
     def tell_given(self, statement: Sequence[Step]) -> None:
-        """Tell what is given, as far as it is not on the page already."""
+        """Emit the given data that are not printed yet."""
         news = [new for step in statement for new in self.news(step)]
         if news:
             self.blocks.append(Heading("", (PHRASES["given"],)))
@@ -211,7 +211,7 @@ class _PageBlocks:
                 self.tell_step(step)
 
     def news(self, step: Step) -> Iterator[Step]:
-        """Yield what a step of the statement adds to the page."""
+        """Yield the parts of a step of the statement that are not printed yet."""
         match step:
             case Section(steps=steps):
                 for inner in steps:
@@ -297,7 +297,7 @@ class _PageBlocks:
             self.numbers[-1] -= is_numbered
 
     def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
-        """Yield sections beside each other, each cell written on a page of its own."""
+        """Emit sections in columns."""
         rows: list[tuple[tuple[Block, ...], ...]] = []
         for row in in_rows([column.steps for column in columns]):
             cells = [_PageBlocks(self.convention, given=self.given, numbers=self.theorems) for _ in row]
@@ -309,7 +309,7 @@ class _PageBlocks:
             yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
 
     def tell_survey(self, step: Survey) -> None:
-        """Tell what is found, and the parts of a region one below the other."""
+        """Emit the summary of a region, its parts one below the other."""
         for finding in step.findings:
             self.say(finding)
         self.say(step.sentence)
@@ -317,7 +317,7 @@ class _PageBlocks:
             self.blocks.append(Display(part))
 
     def tell_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
-        """Tell the steps of a case on a page of their own: what is given there is given nowhere else."""
+        """Emit the steps of a case, whose data hold only there."""
         inner = _PageBlocks(self.convention, given=self.given, numbered=False, numbers=self.theorems)
         inner.say(sentence)
         inner.tell(steps)
@@ -327,7 +327,7 @@ class _PageBlocks:
         self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
 
     def say(self, sentence: Sentence | None) -> None:
-        """Add a sentence, to the paragraph before it where there is one."""
+        """Emit a sentence, appended to a paragraph before it."""
         if sentence is None:
             return
         inlines = with_reference(filled(sentence, self.convention), self.theorems.get(RESTS_ON.get(sentence.key, "")))
@@ -338,7 +338,7 @@ class _PageBlocks:
             self.blocks.append(Paragraph(inlines))
 
     def show(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
-        """Add a display, to the display before it where that one goes on; a box ends a display."""
+        """Emit a display, appended to an unfinished display before it; a box ends a display."""
         if not relations:
             return
         if self.blocks and isinstance(last := self.blocks[-1], Display) and not last.boxed:
@@ -348,7 +348,7 @@ class _PageBlocks:
 
 
 def _is_statement(step: Step) -> bool:
-    """Whether a step states the problem: a section titled as given, or data on their own."""
+    """Return whether a step states the problem: a section of given data, or data alone."""
     if isinstance(step, Section):
         return step.title.key == "given"
     return isinstance(step, Given) and not _is_condition(step)
@@ -375,7 +375,7 @@ def _as_sentence(text: str) -> str:
 
 
 def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
-    """Return the blocks with a mark after every display that is not an answer's box.
+    """Return the blocks with punctuation after every display without a box.
 
     A comma where the sentence goes on in small letters after it, else a full stop.
     """

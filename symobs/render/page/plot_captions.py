@@ -1,4 +1,4 @@
-"""What stands below a picture, and which of its curves are drawn."""
+"""Captions of plots, and the choice of the curves drawn."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture
 
 
 def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
-    """Return the sentences below a picture; one that is sketched in characters has neither samples nor dashes."""
+    """Return the caption of a plot; plots in characters have neither samples nor dashes."""
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if picture.drawn_for:
         values = tuple(_equation(name, value) for name, value in picture.drawn_for)
@@ -36,7 +36,7 @@ def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
 
 
 def drawn(picture: RegionPicture) -> tuple[Curve, ...]:
-    """Return the curves that are drawn: the boundaries, and the others where they are few."""
+    """Return the curves to draw: the boundaries, and the others if they are few."""
     others = {curve.equation for curve in picture.curves if not curve.boundary}
     return tuple(curve for curve in picture.curves if curve.boundary or len(others) <= _MOST_DIVIDERS)
 
@@ -98,7 +98,7 @@ def _beginning(name: str, start: Sequence[Fraction]) -> Relation:
 
 
 def radius_of(picture: PoleMap) -> Fraction:
-    """Return the radius of the disc in which poles are stable."""
+    """Return the radius of the disc of stable poles."""
     return Fraction(1) if picture.radius is None else picture.radius
 
 
@@ -117,7 +117,7 @@ def _length(picture: LinePicture) -> str:
 
 
 def _kinds(kinds: Iterator[str]) -> list[str]:
-    """Return what explains the kinds of marks that occur."""
+    """Return the explanation of the marks that occur."""
     found = set(kinds)
     samples = ["samples"] if {"stable", "unstable"} <= found else sorted(found - {"excluded"})
     return [*samples, *(found & {"excluded"})]

@@ -1,4 +1,4 @@
-"""Sentences: phrases with their slots filled, and the names between dollar signs in them made mathematics.
+"""Sentences: phrases with filled slots, and mathematics for names between dollar signs.
 
 `$A - L C$` in a phrase is a formula in the letters of `notation`, so that it is printed as everywhere else: sums of
 products of letters, `ᵀ` behind a letter, `=` between two of them.  It names things and claims nothing.
@@ -65,7 +65,7 @@ def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
 
 
 def with_reference(inlines: Inlines, number: int | None) -> Inlines:
-    """Return a sentence with the number of what it rests on: where its phrase says so, else before its last mark."""
+    """Return a sentence with the number of its theorem, in its slot or before the final punctuation."""
     if any(isinstance(part, str) and MARK in part for part in inlines):
         shown = "" if number is None else f"\N{NO-BREAK SPACE}[{number}]"
         return tuple(part.replace(MARK, shown) if isinstance(part, str) else part for part in inlines)
@@ -79,7 +79,7 @@ def with_reference(inlines: Inlines, number: int | None) -> Inlines:
 
 
 def joined(inlines: Iterable[Inline]) -> Inlines:
-    """Return the same inlines, neighbouring texts made one and empty ones left out."""
+    """Return the inlines with adjacent texts joined and empty ones omitted."""
     result: list[Inline] = []
     for inline in inlines:
         if isinstance(inline, str) and result and isinstance(before := result[-1], str):
@@ -90,7 +90,7 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
 
 
 def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
-    """Yield what stands in a slot: of a property its subject, of a region its inequalities."""
+    """Yield the content of a slot: of a property its subject, of a region its inequalities."""
     match slot:
         case Predicate(subject=subject):
             yield subject
@@ -108,14 +108,14 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
 
 
 def _pair(first: str, second: str, convention: Convention) -> str:
-    """Return a pair of matrices in the brackets of a convention, which stand for themselves in a phrase."""
+    """Return a pair of matrices in the brackets of a convention."""
     opening, closing = (f"{bracket}{bracket}" if bracket in "{}" else bracket for bracket in convention.brackets)
     members = (second, first) if convention.state_first and first in _OUTPUTS else (first, second)
     return f"{opening}{', '.join(members)}{closing}"
 
 
 def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
-    """Return the letter alone where a convention writes both sides of an equation alike."""
+    """Return the letter alone if both sides of an equation are printed alike in a convention."""
     names = [member.name if isinstance(member, Letter) else "" for member in relation.members]
     written = {letters.get(name, LETTERS[name].text) if name in LETTERS else "" for name in names}
     return relation.members[-1] if len(written) == 1 and "" not in written else relation

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
-    """Return what stands beside each row of a table: nothing, or what was put in place of zeros, in full and shorter."""
+    """Return the remarks beside each row of an array: none, or the replacement of zeros, in full and shorter."""
     found: list[tuple[Inlines, ...]] = []
     for row in table.rows:
         if row.origin == "epsilon":

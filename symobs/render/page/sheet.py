@@ -1,4 +1,4 @@
-"""A sheet of several problems, as a format receives it: every part is rendered already, in a manner of its own.
+"""A sheet of several problems, with every part already rendered.
 
 A format that has sheets offers two functions besides `render`: `part(document)` returns whatever it will want of one
 question or solution, and `sheet(sheet)` returns the whole.  Parts are made one by one, so one that fails loses no other.
@@ -19,7 +19,7 @@ WITHOUT_CONTENTS = 6
 
 @dataclass(frozen=True)
 class SheetEntry:
-    """One problem of a sheet; a part that could not be made is None where the sheet has such parts."""
+    """One problem of a sheet; a part that failed is None."""
 
     number: int
     file: str
@@ -32,7 +32,7 @@ class SheetEntry:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Problems under one title: all questions first, then all solutions, as far as it has either."""
+    """Problems under one title: first all questions, then all solutions."""
 
     title: str
     entries: tuple[SheetEntry, ...]
@@ -42,11 +42,11 @@ class Sheet:
 
     @property
     def is_long(self) -> bool:
-        """Whether it needs a table of contents."""
+        """Whether the sheet has a table of contents."""
         return len(self.entries) > WITHOUT_CONTENTS
 
     def chapters(self) -> tuple[tuple[str, tuple[tuple[SheetEntry, Any], ...]], ...]:
-        """Return its chapters, `questions` and `solutions`, each with its entries and their parts."""
+        """Return the chapters, `questions` and `solutions`, each with its entries and their parts."""
         asked = ("questions", tuple((entry, entry.question) for entry in self.entries))
         solved = ("solutions", tuple((entry, entry.solution) for entry in self.entries))
         return (*((asked,) if self.has_questions else ()), *((solved,) if self.has_solutions else ()))

@@ -1,4 +1,4 @@
-"""Blocks side by side: which steps make a row, and how lines of characters stand beside each other."""
+"""Sections in columns: the rows of their steps."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]]:
-    """Return runs of steps row by row: a step whose sentence goes on with nothing begins a row."""
+    """Return runs of steps row by row; a step with a complete sentence begins a row."""
     cut: list[list[tuple[Step, ...]]] = []
     for run in runs:
         rows: list[tuple[Step, ...]] = []
@@ -29,12 +29,12 @@ def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]
 
 
 def is_beside(step: Step) -> TypeGuard[Section]:
-    """Whether a step is a section whose sections stand side by side."""
+    """Return whether a step is a section with its sections in columns."""
     return isinstance(step, Section) and step.title.key in BESIDE
 
 
 def row_by_row(section: Section) -> list[Step]:
-    """Return the steps of such a section as they are read: row by row, and then what stands below the columns."""
+    """Return the steps of such a section in reading order: row by row, then those below the columns."""
     columns = [step for step in section.steps if isinstance(step, Section)]
     cells = [step for row in in_rows([column.steps for column in columns]) for cell in row for step in cell]
     return [*cells, *(step for step in section.steps if step not in columns)]

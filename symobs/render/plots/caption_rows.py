@@ -1,4 +1,4 @@
-"""Captions inside pictures that stand alone: running text broken into rows of words."""
+"""Captions inside plot files: running text broken into rows of words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NARROWEST = 250.0
 def words_of(
     inlines: Inlines, plain: Callable[[str], Piece], mathematics: Callable[[Formula | Relation], list[Piece]]
 ) -> list[list[Piece]]:
-    """Return running text as words, each made of pieces that stay together; long mathematics is several words."""
+    """Return running text as words of inseparable pieces; long mathematics is several words."""
     words: list[list[Piece]] = [[]]
     for inline in inlines:
         if isinstance(inline, Roots):
@@ -43,7 +43,7 @@ def words_of(
 def rows_of(
     words: Sequence[list[Piece]], width: Callable[[Piece], float], space: float, room: float
 ) -> list[list[list[Piece]]]:
-    """Return the words in rows that are no wider than there is room."""
+    """Return the words in rows of limited width."""
     rows: list[list[list[Piece]]] = []
     filled = 0.0
     for word in words:

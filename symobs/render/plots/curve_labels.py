@@ -1,4 +1,4 @@
-"""Where the equations of curves are written: beside the curve, inside the frame, over nothing else."""
+"""Placement of the equations of curves: beside the curve, inside the frame, without overlap."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a label respects: frame, lines it must not cross, boxes taken, and lines and areas that it rather avoids."""
+    """Constraints of a label: frame, lines not to cross, occupied boxes, and lines and areas to avoid."""
 
     frame: Rectangle
     lines: Lines
@@ -43,7 +43,7 @@ class Surroundings:
 def labelled(
     curves: Mapping[Name, Lines], around: Surroundings, measure: Measure
 ) -> tuple[list[TextLabel], list[Name]]:
-    """Return the equations beside their curves, and those that found no place: these stand there as numbers.
+    """Return the equations placed beside their curves, and those without a place, labelled by numbers.
 
     The longest is placed first, and numbers last.  A number may stand over a sample if need be, or over anything.
     """
@@ -65,13 +65,13 @@ def labelled(
 
 
 def _beside(around: Surroundings, written: Sequence[TextLabel], measure: Measure) -> Surroundings:
-    """Return surroundings in which some texts have their places."""
+    """Return the constraints with some texts placed."""
     boxes = (text.box(measure(text.content)).grown(_CLEAR) for text in written)
     return replace(around, taken=(*around.taken, *boxes))
 
 
 def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure) -> TextLabel | None:
-    """Return a label where it is farthest from everything that is not its own."""
+    """Return a label at the place farthest from everything else."""
     (width, height), taken = measure(content), around.taken
     own = set(lines)
     others = [place for line in around.lines if line not in own for place in _places(line)]
@@ -98,7 +98,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
 
 
 def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, float]]:
-    """Yield middles of labels on both sides of every place along lines, and how far that is from the middle (0 to 1)."""
+    """Yield centres of labels on both sides of lines, with their distance from the middle of the line (0 to 1)."""
     for line in lines:
         length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(line))
         for (x, y), (dx, dy), along in walk(line, _STEP):
@@ -109,7 +109,7 @@ def _trials(lines: Lines, width: float, height: float) -> Iterator[tuple[Point, 
 
 
 def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, float]]:
-    """Yield places along a line at equal distances, with the direction there and the way that was gone."""
+    """Yield equidistant places along a line, with direction and arc length."""
     gone, due = 0.0, step / 2
     for a, b in pairwise(line):
         length = hypot(b[0] - a[0], b[1] - a[1])
@@ -122,7 +122,7 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
 
 
 def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float, Sequence[Point]]]:
-    """Yield a line in pieces of some segments, each behind the sides (left, bottom, right, top) of what holds it."""
+    """Yield a line in pieces of some segments, each after its bounding box (left, bottom, right, top)."""
     for first in range(0, len(line) - 1, _SEGMENTS):
         points = line[first : first + _SEGMENTS + 1]
         xs, ys = zip(*points, strict=True)
@@ -130,7 +130,7 @@ def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float,
 
 
 def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
-    """Whether one of the pieces of lines meets a box."""
+    """Return whether one of the pieces intersects a box."""
     left, bottom, right, top = box.left, box.bottom, box.right, box.top
     for piece_left, piece_bottom, piece_right, piece_top, points in pieces:
         is_aside = piece_left > right or left > piece_right or piece_bottom > top or bottom > piece_top
@@ -140,17 +140,17 @@ def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, floa
 
 
 def _crosses(line: Sequence[Point], box: Rectangle) -> bool:
-    """Whether a line meets a box."""
+    """Return whether a line intersects a box."""
     return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
 
 def _places(line: Sequence[Point]) -> list[Point]:
-    """Return the places along a line from which distances are taken."""
+    """Return the places along a line used for distances."""
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
 def _distance(box: Rectangle, places: Iterable[Point], enough: float) -> float:
-    """Return how far places keep from a box, up to _FAR; no further is looked once that is not more than enough."""
+    """Return the distance of places from a box, up to _FAR, or any value below `enough`."""
     left, right, bottom, top = box.left, box.right, box.bottom, box.top
     nearest = _FAR
     for x, y in places:
@@ -172,7 +172,7 @@ def _apart(box: Rectangle, other: Rectangle) -> float:
 
 
 def contains(area: Sequence[Point], place: Point) -> bool:
-    """Whether a place lies in a polygon."""
+    """Return whether a place lies in a polygon."""
     x, y = place
     crossings = 0
     for (x0, y0), (x1, y1) in zip(area, [*area[1:], *area[:1]], strict=True):

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, for PNG and PDF: the same scene, with mathematics set by matplotlib's own TeX."""
+"""Plots by matplotlib, for PNG and PDF, with mathematics by matplotlib's own TeX."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _METADATA: dict[str, dict[str, Any]] = {
 
 
 def require_matplotlib() -> None:
-    """Raise `UsageError` where matplotlib is missing."""
+    """Raise `UsageError` if matplotlib is missing."""
     try:
         import matplotlib.figure  # noqa: F401
     except ImportError:
@@ -45,7 +45,7 @@ def require_matplotlib() -> None:
 
 
 def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
-    """Return a picture with its caption as `png` or `pdf`."""
+    """Return a plot with its caption as `png` or `pdf`."""
     require_matplotlib()
     from matplotlib.figure import Figure
 
@@ -69,7 +69,7 @@ def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: 
 
 
 def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
-    """Return what writes mathematics for matplotlib: LaTeX where its TeX understands that, else plain text."""
+    """Return the writer of mathematics for matplotlib: LaTeX if its TeX supports it, else plain text."""
     from matplotlib.mathtext import MathTextParser
 
     parser: Any = MathTextParser("path")
@@ -89,7 +89,7 @@ def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
 
 @lru_cache(maxsize=1024)
 def _size(written: str) -> tuple[float, float]:
-    """Return how wide and high matplotlib writes."""
+    """Return the width and height of a text in matplotlib."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextPath
 
@@ -99,7 +99,7 @@ def _size(written: str) -> tuple[float, float]:
 
 
 def _caption(picture: Picture, scene: Scene, write: Callable[[Content], str], room: float) -> list[list[list[str]]]:
-    """Return the rows of the caption; mathematics that is too long for its row is broken after its signs."""
+    """Return the rows of the caption; mathematics too long for its row is broken after its signs."""
 
     def mathematics(content: Formula | Relation) -> list[str]:
         whole = write(content)
@@ -110,7 +110,7 @@ def _caption(picture: Picture, scene: Scene, write: Callable[[Content], str], ro
 
 
 def _broken(written: str) -> list[str]:
-    """Return mathematics in parts that end with a sign, none inside parentheses or braces."""
+    """Return mathematics in parts ending with a sign outside parentheses and braces."""
     parts, depth = [""], 0
     for place, character in enumerate(written[1:-1]):
         depth += (character in "({") - (character in ")}")
@@ -121,7 +121,7 @@ def _broken(written: str) -> list[str]:
 
 
 def _joined(row: list[list[str]]) -> str:
-    """Return a row as one text, parts of one formula that follow one another put together again."""
+    """Return a row as one text, consecutive parts of a formula joined."""
     return " ".join("".join(word) for word in row).replace("$ $", "")
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def numbered(equations: Sequence[Formula | Relation]) -> Inlines:
-    """Return the list of the equations of curves that carry numbers in the picture."""
+    """Return the list of the equations of curves labelled by numbers."""
     if len(equations) == 1:
         return filled(caption_sentence("curve", curve=equations[0]))
     words: list[Inline] = [PHRASES["picture_curves"]]

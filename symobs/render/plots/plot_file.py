@@ -1,4 +1,4 @@
-"""Files with the picture of a result: SVG and TikZ by ourselves, PNG and PDF by matplotlib."""
+"""Plot files of results: SVG and TikZ, and PNG and PDF by matplotlib."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _BY_MATPLOTLIB = {".png": "png", ".pdf": "pdf"}
 
 
 def check_target(path: str) -> None:
-    """Raise `UsageError` for a file that no picture can be written to, before anything is computed for it."""
+    """Raise `UsageError`, before any computation, for a file to which no plot can be written."""
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
         message = f"the suffix {suffix[:20]!r} names no format of pictures" if suffix else "a picture needs a suffix"
@@ -37,7 +37,7 @@ def check_target(path: str) -> None:
 
 
 def picture_file(results: Sequence[Result], path: str) -> bytes:
-    """Return the picture of the first result that has one, in the format that the suffix of `path` names."""
+    """Return the plot of the first result with one, in the format of the suffix of `path`."""
     check_target(path)
     result = next((result for result in results if result.picture is not None), None)
     if result is None or result.picture is None:
@@ -62,7 +62,7 @@ def _written(picture: Picture, result: Result, suffix: str) -> bytes:
 
 
 def _require_checked(picture: Picture, result: Result) -> None:
-    """Raise `DerivationRejected` unless the result's checked page shows this picture: no other was held to be true."""
+    """Raise `DerivationRejected` unless the plot is one of the result's checked page."""
     result.derivation.check()
     if picture not in set(_shown(result.derivation.steps)):
         raise DerivationRejected("the page shows another picture", repair="please report this: it is a bug of symobs")

@@ -1,4 +1,4 @@
-"""From pictures to scenes: frames, ticks, and everything in its place."""
+"""Layout of plots: frames, ticks and labels."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
 def scene_of(picture: Picture, measure: Measure) -> Scene:
-    """Return what a picture comes to on paper; `measure` says how large a format writes."""
+    """Return the scene of a plot on paper; `measure` gives the size of text in a format."""
     match picture:
         case RegionPicture():
             return _region(picture, measure)
@@ -63,7 +63,7 @@ def scene_of(picture: Picture, measure: Measure) -> Scene:
 
 @dataclass(frozen=True)
 class _Frame:
-    """A window of the plane and the rectangle on paper that shows it."""
+    """A window of the plane and its rectangle on paper."""
 
     horizontal: tuple[float, float]
     vertical: tuple[float, float]
@@ -80,11 +80,11 @@ class _Frame:
         return (float(x) - left) / (right - left) * self.width, (float(y) - bottom) / (top - bottom) * self.height
 
     def lines(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
-        """Return the parts of a line in the plane that the frame shows."""
+        """Return the parts of a line in the plane inside the frame."""
         return [thinned(run) for run in clipped([self.at(x, y) for x, y in places], self.box)]
 
     def areas(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
-        """Return the part of a polygon that the frame shows."""
+        """Return the part of a polygon inside the frame."""
         area = clipped_area([self.at(x, y) for x, y in places], self.box)
         return [thinned((*area, area[0]))[:-1]] if area else []
 
@@ -119,7 +119,7 @@ def _region(picture: RegionPicture, measure: Measure) -> Scene:
 
 
 def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tuple[Point, Point]]:
-    """Return what is left of a line that goes right or up outside boxes."""
+    """Return the parts of a horizontal or vertical line outside boxes."""
     pieces = [line]
     for box in boxes:
         crossed = [(piece, segment_in(*piece, box)) for piece in pieces]
@@ -130,7 +130,7 @@ def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tupl
 
 
 def _frame_of(window: tuple[Interval, Interval]) -> _Frame:
-    """Return the frame of a window: equal scales where that makes no strip of it."""
+    """Return the frame of a window, with equal scales unless that makes it a strip."""
     horizontal, vertical = map(_decimal, window)
     ratio = (horizontal[1] - horizontal[0]) / (vertical[1] - vertical[0])
     if not 1 / _EQUAL_UP_TO <= ratio <= _EQUAL_UP_TO:
@@ -165,12 +165,12 @@ def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[
 
 
 def _fitting(height: float, measure: Measure) -> int:
-    """Return how many ticks find room above one another."""
+    """Return the number of ticks with room above one another."""
     return max(2, min(_TICKS, int(height / (2 * measure("0")[1]))))
 
 
 def _zero_lines(frame: _Frame) -> Iterator[tuple[Point, Point]]:
-    """Yield the lines through zero, where they are inside."""
+    """Yield the lines through zero inside the frame."""
     x, y = frame.at(0, 0)
     if 0 < x < frame.width:
         yield (x, 0), (x, frame.height)
@@ -179,7 +179,7 @@ def _zero_lines(frame: _Frame) -> Iterator[tuple[Point, Point]]:
 
 
 def ticks(low: float, high: float, most: int = _TICKS) -> list[tuple[float, str]]:
-    """Return about `most` round numbers of an interval and how they are written."""
+    """Return about `most` round numbers of an interval with their texts."""
     raw = (high - low) / most
     power = 10.0 ** floor(log10(raw))
     step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= raw * (1 - 1e-9))
@@ -192,7 +192,7 @@ def ticks(low: float, high: float, most: int = _TICKS) -> list[tuple[float, str]
 
 
 def _line(picture: LinePicture, measure: Measure) -> Scene:
-    """A line with thick pieces; labels of ends that would overlap stand on further rows."""
+    """Return a line with thick pieces; labels of ends that would overlap stand on further rows."""
     low, high = _decimal(picture.window)
     frame = _Frame((low, high), (0.0, 1.0), _LINE, 1.0)
 
@@ -221,7 +221,7 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
 
 
 def _label(end: End, measure: Measure) -> Content:
-    """Return what is written at an end: a decimal number where the exact one is too long for the picture."""
+    """Return the label of an end: the exact number, or a decimal if that is too long."""
     if isinstance(end.label, str):
         return end.label
     exact = Literal(end.label)
@@ -229,7 +229,7 @@ def _label(end: End, measure: Measure) -> Content:
 
 
 def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[TextLabel]:
-    """Yield the labels of ends below the line, each on the first row where it is clear of the others."""
+    """Yield the labels of ends below the line, each on the first row without overlap."""
     rows: list[float] = []
     row_height = measure("0")[1] + 2.0
     for x, content in sorted(ends.items(), key=lambda item: item[0]):
@@ -243,7 +243,7 @@ def _rows(ends: dict[float, Content], measure: Measure) -> Iterator[TextLabel]:
 
 
 def _poles(picture: PoleMap, measure: Measure) -> Scene:
-    """The plane of poles with equal scales, the stable part shaded, arrows on the paths."""
+    """Return the plane of poles with equal scales, the stable part shaded, arrows on the paths."""
     frame = _square_frame(picture.window)
     (left, _), (bottom, top) = frame.horizontal, frame.vertical
     if picture.discrete:
@@ -272,7 +272,7 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
 
 
 def _responses(picture: TimeResponse, measure: Measure) -> Scene:
-    """Signals over time, each with its name beside it."""
+    """Return signals over time, each with its name beside it."""
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
@@ -299,7 +299,7 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
 
 
 def _square_frame(window: tuple[Interval, Interval]) -> _Frame:
-    """Return a frame with equal scales; a strip is given more room on both sides."""
+    """Return a frame with equal scales, a strip widened on both sides."""
     horizontal, vertical = map(_decimal, window)
     scale = min(WIDEST / (horizontal[1] - horizontal[0]), HIGHEST / (vertical[1] - vertical[0]))
     horizontal, vertical = (_widened(interval, _SMALLEST_SIDE / scale) for interval in (horizontal, vertical))
@@ -314,7 +314,7 @@ def _widened(interval: tuple[float, float], least: float) -> tuple[float, float]
 
 
 def _arrows(run: Sequence[Point]) -> Iterator[Sign]:
-    """Yield heads in the middle of a path, or at its thirds where it is long."""
+    """Yield arrow heads in the middle of a path, or at the thirds of a long one."""
     length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(run))
     if length < 4 * RADIUS["ring"]:
         return

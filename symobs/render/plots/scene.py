@@ -1,4 +1,4 @@
-"""Scenes: what a picture comes to on paper, in points, before TikZ, SVG or matplotlib write it down.
+"""Scenes: plots on paper, in points, for the writers of TikZ, SVG and matplotlib.
 
 The origin is the lower left corner of the frame, y grows upwards.  Everything is clipped to the frame already, and
 every text has its place: a format only writes down.
@@ -39,13 +39,13 @@ class Rectangle:
         return Rectangle(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def meets(self, other: Rectangle) -> bool:
-        """Whether two rectangles overlap."""
+        """Return whether two rectangles overlap."""
         return (
             self.left < other.right and other.left < self.right and self.bottom < other.top and other.bottom < self.top
         )
 
     def holds(self, other: Rectangle) -> bool:
-        """Whether another rectangle lies inside."""
+        """Return whether another rectangle lies inside this one."""
         return (
             self.left <= other.left
             and other.right <= self.right
@@ -61,14 +61,14 @@ class Rectangle:
 
 @dataclass(frozen=True)
 class TextLabel:
-    """Something written: the `anchor` of its box (center, north, south, east or west) lies at `place`."""
+    """A label with the `anchor` of its box (center, north, south, east or west) at `place`."""
 
     content: Content
     place: Point
     anchor: str = "center"
 
     def box(self, size: tuple[float, float]) -> Rectangle:
-        """Return the rectangle that it takes up."""
+        """Return the rectangle of the label."""
         (x, y), (width, height) = self.place, size
         left = {"west": x, "east": x - width}.get(self.anchor, x - width / 2)
         bottom = {"south": y, "north": y - height}.get(self.anchor, y - height / 2)
@@ -94,7 +94,7 @@ class Sign:
 
 @dataclass(frozen=True)
 class Style:
-    """How a line is drawn: its width, whether in the colour of the ink or of text (or `pale`), and its dashes."""
+    """The style of a line: its width, its colour (ink, text or `pale`), and its dashes."""
 
     width: float
     colour: str
@@ -117,7 +117,7 @@ ARROW = 5.0
 
 @dataclass(frozen=True)
 class Scene:
-    """A picture on paper; `numbered` are the equations of curves that carry numbers."""
+    """A plot on paper; `numbered` are the equations of curves labelled by numbers."""
 
     frame: Rectangle
     whole: Rectangle
@@ -129,7 +129,7 @@ class Scene:
 
 
 def coordinate(value: float) -> str:
-    """Return a length with as many digits as can be seen."""
+    """Return a length with the significant digits."""
     return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
 
 
@@ -142,7 +142,7 @@ def arrow_head(sign: Sign) -> tuple[Point, Point, Point]:
 
 
 def whole_of(strokes: Iterable[Stroke], texts: Iterable[TextLabel], measure: Measure, margin: float = 3.0) -> Rectangle:
-    """Return the rectangle that everything fits into."""
+    """Return the bounding rectangle."""
     corners = [point for stroke in strokes for point in stroke.points]
     for text in texts:
         box = text.box(measure(text.content))
@@ -177,7 +177,7 @@ def clipped(points: Sequence[Point], frame: Rectangle) -> Iterator[tuple[Point, 
 
 
 def chained(lines: Sequence[tuple[Point, ...]], near: float = 0.2) -> list[tuple[Point, ...]]:
-    """Return the same lines, those that go on from one another joined."""
+    """Return the lines, consecutive ones joined."""
     left = [line for line in lines if len(line) > 1]
     joined: list[tuple[Point, ...]] = []
     while left:
@@ -192,7 +192,7 @@ def chained(lines: Sequence[tuple[Point, ...]], near: float = 0.2) -> list[tuple
 def _next(
     line: tuple[Point, ...], others: Sequence[tuple[Point, ...]], near: float
 ) -> tuple[int, tuple[Point, ...]] | None:
-    """Return which other line goes on from this one, and both as one."""
+    """Return the line that continues this one, and both joined."""
     for index, other in enumerate(others):
         for first, second in ((line, other), (other, line), (line, other[::-1]), (other[::-1], line)):
             if hypot(first[-1][0] - second[0][0], first[-1][1] - second[0][1]) <= near:
@@ -201,7 +201,7 @@ def _next(
 
 
 def segment_in(a: Point, b: Point, box: Rectangle) -> tuple[Point, Point] | None:
-    """Return the part of a segment in a rectangle, None where there is none."""
+    """Return the part of a segment in a rectangle, None if there is none."""
     (x0, y0), (x1, y1), left, right, bottom, top = a, b, box.left, box.right, box.bottom, box.top
     if left <= x0 <= right and left <= x1 <= right and bottom <= y0 <= top and bottom <= y1 <= top:
         return a, b
@@ -226,7 +226,7 @@ def segment_in(a: Point, b: Point, box: Rectangle) -> tuple[Point, Point] | None
 
 
 def clipped_area(points: Sequence[Point], frame: Rectangle) -> tuple[Point, ...]:
-    """Return the part of a polygon that lies in a rectangle, side after side cut off; counter-clockwise."""
+    """Return the intersection of a polygon with a rectangle, counter-clockwise."""
     area = list(points)
     for axis, edge, sign in ((0, frame.left, 1), (0, frame.right, -1), (1, frame.bottom, 1), (1, frame.top, -1)):
         area = list(_cut(area, axis, edge, sign))
@@ -237,7 +237,7 @@ def clipped_area(points: Sequence[Point], frame: Rectangle) -> tuple[Point, ...]
 
 
 def _cut(area: Sequence[Point], axis: int, edge: float, sign: int) -> Iterator[Point]:
-    """Yield the corners of what lies on one side of a line parallel to an axis."""
+    """Yield the corners of the part on one side of a line parallel to an axis."""
     for a, b in zip(area, [*area[1:], *area[:1]], strict=True):
         before, after = sign * (a[axis] - edge), sign * (b[axis] - edge)
         if before >= 0:
@@ -248,7 +248,7 @@ def _cut(area: Sequence[Point], axis: int, edge: float, sign: int) -> Iterator[P
 
 
 def thinned(points: Sequence[Point], tolerance: float = 0.04) -> tuple[Point, ...]:
-    """Return a line through fewer of its points that nobody can tell from it (Douglas and Peucker)."""
+    """Return a line through fewer of its points, visually equal (Douglas and Peucker)."""
     kept = {0, len(points) - 1}
     spans = [(0, len(points) - 1)]
     while spans:
@@ -261,7 +261,7 @@ def thinned(points: Sequence[Point], tolerance: float = 0.04) -> tuple[Point, ..
 
 
 def _farthest(points: Sequence[Point], first: int, last: int) -> tuple[float, int]:
-    """Return the square of the largest distance from the segment between two points of a line, and where that is."""
+    """Return the squared largest distance from the chord between two points of a line, and its index."""
     (x0, y0), (x1, y1) = points[first], points[last]
     ux, uy = x1 - x0, y1 - y0
     length = ux * ux + uy * uy

@@ -1,4 +1,4 @@
-"""Pictures as SVG: one element that needs nothing from outside, for a page or for a file of its own.
+"""Plots as SVG: one self-contained element, for a page or a file.
 
 Text is real text in the colour of the page around it.  A page may set `--symobs-ink` (curves and shade) and
 `--symobs-paper` (the inside of open circles); without them a blue is used that can be read on white and on black, and
@@ -40,17 +40,17 @@ _OWN_FILE = "svg{color-scheme:light dark;color:CanvasText}"
 
 
 def svg_scene(picture: Picture, printer: TextPrinter) -> Scene:
-    """Return a picture's scene as SVG writes it."""
+    """Return the scene of a plot in the measures of SVG."""
     return scene_of(picture, measure_for(printer))
 
 
 def svg(scene: Scene, printer: TextPrinter, title: str = "") -> str:
-    """Return a scene as an `svg` element to stand in a page; `title` is for who cannot see it."""
+    """Return a scene as an `svg` element of a page; `title` is its text alternative."""
     return _element(scene.whole, _drawn(scene, printer), title, _STYLE)
 
 
 def svg_file(picture: Picture, printer: TextPrinter) -> str:
-    """Return a picture with its caption as a file of its own."""
+    """Return a plot with its caption as an SVG file."""
     scene = svg_scene(picture, printer)
     words = below(caption(picture), scene)
     lines = _caption_rows(words, scene.whole, printer)
@@ -66,7 +66,7 @@ def svg_file(picture: Picture, printer: TextPrinter) -> str:
 
 
 def measure_for(printer: TextPrinter) -> Measure:
-    """Return how wide and high text in a picture is, guessed generously: the reader's fonts are not known."""
+    """Return a generous estimate of the width and height of text in a plot, for unknown fonts."""
 
     def measure(content: Content) -> tuple[float, float]:
         return _width([_piece(content, printer)]), 1.15 * FONT_SIZE
@@ -122,7 +122,7 @@ def _stroke(stroke: Stroke) -> str:
 
 
 def _arrow(stroke: Stroke) -> str:
-    """The head of an axis."""
+    """Return the head of an axis."""
     (x0, y0), (x1, y1) = stroke.points[-2:]
     head = arrow_head(Sign("arrow", (x1, y1), (x1 - x0, y1 - y0)))
     return f'<path fill="currentColor" d="{_path(head)}Z"/>'
@@ -154,7 +154,7 @@ def _path(points: Iterable[Point]) -> str:
 
 
 def _written(place: Point, anchor: str, pieces: Iterable[TextRun]) -> str:
-    """A text at its baseline."""
+    """Return a text at its baseline."""
     x, y = coordinate(place[0]), coordinate(0.3 * FONT_SIZE - place[1])
     return f'<text x="{x}" y="{y}" text-anchor="{anchor}" fill="currentColor">{spans(pieces, FONT_SIZE)}</text>'
 
@@ -164,7 +164,7 @@ def _width(pieces: Iterable[TextRun]) -> float:
 
 
 def _caption_rows(words: Inlines, whole: Rectangle, printer: TextPrinter) -> list[list[TextRun]]:
-    """Return the caption in rows as wide as the picture, or a little wider."""
+    """Return the caption in rows of about the width of the plot."""
     room = max(whole.right - whole.left, NARROWEST)
     space = TextRun(" ", False)  # noqa: FBT003
 

@@ -37,7 +37,7 @@ class TextRun(NamedTuple):
 
 
 def width_of(pieces: Iterable[TextRun], size: float) -> float:
-    """Return how wide text is, guessed generously: the reader's fonts are not known.  Accents stand on their letters."""
+    """Return a generous estimate of the width of text, for unknown fonts; accents have no width."""
     return size * sum(
         (_SCRIPT if level else 1.0) * _SPECIAL_WIDTHS.get(character, 0.56)
         for piece in pieces
@@ -47,7 +47,7 @@ def width_of(pieces: Iterable[TextRun], size: float) -> float:
 
 
 def spans(pieces: Iterable[TextRun], size: float) -> str:
-    """Return the inside of a text element; scripts are lowered or raised and the rest of the line put back."""
+    """Return the content of a text element, with sub- and superscripts shifted."""
     written: list[str] = []
     before = 0.0
     every = (character for piece in pieces for character in _characters(piece))

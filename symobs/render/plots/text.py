@@ -1,4 +1,4 @@
-"""Pictures for terminals: a region in characters, a line with its thick pieces, the plane of poles."""
+"""Plots for terminals: regions, intervals and pole maps in characters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SEAM = 1 / 800
 
 
 def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
-    """Return a picture in the characters of a terminal, at most `width` columns wide where that can be."""
+    """Return a plot in characters of a terminal, if possible at most `width` columns wide."""
     match picture:
         case RegionPicture():
             return _region(picture, printer)
@@ -45,7 +45,7 @@ def character_plot(picture: Picture, printer: TextPrinter, width: int) -> str:
 
 
 def _region(picture: RegionPicture, printer: TextPrinter) -> str:
-    """`#` where it is stable, `.` elsewhere."""
+    """Return the grid of a region: `#` where stable, `.` elsewhere."""
     areas = [[(float(x), float(y)) for x, y in area] for area in picture.areas]
 
     curves = [[(float(x), float(y)) for x, y in curve.points] for curve in picture.curves]
@@ -78,7 +78,7 @@ def _crosses(line: Sequence[Point], a: Point, b: Point) -> bool:
 
 
 def _poles(picture: PoleMap, printer: TextPrinter) -> str:
-    """`*` along the paths, `x` where they begin, `o` where they end, `:` where poles are stable."""
+    """Return the grid of a pole map: `*` for paths, `x` and `o` for begin and end, `:` where poles are stable."""
     edge = float(picture.margin or 0)
 
     def character(x: float, y: float) -> str:
@@ -96,7 +96,7 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
 
 
 def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
-    """A character for each response, which the line above explains."""
+    """Return the grid of responses, a character for each with a legend above."""
     grid = _grid(picture.window, lambda _x, _y: " ")
     zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
     if picture.window[1][0] < 0 < picture.window[1][1]:
@@ -110,7 +110,7 @@ def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
 
 
 def _grid(window: tuple[Interval, Interval], character: Callable[[float, float], str]) -> list[list[str]]:
-    """Return the character of every cell, asked for at its middle; the top row first."""
+    """Return the character of every cell by its middle, the top row first."""
     (left, right), (bottom, top) = (tuple(map(float, interval)) for interval in window)
     xs = [left + (right - left) * (column + 0.5) / _COLUMNS for column in range(_COLUMNS)]
     ys = [top - (top - bottom) * (row + 0.5) / _ROWS for row in range(_ROWS)]
@@ -150,7 +150,7 @@ def _short(value: Fraction) -> str:
 
 
 def _line(picture: LinePicture, printer: TextPrinter, width: int) -> str:
-    """`━` where it is stable, `○` at the ends, which do not belong to it; labels below, on as many rows as they need."""
+    """Return a line of intervals: `━` where stable, `○` at the excluded ends, with rows of labels below."""
     low, high = picture.window
 
     def column(value: Fraction) -> int:
@@ -173,7 +173,7 @@ def _line(picture: LinePicture, printer: TextPrinter, width: int) -> str:
 
 
 def _rows(labels: dict[int, str], width: int) -> list[str]:
-    """Return the rows of labels, each centred under its place and on the first row that has room for it."""
+    """Return the rows of labels, each centred under its place on the first row with room."""
     rows: list[str] = []
     for place, label in sorted(labels.items()):
         start = min(max(place - len(label) // 2, 0), max(width - len(label), 0))

@@ -1,4 +1,4 @@
-"""Pictures in TikZ: every place is settled by the scene, TikZ only draws."""
+"""Plots in TikZ, with all positions from the scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LINE_HEIGHT, _FRACTION_HEIGHT = 9.0, 16.0
 
 
 def tikz(scene: Scene, printer: LatexPrinter) -> str:
-    """Return a scene as a `tikzpicture`; needs tikz alone."""
+    """Return a scene as a `tikzpicture`; requires tikz only."""
     lines = [
         r"\begin{tikzpicture}[x=1pt,y=1pt,>=stealth,line join=round,every node/.style={inner sep=0pt,font=\footnotesize}]",
         r"\providecolor{ink}{RGB}{30,60,110}",
@@ -41,13 +41,13 @@ def tikz(scene: Scene, printer: LatexPrinter) -> str:
 
 
 def figure(scene: Scene, words: str, printer: LatexPrinter) -> str:
-    """Return a scene in the middle of the page with the text below it, which stay on one page."""
+    """Return a centred scene with the text below it, on one page."""
     told = f"{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
     return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{told}\\end{{minipage}}")
 
 
 def tikz_file(picture: Picture, printer: LatexPrinter) -> str:
-    r"""Return a picture with its caption to be read into a document by `\input`, or by the class `standalone`."""
+    r"""Return a plot with its caption for `\input` or the class `standalone`."""
     scene = latex_scene(picture, printer)
     place = f"({coordinate(scene.whole.left)},{coordinate(scene.whole.bottom - ABOVE)})"
     room = max(scene.whole.right - scene.whole.left, NARROWEST)
@@ -59,12 +59,12 @@ def tikz_file(picture: Picture, printer: LatexPrinter) -> str:
 
 
 def latex_scene(picture: Picture, printer: LatexPrinter) -> Scene:
-    """Return a picture's scene as LaTeX writes it."""
+    """Return the scene of a plot in the measures of LaTeX."""
     return scene_of(picture, measure_for(printer))
 
 
 def measure_for(printer: LatexPrinter) -> Measure:
-    """Return how wide and high LaTeX writes in a picture."""
+    """Return the width and height of text in a plot in LaTeX."""
 
     def measure(content: Content) -> tuple[float, float]:
         if isinstance(content, str):
@@ -76,7 +76,7 @@ def measure_for(printer: LatexPrinter) -> Measure:
 
 
 def _shades(areas: tuple[tuple[Point, ...], ...]) -> Iterator[str]:
-    """One path for all areas: two that touch show no seam."""
+    """Return one path for all areas, so that adjacent ones show no seam."""
     if areas:
         yield rf"\fill[{_SHADE}] {' '.join(f'{_path(area)}--cycle' for area in areas)};"
 

@@ -1,4 +1,4 @@
-"""Courses over time: where they stand on paper, and how a terminal shows them."""
+"""The axes of responses over time, on paper and on a terminal."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CHARACTERS = "*o+x#@"
 
 
 def name_of(response: Response) -> Formula:
-    """Return what a response is called: the letter of its signal, with the number of its component."""
+    """Return the name of a response: the letter of its signal, with the index of its component."""
     return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
 
 
@@ -32,5 +32,5 @@ def sign_of(response: Response) -> str:
 
 
 def axis_of(picture: TimeResponse) -> str:
-    """Return what time is called."""
+    """Return the name of the time axis."""
     return "k" if picture.discrete else "t"

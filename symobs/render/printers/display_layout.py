@@ -1,4 +1,4 @@
-"""How relations share a display: on one line, packed on several, or aligned at their first sign.
+"""Layout of displays: relations on one line, packed on several, or aligned at their first sign.
 
 The result is rows; a format only writes them down.
 """
@@ -63,7 +63,7 @@ class Layout(Generic[B]):
         return rows, True
 
     def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
-        """The rows of an answer that is inequalities: one frame around all of them where they fit."""
+        """Return the rows of an answer that is inequalities: one frame around all of them where they fit."""
         plain = Layout(self.printer, self.width - self._frame(), boxed=False, end="")
         last = len(relations) - 1
         whole = [plain._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
@@ -86,12 +86,12 @@ class Layout(Generic[B]):
         return printer.joined([*parts, *self._mark(is_last=is_last)], Level.SUM)
 
     def _mark(self, *, is_last: bool) -> list[B]:
-        """The punctuation after a relation; none after a frame."""
+        """Return the punctuation after a relation; none after a frame."""
         mark = ("" if self.boxed else self.end) if is_last else ","
         return [self.printer.punctuation(mark)] if mark else []
 
     def _packed(self, whole: Sequence[B], width: float) -> list[B]:
-        """As many boxes on a line as fit, the others on further lines."""
+        """Return rows, each filled with as many boxes as fit."""
         lines: list[list[B]] = []
         for box in whole:
             longer = [*lines[-1], self.printer.gap(), box] if lines else [box]
@@ -104,7 +104,7 @@ class Layout(Generic[B]):
     # -- aligned --------------------------------------------------------------------------------------------------
 
     def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[DisplayRow[B]]:
-        """The rows of one relation, then those of what it left out."""
+        """Return the rows of one relation, then the definitions of the entries left out."""
         printer, told = self.printer, len(self.breaker.named)
         framed = self.boxed and is_last
         left = printer.typeset(relation.members[0])
@@ -125,14 +125,14 @@ class Layout(Generic[B]):
         return self._told(rows, told, room, is_last=is_last)
 
     def _frame(self) -> float:
-        """The width a frame adds."""
+        """Return the width a frame adds."""
         indent = self.printer.indent()
         return self.printer.framed(indent).width - indent.width
 
     def _links(
         self, links: Sequence[tuple[str, Formula]], room: float, head: B | None, *, framed: bool
     ) -> tuple[list[B], bool]:
-        """= b = c …: as many links on a line as fit, one that fits on none broken; and whether the answer is framed."""
+        """Return the lines of = b = c …, filled link by link, and whether the answer is framed."""
         printer = self.printer
         finished: list[B] = []
         line: list[B] = []
@@ -155,7 +155,7 @@ class Layout(Generic[B]):
         return [*finished, printer.joined(line, Level.SUM)], has_frame
 
     def _broken(self, sign: B, member: Formula, room: float, head: B | None, *, framed: bool) -> list[B]:
-        """The lines of one link; a frame makes one box of them while they are few."""
+        """Return the lines of one link; a frame makes one box of them while they are few."""
         printer, indent = self.printer, self.printer.indent()
         around = printer.framed(printer.stacked([indent])).width if framed else 0.0
         space = room - max(sign.width, indent.width) - around
@@ -167,7 +167,7 @@ class Layout(Generic[B]):
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
     def _told(self, rows: list[DisplayRow[B]], told: int, room: float, *, is_last: bool) -> list[DisplayRow[B]]:
-        """Add what the new names stand for, short ones side by side, and the punctuation."""
+        """Add the definitions of the new names, short ones side by side, and the punctuation."""
         is_framed = self.boxed and is_last
         mark = self.end if is_last else ","
         if told == len(self.breaker.named):
@@ -188,7 +188,7 @@ class Layout(Generic[B]):
         return [*rows[:-1], first, *(DisplayRow(None, line) for line in added)]
 
     def _definition(self, name: B, entry: Formula, room: float) -> list[B]:
-        """The lines of name = entry."""
+        """Return the lines of name = entry."""
         printer, indent = self.printer, self.printer.indent()
         sign = printer.joined([name, printer.comparison("=")], Level.SUM)
         space = room - max(sign.width, indent.width)
@@ -196,7 +196,7 @@ class Layout(Generic[B]):
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
     def _marked(self, row: DisplayRow[B], mark: str) -> DisplayRow[B]:
-        """A row closed by a punctuation mark."""
+        """Return a row with a punctuation mark at its end."""
         if not mark:
             return row
         return replace(row, right=self.printer.joined([row.right, self.printer.punctuation(mark)], Level.SUM))

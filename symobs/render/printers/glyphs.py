@@ -1,4 +1,4 @@
-"""What a format supplies: boxes, and a glyph for everything a formula or a broken line is made of."""
+"""The interface of a format: boxes, and a glyph for every part of a formula or a broken line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Level(IntEnum):
-    """How tightly a box binds; an operand that binds less tightly than its place asks for is parenthesised."""
+    """The precedence of a box; an operand of lower precedence than its place is parenthesised."""
 
     SUM = 0
     PRODUCT = 1
@@ -26,7 +26,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True)
 class GlyphBox:
-    """A printed part; formats add what is written."""
+    """A printed part; formats add its text."""
 
     width: float
     level: Level
@@ -36,7 +36,7 @@ B = TypeVar("B", bound=GlyphBox)
 
 
 class FormulaWriter(ABC, Generic[B]):
-    """The glyphs of one format; boxes go in, a box comes out."""
+    """The writer of formulas of one format: from boxes to a box."""
 
     #: Whether a broken fraction is always (a)/(b), never 1/b before (a).
     slashes: ClassVar[bool] = False
@@ -45,31 +45,31 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def letter(self, name: str, mark: str) -> B:
-        """A letter of the notation; `mark` is empty, `dot`, `k` or `k+1`."""
+        """Return a letter of the notation; `mark` is empty, `dot`, `k` or `k+1`."""
 
     @abstractmethod
     def leaf(self, value: Scalar) -> B:
-        """A whole number or a symbol."""
+        """Return a whole number or a symbol."""
 
     @abstractmethod
     def identity(self) -> B:
-        """The identity matrix."""
+        """Return the identity matrix."""
 
     @abstractmethod
     def empty(self, shape: tuple[int, int]) -> B:
-        """A matrix without entries."""
+        """Return a matrix without entries."""
 
     @abstractmethod
     def sign(self, *, negative: bool, leading: bool) -> B:
-        """Plus or minus: between terms, or (leading) in front."""
+        """Return plus or minus: between terms, or (leading) in front."""
 
     @abstractmethod
     def comparison(self, operator: str) -> B:
-        """The sign of a relation, with its space."""
+        """Return the sign of a relation, with its space."""
 
     @abstractmethod
     def joined(self, parts: Sequence[B], level: Level) -> B:
-        """The parts one after the other."""
+        """Return the parts one after the other."""
 
     @abstractmethod
     def between(self, left: B, right: B) -> B | None:
@@ -77,112 +77,112 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def grouped(self, box: B) -> B:
-        """A box in parentheses."""
+        """Return a box in parentheses."""
 
     @abstractmethod
     def fraction(self, above: B, below: B) -> B:
-        """Above / below."""
+        """Return above / below."""
 
     @abstractmethod
     def raised(self, base: B, exponent: int) -> B:
-        """A power of a base that is already parenthesised where it must be."""
+        """Return a power of an already parenthesised base."""
 
     @abstractmethod
     def transposed(self, base: B) -> B:
-        """The transpose of such a base."""
+        """Return the transpose of such a base."""
 
     @abstractmethod
     def applied(self, function: str, argument: B) -> B:
-        """A function's name before its argument, which is grouped already."""
+        """Return a function's name before its already grouped argument."""
 
     @abstractmethod
     def matrix(self, rows: Sequence[Sequence[B]]) -> B:
-        """A table in brackets."""
+        """Return a table in brackets."""
 
     @abstractmethod
     def rate(self, box: B, name: str = "t") -> B:
-        """d/dt, or d/d(name), of something other than a letter."""
+        """Return d/dt, or d/d(name), of something other than a letter."""
 
     # -- of functions of time ---------------------------------------------------------------------------------------
 
     @abstractmethod
     def exponential(self, argument: Scalar) -> B:
-        """E to the power of an argument."""
+        """Return the exponential of an argument."""
 
     @abstractmethod
     def root(self, argument: B) -> B:
-        """A square root."""
+        """Return a square root."""
 
     @abstractmethod
     def summed(self, over: B, term: B) -> B:
-        """The sum of a term over all that fulfil an equation."""
+        """Return the sum of a term over all that fulfil an equation."""
 
     @abstractmethod
     def named(self, form: str) -> B:
-        """A letter given by its LaTeX."""
+        """Return a letter given by its LaTeX."""
 
     @abstractmethod
     def evaluated(self, box: B, equations: Sequence[B]) -> B:
-        """The value of a function where its times are those of the equations."""
+        """Return the value of a function at the times of the equations."""
 
     @abstractmethod
     def integral(self, limits: tuple[B, B], integrand: B, name: B) -> B:
-        """The integral of what binds at least as a product, over the generator `name`."""
+        """Return the integral, over the generator `name`, of an integrand with the precedence of a product."""
 
     # -- of lines -------------------------------------------------------------------------------------------------
 
     @abstractmethod
     def parentheses(self, content: Sequence[B]) -> tuple[B, B]:
-        """A pair that may stand on different lines, tall enough for the content."""
+        """Return a pair of parentheses for different lines, as tall as the content."""
 
     @abstractmethod
     def brackets(self) -> tuple[B, B]:
-        """The same for a list of entries."""
+        """Return the same for a list of entries."""
 
     @abstractmethod
     def separators(self) -> tuple[B, B]:
-        """Comma and semicolon of such a list."""
+        """Return comma and semicolon of such a list."""
 
     @abstractmethod
     def dot(self) -> B:
-        """The sign of multiplication at the start of a line."""
+        """Return the sign of multiplication at the start of a line."""
 
     @abstractmethod
     def slash(self) -> B:
-        """The sign of division between parentheses."""
+        """Return the sign of division between parentheses."""
 
     @abstractmethod
     def digits(self, run: str) -> B:
-        """A part of a number."""
+        """Return a part of a number."""
 
     @abstractmethod
     def continued(self) -> B:
-        """The sign at the start of a line that a number goes on."""
+        """Return the sign at the start of a line that a number goes on."""
 
     @abstractmethod
     def star(self, number: int) -> B:
-        """The name of something told below."""
+        """Return the name of an entry defined below."""
 
     @abstractmethod
     def entry_of(self, matrix: B, indices: Sequence[int]) -> B:
-        """The name of an entry of a matrix."""
+        """Return the name of an entry of a matrix."""
 
     @abstractmethod
     def indent(self) -> B:
-        """The space before a line that goes on."""
+        """Return the space before a line that goes on."""
 
     @abstractmethod
     def framed(self, box: B) -> B:
-        """The answer, marked."""
+        """Return the answer, marked."""
 
     @abstractmethod
     def stacked(self, lines: Sequence[B]) -> B:
-        """Lines under one another as one box."""
+        """Return lines under one another as one box."""
 
     @abstractmethod
     def punctuation(self, mark: str) -> B:
-        """A comma or full stop after a formula."""
+        """Return a comma or full stop after a formula."""
 
     @abstractmethod
     def gap(self) -> B:
-        """The space between two relations on one line."""
+        """Return the space between two relations on one line."""

@@ -1,4 +1,4 @@
-r"""Text from outside made harmless for TeX: the one function every title, source and word passes through.
+r"""Escaping of external text for TeX: every title, source and word.
 
 Nothing in it is interpreted: `$x^2$` comes out as those five characters.  What the built-in templates (pdfLaTeX,
 UTF-8, no further fonts) cannot show becomes a visible `?`.
@@ -121,20 +121,20 @@ _PIECE = 20
 
 
 def centred(body: str) -> str:
-    """Return LaTeX in the middle of the page; what introduces it is not left behind at the foot of the page before."""
+    """Return centred LaTeX, kept on one page with the line before it."""
     kept = r"\csname @beginparpenalty\endcsname=10000 "
     return f"{{{kept}\\begin{{center}}{body}\\end{{center}}}}"
 
 
 def escape(text: str) -> str:
-    """Return LaTeX that shows the text as it is, on one line; every stretch of white space becomes one space."""
+    """Return the text escaped for LaTeX on one line, white space collapsed."""
     line = unicodedata.normalize("NFC", _WHITE.sub(" ", text))
     quoted = _OPENING_QUOTE.sub("“", line).replace('"', "”")
     return " ".join(_word(word) for word in quoted.split(" "))
 
 
 def _word(word: str) -> str:
-    """Return one word, with places to break where it is very long, and no two characters run into a third."""
+    """Return one word, with break points if very long, and without ligatures."""
     if len(word) <= _LONG_WORD and _AS_IT_IS.fullmatch(word):
         return word
     pieces: list[str] = []
@@ -169,5 +169,5 @@ def _character(character: str) -> str:
 
 
 def _mathematics(character: str) -> str:
-    """Return a letter as mathematics, or nothing where it is none."""
+    """Return a letter as mathematics, or nothing for another character."""
     return character if character.isascii() and character.isalpha() else _MATHEMATICS.get(character, "")

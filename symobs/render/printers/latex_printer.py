@@ -94,7 +94,7 @@ class LatexPrinter(Printer[LatexBox]):
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
     def letter(self, name: str, mark: str) -> LatexBox:
-        r"""A letter; `\dot x`, `x_k`, `x_{k+1}`."""
+        r"""Return a letter; `\dot x`, `x_k`, `x_{k+1}`."""
         source = self.letter_latex(name)
         if mark == "dot":
             stem, below, index = source.partition("_")  # the dot stands on the letter, not on its index
@@ -106,7 +106,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def leaf(self, value: Scalar) -> LatexBox:
-        """A whole number or a symbol."""
+        """Return a whole number or a symbol."""
         if value.is_constant:
             digits = decimal(value.fraction().numerator)
             if self.running and len(digits) > _LONG_NUMBER:
@@ -122,20 +122,20 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(0.5, Level.ATOM, "I")
 
     def empty(self, shape: tuple[int, int]) -> LatexBox:
-        """A zero with its shape."""
+        """Return a zero with its shape."""
         source = rf"0_{{{shape[0]}\times {shape[1]}}}"
         return LatexBox(widths.source_width(source), Level.ATOM, source)
 
     def sign(self, *, negative: bool, leading: bool) -> LatexBox:
-        """Plus or minus."""
+        """Return plus or minus."""
         return LatexBox(widths.SIGN if leading else widths.OPERATOR, Level.SUM, "-" if negative else "+")
 
     def comparison(self, operator: str) -> LatexBox:
-        """The sign of a relation."""
+        """Return the sign of a relation."""
         return LatexBox(widths.RELATION, Level.SUM, OPERATORS[operator][0])
 
     def joined(self, parts: Sequence[LatexBox], level: Level) -> LatexBox:
-        """The sources one after the other, a space where a command would swallow a letter."""
+        """Return the sources one after the other, a space where a command would swallow a letter."""
         sources = [parts[0].source]
         for before, after in pairwise(part.source for part in parts):
             sources += [" ", after] if swallows(before, after) else [after]
@@ -143,7 +143,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, level, "".join(sources), height)
 
     def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:
-        r"""`\cdot` before a number, a thin space beside a word."""
+        r"""Return `\cdot` before a number, a thin space beside a word."""
         if right.source[0].isdigit():
             return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
         if self.running and left.width + right.width > _WIDE:
@@ -152,7 +152,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
     def grouped(self, box: LatexBox) -> LatexBox:
-        """Parentheses that grow with what they hold."""
+        """Return parentheses as tall as their content."""
         if box.height == 0:
             return LatexBox(box.width + 0.8, Level.ATOM, f"({box.source})")
         if self.running:
@@ -160,7 +160,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(box.width + 1.6, Level.ATOM, rf"\left({box.source}\right)", box.height)
 
     def fraction(self, above: LatexBox, below: LatexBox) -> LatexBox:
-        r"""`\frac`; in running text a slash where one part is long."""
+        r"""Return `\frac`; in running text a slash where one part is long."""
         width = max(above.width, below.width)
         if self.in_exponent:
             parts = [self.at_least(Level.PRODUCT, above), self.slash(), self.at_least(Level.POWER, below)]
@@ -172,11 +172,11 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width + widths.FRACTION_BAR, Level.FRACTION, source, 1)
 
     def raised(self, base: LatexBox, exponent: int) -> LatexBox:
-        """A power."""
+        """Return a power."""
         return self._above(base, str(exponent))
 
     def transposed(self, base: LatexBox) -> LatexBox:
-        """The transpose."""
+        """Return the transpose."""
         return self._above(base, r"\mathsf T")
 
     def _above(self, base: LatexBox, script: str) -> LatexBox:
@@ -185,14 +185,14 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.POWER, base.source + written, base.height)
 
     def applied(self, function: str, argument: LatexBox) -> LatexBox:
-        """A function's name and its argument."""
+        """Return a function's name and its argument."""
         name = self.function_latex(function)
         source = f"{name} {argument.source}" if swallows(name, argument.source) else name + argument.source
         width = widths.source_width(name) + argument.width + 0.2
         return LatexBox(width, Level.PRODUCT, source, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
-        """A table in brackets; in running text small, or a list where it is wide."""
+        """Return a table in brackets; in running text small, or a list where it is wide."""
         if not self.running:
             rows = [[opened(entry) for entry in row] for row in rows]
         columns = len(rows[0])
@@ -212,39 +212,39 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.ATOM, source, max(2, len(rows)))
 
     def rate(self, box: LatexBox, name: str = "t") -> LatexBox:
-        """d/dt before a stack."""
+        """Return d/dt before a stack."""
         return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{d{name}}}{box.source}", max(1, box.height))
 
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> LatexBox:
-        r"""`e^{-t/2}`: fractions in the exponent are written with a slash."""
+        r"""Return `e^{-t/2}`: fractions in the exponent are written with a slash."""
         script = copy(self)
         script.in_exponent, script.known = True, {}
         exponent = script.scalar(argument)
         return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
 
     def root(self, argument: LatexBox) -> LatexBox:
-        r"""`\sqrt`."""
+        r"""Return `\sqrt`."""
         return LatexBox(argument.width + 0.9, Level.ATOM, rf"\sqrt{{{argument.source}}}", argument.height)
 
     def summed(self, over: LatexBox, term: LatexBox) -> LatexBox:
-        r"""`\sum_{λ³+λ+1=0} …`."""
+        r"""Return `\sum_{λ³+λ+1=0} …`."""
         width = widths.SCRIPT * over.width + term.width
         return LatexBox(width, Level.PRODUCT, rf"\sum_{{{over.source}}} {term.source}", max(2, term.height))
 
     def named(self, form: str) -> LatexBox:
-        """The letter."""
+        """Return the letter."""
         return LatexBox(widths.source_width(form), Level.ATOM, form)
 
     def evaluated(self, box: LatexBox, equations: Sequence[LatexBox]) -> LatexBox:
-        r"""`\left. … \right|_{t=0}`."""
+        r"""Return `\left. … \right|_{t=0}`."""
         where = ",".join(equation.source for equation in equations)
         width = box.width + 0.2 + widths.SCRIPT * sum(equation.width for equation in equations)
         return LatexBox(width, Level.POWER, rf"\left.{box.source}\right|_{{{where}}}", max(1, box.height))
 
     def integral(self, limits: tuple[LatexBox, LatexBox], integrand: LatexBox, name: LatexBox) -> LatexBox:
-        r"""`\int_0^{2T} … \,dt`."""
+        r"""Return `\int_0^{2T} … \,dt`."""
         lower, upper = (limit.source if len(limit.source) == 1 else f"{{{limit.source}}}" for limit in limits)
         between = "" if len(name.source) == 1 else " "
         source = rf"\int_{lower}^{upper} {integrand.source}\,d{between}{name.source}"
@@ -254,40 +254,40 @@ class LatexPrinter(Printer[LatexBox]):
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[LatexBox]) -> tuple[LatexBox, LatexBox]:
-        r"""`\bigl( … \bigr)` and larger: unlike `\left`, they may stand on different lines."""
+        r"""Return `\bigl( … \bigr)` and larger: unlike `\left`, they may stand on different lines."""
         size = ("big", "Big", "bigg", "Bigg")[min(3, max(box.height for box in content))]
         return LatexBox(0.8, Level.SUM, rf"\{size}l("), LatexBox(0.8, Level.SUM, rf"\{size}r)")
 
     def brackets(self) -> tuple[LatexBox, LatexBox]:
-        """The same, square."""
+        """Return the same, square."""
         return LatexBox(0.6, Level.SUM, r"\bigl["), LatexBox(0.6, Level.SUM, r"\bigr]")
 
     def separators(self) -> tuple[LatexBox, LatexBox]:
-        """Comma and semicolon."""
+        """Return comma and semicolon."""
         return LatexBox(0.5, Level.SUM, ","), LatexBox(0.7, Level.SUM, r";\;")
 
     def dot(self) -> LatexBox:
-        r"""`\cdot`."""
+        r"""Return `\cdot`."""
         return LatexBox(0.9, Level.SUM, r"{}\cdot ")
 
     def slash(self) -> LatexBox:
-        """A slash."""
+        """Return a slash."""
         return LatexBox(0.5, Level.SUM, "/")
 
     def digits(self, run: str) -> LatexBox:
-        """A part of a number."""
+        """Return a part of a number."""
         return LatexBox(len(run) * widths.DIGIT, Level.ATOM, run)
 
     def continued(self) -> LatexBox:
-        """A hooked arrow."""
+        """Return a hooked arrow."""
         return LatexBox(1.5, Level.SUM, r"{\hookrightarrow}\,")
 
     def star(self, number: int) -> LatexBox:
-        """An asterisk with a number."""
+        """Return an asterisk with a number."""
         return LatexBox(0.5 + len(str(number)) * widths.DIGIT * widths.SCRIPT, Level.ATOM, rf"\ast_{{{number}}}")
 
     def entry_of(self, matrix: LatexBox, indices: Sequence[int]) -> LatexBox:
-        """The matrix with its indices, in parentheses where it is more than a letter."""
+        """Return the matrix with its indices, in parentheses where it is more than a letter."""
         base = matrix if matrix.level == Level.ATOM and "_" not in matrix.source else self.grouped(matrix)
         separator = "," if max(indices) > 9 else ""
         below = separator.join(map(str, indices))
@@ -295,15 +295,15 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.POWER, f"{base.source}_{{{below}}}", base.height)
 
     def indent(self) -> LatexBox:
-        r"""`\quad`."""
+        r"""Return `\quad`."""
         return LatexBox(1.0, Level.SUM, r"\quad{}")
 
     def framed(self, box: LatexBox) -> LatexBox:
-        r"""`\answer`, a macro of the template."""
+        r"""Return `\answer`, a macro of the template."""
         return LatexBox(box.width + widths.FRAME, Level.ATOM, rf"\answer{{{box.source}}}", max(1, box.height))
 
     def stacked(self, lines: Sequence[LatexBox]) -> LatexBox:
-        r"""Lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
+        r"""Return lines of an array, all but the first indented; amsmath's `aligned` does not stand in a frame in `align*`."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         sources = [rf"\displaystyle {line.source}" for line in indented]
@@ -312,16 +312,16 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{l}}{body}\end{{array}}", 2)
 
     def punctuation(self, mark: str) -> LatexBox:
-        """A comma or full stop."""
+        """Return a comma or full stop."""
         return LatexBox(0.45, Level.SUM, mark)
 
     def gap(self) -> LatexBox:
-        r"""`\qquad`."""
+        r"""Return `\qquad`."""
         return LatexBox(2.0, Level.SUM, r"\qquad ")
 
 
 def swallows(left: str, right: str) -> bool:
-    """Whether a command at the end of `left` would take the beginning of `right` as part of its name."""
+    """Return whether a command at the end of `left` would absorb the beginning of `right`."""
     command = left[left.rfind("\\") + 1 :] if "\\" in left else ""
     return bool(command) and command.isascii() and command.isalpha() and right[:1].isalpha()
 
@@ -331,7 +331,7 @@ def _heights(rows: Sequence[Sequence[LatexBox]]) -> list[int]:
 
 
 def under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
-    r"""Rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
+    r"""Return rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
     body = rows[0]
     for row, above, below in zip(rows[1:], heights, heights[1:], strict=False):
         body += (r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\") + row
@@ -339,7 +339,7 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
 
 
 def opened(entry: LatexBox) -> LatexBox:
-    """An entry of a matrix; a fraction with more than numbers in it is set large."""
+    """Return an entry of a matrix; a fraction with more than numbers in it is set large."""
     if not _FRACTION_OF_LETTERS.match(entry.source):
         return entry
     return replace(entry, source=entry.source.replace(r"\frac", r"\dfrac", 1), height=2)

@@ -1,4 +1,4 @@
-"""Where a long formula may be broken, and the lines that come of it.
+"""Line breaking of long formulas.
 
 A formula that fits is one piece.  One that does not is opened: a sum at its terms, a product at its factors, a wide
 fraction as 1/denominator before its numerator in parentheses, a number between digits; a matrix keeps its shape, and
@@ -47,7 +47,7 @@ _WIDEST_DENOMINATOR = 0.7
 
 @dataclass(frozen=True)
 class LinePiece(Generic[B]):
-    """What is not broken, with what goes before it inside a line (`within`) and at a line's start (`at_start`)."""
+    """An unbreakable piece, with its prefix inside a line (`within`) and at the start of one (`at_start`)."""
 
     box: B
     within: B | None = None
@@ -55,7 +55,7 @@ class LinePiece(Generic[B]):
 
 
 class Breaker(Generic[B]):
-    """Breaks the formulas of one relation; `named` collects what matrices left out, to be told below."""
+    """Line breaker of the formulas of one relation; `named` collects entries of matrices to be defined below."""
 
     def __init__(self, printer: Printer[B]) -> None:
         """Break with the boxes of `printer`."""
@@ -63,7 +63,7 @@ class Breaker(Generic[B]):
         self.named: dict[Formula, B] = {}
 
     def lines(self, pieces: Sequence[LinePiece[B]], first: float, rest: float) -> list[B]:
-        """Fill lines, the first of width `first`, all others of width `rest`, so that no short end is left over."""
+        """Fill lines, the first of width `first`, the others of width `rest`, without a short last line."""
         filled = self._filled(pieces, first, rest)
         for part in (1.0, 0.9, 0.8, 0.7, 0.6) if len(filled) in _FEW_LINES else ():
             narrower = self._filled(pieces, part * first, part * rest)
@@ -87,7 +87,7 @@ class Breaker(Generic[B]):
     # -- pieces ---------------------------------------------------------------------------------------------------
 
     def pieces(self, formula: Formula, room: float, head: B | None = None) -> list[LinePiece[B]]:
-        """Return what the formula falls into when a line has width `room`.
+        """Return the pieces of a formula for lines of width `room`.
 
         Where it is a matrix, its entries are named after `head`.
         """
@@ -125,7 +125,7 @@ class Breaker(Generic[B]):
         return [LinePiece(self.printer.typeset(formula))]
 
     def _written(self, formula: Formula) -> Formula:
-        """The formula, an exact value spelled out."""
+        """Return the formula, an exact value spelled out."""
         match formula:
             case Power(base, 1):
                 return self._written(base)
@@ -138,7 +138,7 @@ class Breaker(Generic[B]):
         return formula
 
     def _operand(self, formula: Formula, level: Level, room: float) -> list[LinePiece[B]]:
-        """The pieces of an operand, between parentheses where it binds too loosely."""
+        """Return the pieces of an operand, between parentheses where it binds too loosely."""
         if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and level == Level.ATOM:
             box = self.printer.base(formula)
             return [LinePiece(box)] if box.width <= room else self._matrix(formula, room)
@@ -195,12 +195,12 @@ class Breaker(Generic[B]):
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
 
     def _together(self, front: LinePiece[B], piece: LinePiece[B]) -> LinePiece[B]:
-        """Two pieces as one: 1/d stays on the line of what follows it."""
+        """Return two pieces joined: 1/d stays on the line of its factor."""
         boxes = [front.box, piece.within, piece.box] if piece.within else [front.box, piece.box]
         return replace(front, box=self.printer.joined(boxes, Level.PRODUCT))
 
     def _quotient(self, formula: Quotient, room: float) -> list[LinePiece[B]]:
-        """1/denominator · (numerator); a denominator that is wide as well gets a name."""
+        """Return 1/denominator · (numerator), with a name for a wide denominator."""
         printer = self.printer
         ((negative, body),) = signed_terms(formula, self.printer.variable, flat=False)
         if not isinstance(body, Quotient):
@@ -222,7 +222,7 @@ class Breaker(Generic[B]):
         return [self._negated(pieces[0]), *pieces[1:]] if negative else pieces
 
     def _digits(self, value: Scalar) -> list[LinePiece[B]]:
-        """A number in runs of digits; the next line begins with a sign that it goes on."""
+        """Return a number in runs of digits, with a sign of continuation on each further line."""
         if not value.is_constant:
             return [LinePiece(self.printer.scalar(value))]
         digits = decimal(value.fraction().numerator)
@@ -235,7 +235,7 @@ class Breaker(Generic[B]):
         return replace(piece, box=self.printer.joined([minus, piece.box], Level.SUM))
 
     def _following(self, pieces: Sequence[LinePiece[B]], piece: LinePiece[B]) -> LinePiece[B]:
-        """A factor after those before it."""
+        """Return a factor after those before it."""
         if not pieces:
             return piece
         return replace(piece, within=self.printer.between(pieces[-1].box, piece.box), at_start=self.printer.dot())
@@ -243,7 +243,7 @@ class Breaker(Generic[B]):
     # -- matrices -------------------------------------------------------------------------------------------------
 
     def _matrix(self, formula: Formula, room: float, head: B | None = None) -> list[LinePiece[B]]:
-        """The matrix with its widest entries named; a table that cannot fit even so is listed row by row."""
+        """Return the matrix with its widest entries named, or listed row by row if it still does not fit."""
         if isinstance(formula, Block):
             rows = formula.rows
         elif isinstance(formula, Literal) and isinstance(formula.value, Matrix):
@@ -257,7 +257,7 @@ class Breaker(Generic[B]):
         return self._listed(rows, room)
 
     def _narrowed(self, rows: Sequence[Sequence[Formula]], room: float, head: B | None) -> B | None:
-        """The table with every entry named that is wider than some width, the largest that lets it fit."""
+        """Return the table with all entries wider than some bound named, the largest bound that makes it fit."""
         boxes = [[self.printer.block_entry(entry) for entry in row] for row in rows]
         bound = room
         while bound > 1:
@@ -277,18 +277,18 @@ class Breaker(Generic[B]):
         return None
 
     def _place(self, head: B | None, i: int, j: int, rows: Sequence[Sequence[Formula]]) -> B | None:
-        """The name of the entry at row i and column j of `head`, counted from 0."""
+        """Return the name of the entry at row i and column j of `head`, counted from 0."""
         if head is None:
             return None
         is_vector = len(rows) == 1 or len(rows[0]) == 1
         return self.printer.entry_of(head, (i + j + 1,) if is_vector else (i + 1, j + 1))
 
     def _name(self, named: dict[Formula, B], entry: Formula, place: B | None = None) -> B:
-        """The name of an entry, the same for equal entries: its place, or a star."""
+        """Return the name of an entry, the same for equal entries: its place, or a star."""
         return named.setdefault(entry, place or self.printer.star(len(named) + 1))
 
     def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[LinePiece[B]]:
-        """[a, b; c, d], its entries broken where they must be."""
+        """Return [a, b; c, d], its entries broken where they must be."""
         comma, semicolon = self.printer.separators()
         pieces: list[LinePiece[B]] = []
         for i, row in enumerate(rows):
@@ -303,7 +303,7 @@ class Breaker(Generic[B]):
 
 
 def _is_table(formula: Formula) -> bool:
-    """Whether a formula is a matrix whose entries stand written out, so that each has a place."""
+    """Return whether a formula is a matrix with its entries written out."""
     if isinstance(formula, Block):
         entries = [entry.value if isinstance(entry, Literal) else entry for row in formula.rows for entry in row]
         return all(isinstance(entry, (Quotient, Scalar)) for entry in entries)

@@ -1,4 +1,4 @@
-"""The printer: one walk over a formula with its precedences; a format supplies the glyphs.
+"""The printer: traversal of a formula with precedences; a format supplies the glyphs.
 
 A printed part is a `Box`: what is written, how wide it is, and how tightly it binds.  Nothing is rewritten on the way:
 `A - L C` is printed as its author wrote it; only exact values are spelled out (`formula_of`).
@@ -170,7 +170,7 @@ class Printer(FormulaWriter[B]):
         raise TypeError(formula)
 
     def scalar(self, value: Scalar) -> B:
-        """An exact scalar, spelled out once."""
+        """Return an exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
             function = function_named(next(iter(value.names))) if is_leaf(value) and value.names else None
@@ -182,13 +182,13 @@ class Printer(FormulaWriter[B]):
         return box
 
     def decimals(self, value: Scalar) -> B:
-        """A number with its digits after the point."""
+        """Return a number with its digits after the point."""
         box = self.digits(decimal_digits(value))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
 
     def function_of_time(self, function: Function) -> B:
-        """e^{−t}, sin ωt, √3; a root that has a letter of its own is written by it."""
+        """Return a function of time or a root, e^{−t}, sin ωt, √3, or the letter defined for it."""
         if function.name in self.symbols:
             return self.named(self.symbols[function.name])
         if function.kind == "exp":
@@ -207,7 +207,7 @@ class Printer(FormulaWriter[B]):
         return replace(box, level=Level.POWER)
 
     def sum_parts(self, formula: Formula) -> list[B]:
-        """The terms of a sum with their signs between them."""
+        """Return the terms of a sum with their signs between them."""
         parts: list[B] = []
         for negative, term in signed_terms(formula, self.variable):
             if parts or negative:
@@ -216,14 +216,14 @@ class Printer(FormulaWriter[B]):
         return parts
 
     def product(self, formula: Product) -> B:
-        """Juxtaposed factors, with a dot before a number that is not the first."""
+        """Return juxtaposed factors, with a dot before a number that is not the first."""
         ((negative, body),) = signed_terms(formula, self.variable, flat=False)
         parts = self.factor_boxes(body)
         sign = [self.sign(negative=True, leading=True)] if negative else []
         return self.joined([*sign, *self.spaced(parts)], Level.SUM if negative else Level.PRODUCT)
 
     def spaced(self, parts: Sequence[B]) -> list[B]:
-        """Factors with what stands between them."""
+        """Return factors with their separators."""
         row: list[B] = []
         for part in parts:
             between = self.between(row[-1], part) if row else None
@@ -231,12 +231,12 @@ class Printer(FormulaWriter[B]):
         return row
 
     def factor_boxes(self, formula: Formula) -> list[B]:
-        """The factors of a product, each parenthesised where it must be."""
+        """Return the factors of a product, parenthesised by precedence."""
         parts = factors(formula, self.variable)
         return [self.factor(part, last=index + 1 == len(parts)) for index, part in enumerate(parts)]
 
     def factor(self, formula: Formula, *, last: bool) -> B:
-        """One factor; a function's argument is closed off from the factors that follow."""
+        """Return one factor; the argument of a function is separated from the factors after it."""
         if not isinstance(formula, Apply):
             return self.at_least(Level.FRACTION, self.typeset(formula))
         if last:
@@ -244,7 +244,7 @@ class Printer(FormulaWriter[B]):
         return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
 
     def quotient(self, formula: Quotient) -> B:
-        """A fraction; the minus of its numerator stands in front."""
+        """Return a fraction with the minus of its numerator in front."""
         ((negative, body),) = signed_terms(formula, self.variable, flat=False)
         if isinstance(body, Quotient):
             box = self.fraction(self.typeset(body.numerator), self.typeset(body.denominator))
@@ -253,13 +253,13 @@ class Printer(FormulaWriter[B]):
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if negative else box
 
     def base(self, formula: Formula) -> B:
-        """What carries an exponent or a transposition sign."""
+        """Return the base of an exponent or a transposition sign."""
         if isinstance(formula, Literal) and isinstance(formula.value, Matrix):
             return self.plain_matrix(formula.value)
         return self.at_least(Level.ATOM, self.typeset(formula))
 
     def application(self, function: str, argument: Formula) -> B:
-        """Det A, but det(sI − A); polynomials of a matrix always with parentheses."""
+        """Return det A, but det(sI − A); polynomials of a matrix always with parentheses."""
         is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
@@ -267,7 +267,7 @@ class Printer(FormulaWriter[B]):
         return self.applied(function, inner)
 
     def derivative(self, operand: Formula, name: str) -> B:
-        """ẋ, or d/dt of what is stacked; the next instant in discrete time."""
+        """Return ẋ, or d/dt of a stack; in discrete time the next instant."""
         if name != "t":
             return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)), name)
         if isinstance(operand, Letter) and is_of_time(operand.name):
@@ -281,11 +281,11 @@ class Printer(FormulaWriter[B]):
         return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)))
 
     def symbol(self, name: str) -> B:
-        """A parameter's name."""
+        """Return a parameter's name."""
         return self.leaf(Scalar.symbol(name))
 
     def at_instant(self, operand: Formula, instants: dict[str, Scalar]) -> B:
-        """B(σ), Φ(t₁, t₀); what is no letter, or one that shows its time, has t = t₁ behind a bar."""
+        """Return the value at an instant: B(σ), Φ(t₁, t₀), else with t = t₁ behind a bar."""
         match operand:
             case At(inner, name, instant):
                 return self.at_instant(inner, {name: instant, **instants})
@@ -301,20 +301,20 @@ class Printer(FormulaWriter[B]):
         return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), equations)
 
     def called(self, function: B, arguments: Sequence[B]) -> B:
-        """A function before its arguments in parentheses."""
+        """Return a function before its arguments in parentheses."""
         inside = [arguments[0]]
         for argument in arguments[1:]:
             inside += [self.separators()[0], argument]
         return self.joined([function, self.grouped(self.joined(inside, Level.SUM))], Level.ATOM)
 
     def plain_matrix(self, matrix: Matrix) -> B:
-        """A matrix, entry by entry."""
+        """Return a matrix, entry by entry."""
         if 0 in matrix.shape:
             return self.empty(matrix.shape)
         return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in matrix.rows])
 
     def block_entry(self, formula: Formula) -> B:
-        """A block; a zero matrix among blocks is 0."""
+        """Return a block; a zero matrix among blocks is 0."""
         if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero:
             return self.leaf(Scalar.of(0))
         return self.typeset(formula)
@@ -325,7 +325,7 @@ class Printer(FormulaWriter[B]):
 
 
 def shifted(formula: Formula) -> Formula:
-    """Return the formula of the next instant, the shift carried one level inwards."""
+    """Return the formula of the next instant, with the shift moved one level inwards."""
     return with_children(formula, tuple(Derivative(part) for part in children(formula)))
 
 

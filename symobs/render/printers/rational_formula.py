@@ -28,7 +28,7 @@ Monomial = tuple[int, tuple[tuple[str, int], ...]]
 
 
 def is_leaf(value: Scalar) -> bool:
-    """Whether a scalar is written as one glyph: a whole number that is not negative, or a symbol."""
+    """Return whether a scalar is printed as one glyph: a nonnegative integer, or a symbol."""
     if value.is_constant:
         number = value.fraction()
         return number.denominator == 1 and number >= 0
@@ -54,7 +54,7 @@ def rational_formula(value: Scalar, variable: str) -> Formula:
 
 
 def _rational_function(value: Scalar, variable: str) -> Formula:
-    """Numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
+    """Return numerator / denominator, both collected; the minus of a leading coefficient stands before the fraction."""
     above, below = value.numerator, value.denominator
     negative = _leads_with_minus(above, variable)
     fraction = Quotient(rational_formula(-above if negative else above, variable), _denominator(below, variable))
@@ -66,7 +66,7 @@ def _leads_with_minus(value: Scalar, variable: str) -> bool:
 
 
 def _denominator(value: Scalar, variable: str) -> Formula:
-    """A whole number dividing all coefficients goes in front: 2(s² + s + 2)."""
+    """Return a denominator with the integer content in front: 2(s² + s + 2)."""
     content = gcd(*(coefficient for coefficient, _ in value.terms()))
     collected = rational_formula(value, variable)
     if content == 1 or not isinstance(collected, Sum):
@@ -75,7 +75,7 @@ def _denominator(value: Scalar, variable: str) -> Formula:
 
 
 def _polynomial(value: Scalar, variable: str) -> Formula:
-    """Descending powers; over one denominator where that is clearly shorter."""
+    """Return descending powers, over one denominator where that is clearly shorter."""
     coefficients = value.coefficients(variable)
     separate = _collected(coefficients, variable)
     if value.denominator.is_one:
@@ -93,7 +93,7 @@ def _polynomial(value: Scalar, variable: str) -> Formula:
 
 
 def _with_content(value: Scalar, coefficients: Sequence[Scalar], separate: Formula, variable: str) -> Formula:
-    """An expression in parameters that divides all coefficients goes in front, where that is clearly shorter."""
+    """Return the polynomial with its content in the parameters in front, where that is clearly shorter."""
     content = common_divisor([coefficient for coefficient in coefficients if not coefficient.is_zero])
     if content.is_constant or content == value:
         return separate
@@ -103,7 +103,7 @@ def _with_content(value: Scalar, coefficients: Sequence[Scalar], separate: Formu
 
 
 def common_divisor(values: Sequence[Scalar]) -> Scalar:
-    """The greatest common divisor of polynomials; 1 as soon as it is a number."""
+    """Return the greatest common divisor of polynomials; 1 as soon as it is a number."""
     divisor = values[0]
     for value in values[1:]:
         if divisor.is_constant:
@@ -122,7 +122,7 @@ def _collected(coefficients: Sequence[Scalar], variable: str) -> Formula:
 
 
 def _times_power(coefficient: Scalar, power: Formula | None) -> list[Formula]:
-    """The terms of coefficient · power: one, except that a constant coefficient is left open."""
+    """Return the terms of coefficient · power: one, or those of a constant coefficient."""
     body = _constant(coefficient)
     if power is None:
         return list(_terms_of(body))
@@ -145,7 +145,7 @@ def _constant_positive(body: Sum) -> Sum:
 
 
 def _constant(value: Scalar) -> Formula:
-    """A number or an expression in parameters, as sum, product or fraction, whichever is shortest."""
+    """Return a number or an expression in parameters, as sum, product or fraction, whichever is shortest."""
     if is_leaf(value):
         return Literal(value)
     if value.denominator.is_one:
@@ -161,7 +161,7 @@ def _constant(value: Scalar) -> Formula:
 
 
 def _shortest(value: Scalar) -> Formula:
-    """An integer polynomial in parameters: expanded, or factored where that is shorter."""
+    """Return an integer polynomial in parameters: expanded, or factored where that is shorter."""
     expanded = _expanded(value.terms())
     if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
         return expanded
@@ -198,7 +198,7 @@ def _monomial(coefficient: int, powers: Sequence[tuple[str, int]]) -> Formula:
 
 
 def _place(power: tuple[str, int]) -> tuple[int, str]:
-    """Symbols by the alphabet, roots of numbers before them, the time and other roots behind."""
+    """Return the sort key of a symbol: roots of numbers, symbols by the alphabet, other roots, the time."""
     name, root = power[0], function_named(power[0])
     if root is not None:
         return (0 if root.argument.is_constant else 2), name
@@ -217,7 +217,7 @@ def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, in
 
 
 def _factored(value: Scalar) -> Formula:
-    """Number · symbols · sums; a minus disappears into a sum that may be turned round."""
+    """Return number · symbols · sums; a minus is absorbed by reversing a sum of odd power."""
     unit, factors = value.factors()
     number = int(unit.fraction())
     symbols: list[tuple[str, int]] = []
@@ -272,7 +272,7 @@ def sum_of(terms: Sequence[Formula]) -> Formula:
 
 
 def decimal(number: int) -> str:
-    """Return the digits of a whole number; `str` refuses to write more than some thousands of them."""
+    """Return the digits of an integer of any size; `str` is limited to some thousands of them."""
     if number.bit_length() < _BITS_AT_ONCE:
         return str(number)
     low = number.bit_length() * 3 // 20
@@ -281,7 +281,7 @@ def decimal(number: int) -> str:
 
 
 def size(formula: Formula) -> float:
-    """Return about how many glyphs a spelling takes."""
+    """Return the approximate number of glyphs of a formula."""
     match formula:
         case Literal(Scalar() as value):
             return len(decimal(value.fraction().numerator)) if value.is_constant else _size_of_symbol(value)
@@ -302,6 +302,6 @@ def size(formula: Formula) -> float:
 
 
 def _size_of_symbol(value: Scalar) -> float:
-    """A symbol, or a function with its argument."""
+    """Return a symbol, or a function with its argument."""
     function = function_named(next(iter(value.names)))
     return 1.0 if function is None else 1.0 + size(rational_formula(function.argument, ""))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RootGlyphs:
-    """What a format adds to its printer for roots; `among` writes those that satisfy an equation."""
+    """The interface of a format for roots; `among` writes the roots of an equation."""
 
     square_root: Callable[[str], str]
     plus_minus: str
@@ -80,7 +80,7 @@ def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs
 
 
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
-    """√radicand, its square factors before the root, i behind it."""
+    """Return √radicand, its square factors before the root, i behind it."""
     if not root.radicand.is_constant:
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0

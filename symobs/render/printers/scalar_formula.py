@@ -27,7 +27,7 @@ _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
 
 
 def is_time_function(name: str) -> bool:
-    """Whether a generator is an exponential, a sine or a cosine."""
+    """Return whether a generator is an exponential, a sine or a cosine."""
     found = function_named(name)
     return found is not None and found.kind not in {"sqrt", "CRootOf"}
 
@@ -56,7 +56,7 @@ def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
 
 
 def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
-    """The least common multiple, unless it grows too long to be written."""
+    """Return the least common multiple, unless it grows too long to be written."""
     multiple = Scalar.of(1)
     for value in values:
         multiple = multiple * (value / multiple).numerator
@@ -83,7 +83,7 @@ def _time_function(value: Scalar) -> Formula:
 
 
 def _over(above: Scalar, below: Scalar) -> Formula:
-    """1/d (numerator): the numerator's common monomial in the parameters goes in front as well."""
+    """Return 1/d (numerator) with the content of the numerator in the parameters in front."""
     parts = _parts(above)
     content = common_divisor([c for group in parts.values() for c in group.values()])
     if content.is_constant:
@@ -122,7 +122,7 @@ def _order(part: tuple[str, int]) -> tuple[int, str]:
 
 
 def _grouped(parts: dict[Part, dict[Part, Scalar]], below: Scalar) -> Formula:
-    """The constant group first, then each exponential with what it multiplies."""
+    """Return the constant terms first, then each exponential with its factor."""
     terms: list[Formula] = []
     for fading in sorted(parts, key=lambda part: (len(part) > 0, _speed(part))):
         inside = _sum_of(parts[fading], below)
@@ -142,7 +142,7 @@ def _grouped(parts: dict[Part, dict[Part, Scalar]], below: Scalar) -> Formula:
 
 
 def _pulled(group: dict[Part, Scalar], below: Scalar, factors: Sequence[Formula], inside: list[Formula]) -> Formula:
-    """An exponential times a sum; what all coefficients share goes in front of it where that is shorter."""
+    """Return an exponential times a sum, the common divisor of the coefficients in front where that is shorter."""
     plain = product((*factors, Sum(tuple(inside))))
     content = common_divisor(list(group.values()))
     if content.is_constant:
@@ -174,7 +174,7 @@ def _speed(part: Part) -> tuple[int, str]:
 
 
 def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
-    """The terms coefficient · function of one group, what stands still first."""
+    """Return the terms coefficient · function of one group, constant ones first."""
     terms: list[Formula] = []
     for turning in sorted(group, key=lambda part: (len(part), [_order(item) for item in part])):
         coefficient = group[turning] / below
@@ -188,12 +188,12 @@ def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
 
 
 def _still(coefficient: Scalar) -> Formula:
-    """What multiplies a function: a polynomial in the time, or constant."""
+    """Return a coefficient: a polynomial in the time, or a constant."""
     return formula_of(coefficient, "t" if "t" in coefficient.names else "T")
 
 
 def _with_sign(body: Formula, functions: Sequence[Formula]) -> Formula:
-    """A coefficient times functions; a coefficient 1 is not written, the minus stands in front."""
+    """Return a coefficient times functions, the coefficient 1 left out and the minus in front."""
     if isinstance(body, Negative):
         return Negative(_with_sign(body.operand, functions))
     if isinstance(body, Literal) and isinstance(body.value, Scalar) and body.value.is_one:
@@ -208,7 +208,7 @@ def _in_front(body: Formula, functions: Sequence[Formula]) -> Formula:
 
 
 def _power(name: str, exponent: int) -> Formula:
-    """A power of a function; e^{x} to a power is one exponential again."""
+    """Return a power of a function; e^{x} to a power is one exponential again."""
     function = function_named(name)
     if function is not None and function.kind == "exp" and exponent != 1:
         return Literal(function_of("exp", function.argument * exponent))

@@ -83,7 +83,7 @@ class TextPrinter(Printer[TextBox]):
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
     def letter(self, name: str, mark: str) -> TextBox:
-        """A letter; ẋ, xₖ, xₖ₊₁."""
+        """Return a letter; ẋ, xₖ, xₖ₊₁."""
         text = self.letter_text(name)
         if mark == "dot":
             dotted = unicodedata.normalize("NFC", f"{text}\u0307")
@@ -92,7 +92,7 @@ class TextPrinter(Printer[TextBox]):
         return text_box(text + _INDEX.get(mark, ""), level)
 
     def leaf(self, value: Scalar) -> TextBox:
-        """A whole number or a symbol."""
+        """Return a whole number or a symbol."""
         if value.is_constant:
             return text_box(decimal(value.fraction().numerator))
         (name,) = value.names
@@ -103,27 +103,27 @@ class TextPrinter(Printer[TextBox]):
         return text_box("I")
 
     def empty(self, shape: tuple[int, int]) -> TextBox:
-        """A zero with its shape."""
+        """Return a zero with its shape."""
         return text_box(f"0({shape[0]}×{shape[1]})")
 
     def sign(self, *, negative: bool, leading: bool) -> TextBox:
-        """Plus or minus."""
+        """Return plus or minus."""
         glyph = "-" if negative else "+"
         return text_box(glyph if leading else f" {glyph} ", Level.SUM)
 
     def comparison(self, operator: str) -> TextBox:
-        """The sign of a relation."""
+        """Return the sign of a relation."""
         return text_box(f" {OPERATORS[operator][1]} ", Level.SUM)
 
     def joined(self, parts: Sequence[TextBox], level: Level) -> TextBox:
-        """The boxes side by side, baselines in one line."""
+        """Return the boxes side by side, baselines in one line."""
         above = max(part.baseline for part in parts)
         below = max(len(part.lines) - part.baseline for part in parts)
         lines = ["".join(_line_at(part, offset) for part in parts) for offset in range(-above, below)]
         return TextBox(sum(part.width for part in parts), level, tuple(lines), above)
 
     def between(self, left: TextBox, right: TextBox) -> TextBox | None:
-        """A dot before a number; no space after one, nor at a parenthesis."""
+        """Return a dot before a number; no space after one, nor at a parenthesis."""
         before, after = left.line.rstrip(_SUPERSCRIPT_DIGITS), right.line
         if after[0].isdigit():
             return text_box("·")
@@ -133,7 +133,7 @@ class TextPrinter(Printer[TextBox]):
         return None if is_open else text_box(" ")
 
     def grouped(self, box: TextBox) -> TextBox:
-        """Parentheses, as tall as what they hold."""
+        """Return parentheses as tall as their content."""
         return self._fenced(box, "(", ")", Level.ATOM)
 
     def _fenced(self, box: TextBox, opening: str, closing: str, level: Level) -> TextBox:
@@ -145,16 +145,16 @@ class TextPrinter(Printer[TextBox]):
         return TextBox(box.width + 2, level, lines, box.baseline)
 
     def fraction(self, above: TextBox, below: TextBox) -> TextBox:
-        """above/below, parenthesised where one of them is a sum or product."""
+        """Return above/below, parenthesised where one of them is a sum or product."""
         above, below = self.at_least(Level.PRODUCT, above), self.at_least(Level.POWER, below)
         return self.joined([above, text_box("/"), below], Level.PRODUCT)
 
     def raised(self, base: TextBox, exponent: int) -> TextBox:
-        """A power."""
+        """Return a power."""
         return self._above(base, str(exponent).translate(_SUPERSCRIPTS))
 
     def transposed(self, base: TextBox) -> TextBox:
-        """The transpose."""
+        """Return the transpose."""
         return self._above(base, "ᵀ")
 
     def _above(self, base: TextBox, script: str) -> TextBox:
@@ -162,7 +162,7 @@ class TextPrinter(Printer[TextBox]):
         return TextBox(base.width + len(script), Level.POWER, lines, base.baseline)
 
     def applied(self, function: str, argument: TextBox) -> TextBox:
-        """A function's name and its argument."""
+        """Return a function's name and its argument."""
         known = self.letters[function].text if function in self.letters else FUNCTIONS.get(function, ("", ""))[1]
         name = known or function.replace("_", " ")
         if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
@@ -171,7 +171,7 @@ class TextPrinter(Printer[TextBox]):
         return self.joined([text_box(name + space), argument], Level.PRODUCT)
 
     def matrix(self, rows: Sequence[Sequence[TextBox]]) -> TextBox:
-        """A table in brackets; on one line its entries are written without spaces."""
+        """Return a table in brackets; on one line its entries are written without spaces."""
         if self.flat:
             written = (" ".join(_tight(entry.line) for entry in row) for row in rows)
             return text_box(f"[{'; '.join(written)}]")
@@ -185,7 +185,7 @@ class TextPrinter(Printer[TextBox]):
         return self._fenced(body, "[", "]", Level.ATOM)
 
     def rate(self, box: TextBox, name: str = "t") -> TextBox:
-        """d/dt before a stack."""
+        """Return d/dt before a stack."""
         return self.joined([text_box(f"d/d{name} "), box], Level.PRODUCT)
 
     # -- functions of time ----------------------------------------------------------------------------------------
@@ -195,15 +195,15 @@ class TextPrinter(Printer[TextBox]):
         return self.joined([text_box("exp"), self.grouped(self.scalar(argument))], Level.POWER)
 
     def root(self, argument: TextBox) -> TextBox:
-        """√3, √(ω² - b²)."""
+        """Return √3, √(ω² - b²)."""
         return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
 
     def summed(self, over: TextBox, term: TextBox) -> TextBox:
-        """Σ[λ³ + λ + 1 = 0] …."""
+        """Return Σ[λ³ + λ + 1 = 0] …."""
         return self.joined([text_box("Σ["), over, text_box("] "), term], Level.PRODUCT)
 
     def named(self, form: str) -> TextBox:
-        """The letter: a Greek one by its glyph."""
+        """Return the letter: a Greek one by its glyph."""
         if form.endswith(r"\ldots"):
             return text_box(form.replace(r"\ldots", "…"))
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
@@ -214,14 +214,14 @@ class TextPrinter(Printer[TextBox]):
         return self.joined([box, text_box(f"|{where}")], Level.POWER)
 
     def integral(self, limits: tuple[TextBox, TextBox], integrand: TextBox, name: TextBox) -> TextBox:
-        """∫(0..T) … dt."""
+        """Return ∫(0..T) … dt."""
         parts = [text_box("∫("), limits[0], text_box(".."), limits[1], text_box(") "), integrand, text_box(" d"), name]
         return self.joined(parts, Level.PRODUCT)
 
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[TextBox]) -> tuple[TextBox, TextBox]:
-        """A pair as tall as the content."""
+        """Return a pair as tall as the content."""
         above = max(box.baseline for box in content)
         below = max(len(box.lines) - box.baseline for box in content)
         if above + below == 1:
@@ -230,50 +230,50 @@ class TextPrinter(Printer[TextBox]):
         return TextBox(1, Level.SUM, left, above), TextBox(1, Level.SUM, right, above)
 
     def brackets(self) -> tuple[TextBox, TextBox]:
-        """A plain pair, square."""
+        """Return a plain pair, square."""
         return text_box("["), text_box("]")
 
     def separators(self) -> tuple[TextBox, TextBox]:
-        """Comma and semicolon."""
+        """Return comma and semicolon."""
         return text_box(", "), text_box("; ")
 
     def dot(self) -> TextBox:
-        """A centred dot."""
+        """Return a centred dot."""
         return text_box("· ")
 
     def slash(self) -> TextBox:
-        """A slash."""
+        """Return a slash."""
         return text_box("/")
 
     def digits(self, run: str) -> TextBox:
-        """A part of a number."""
+        """Return a part of a number."""
         return text_box(run)
 
     def continued(self) -> TextBox:
-        """A hooked arrow."""
+        """Return a hooked arrow."""
         return text_box("↪ ")
 
     def star(self, number: int) -> TextBox:
-        """An asterisk with a number."""
+        """Return an asterisk with a number."""
         return text_box(f"*{str(number).translate(_SUBSCRIPTS)}")
 
     def entry_of(self, matrix: TextBox, indices: Sequence[int]) -> TextBox:
-        """The matrix with its indices in parentheses, as in MATLAB."""
+        """Return the matrix with its indices in parentheses, as in MATLAB."""
         base = matrix if matrix.level == Level.ATOM else self.grouped(matrix)
         return self.joined([base, text_box(f"({','.join(map(str, indices))})")], Level.POWER)
 
     def indent(self) -> TextBox:
-        """Four columns."""
+        """Return four columns."""
         return text_box("    ")
 
     def framed(self, box: TextBox) -> TextBox:
-        """A frame of rules."""
+        """Return a frame of rules."""
         rule = "─" * (int(box.width) + 2)
         lines = (f"┌{rule}┐", *(f"│ {line} │" for line in box.lines), f"└{rule}┘")
         return TextBox(box.width + 4, Level.ATOM, lines, box.baseline + 1)
 
     def stacked(self, lines: Sequence[TextBox]) -> TextBox:
-        """The lines under one another, all but the first indented."""
+        """Return the lines under one another, all but the first indented."""
         first, *rest = lines
         boxes = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         width = max(box.width for box in boxes)
@@ -281,11 +281,11 @@ class TextPrinter(Printer[TextBox]):
         return TextBox(width, Level.SUM, tuple(padded), first.baseline)
 
     def punctuation(self, mark: str) -> TextBox:
-        """A comma or full stop."""
+        """Return a comma or full stop."""
         return text_box(mark)
 
     def gap(self) -> TextBox:
-        """Four columns."""
+        """Return four columns."""
         return text_box("    ")
 
 
@@ -309,7 +309,7 @@ def _line_at(box: TextBox, offset: int) -> str:
 
 
 def _tall(shape: str, rows: int) -> str:
-    """The top of a fence, its middle as often as needed, its bottom."""
+    """Return the top of a fence, its middle as often as needed, its bottom."""
     return shape[0] + shape[1] * (rows - 2) + shape[2]
 
 

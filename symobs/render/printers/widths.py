@@ -1,4 +1,4 @@
-"""How wide LaTeX mathematics is: Computer Modern at 11 pt, in em, accurate enough to know where a line must end."""
+"""Widths of LaTeX mathematics in Computer Modern at 11 pt, in em, for line breaking."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables fitted to the line: entries that are too wide get names, as textbooks give them, and are told below.
+"""The Routh array fitted to the line: entries too wide for it are named, and defined below.
 
 The coefficients are a₀, a₁, …, the entries of the rows below them b₁, b₂, …, c₁, c₂, ….  What a name stands for is
 written out where that fits the line, else by the rule that makes it of the two rows above.
@@ -34,7 +34,7 @@ _NARROWEST = 1.0
 
 @dataclass(frozen=True)
 class Fitted(Generic[B]):
-    """A table as it is set: the powers at the left, the entries, the remark chosen for each row, what is told below."""
+    """A fitted table: powers, entries, the remark of each row, and the definitions below."""
 
     heads: list[B]
     rows: list[list[B]]
@@ -88,7 +88,7 @@ def _written(table: RouthTable, names: Names, printer: Printer[B]) -> list[list[
 
 
 def _named(table: RouthTable, bound: float, printer: Printer[B], *, below: bool = False) -> Names:
-    """Name the entries that are wider than a bound; an entry that occurs again has the name it had.
+    """Name the entries wider than a bound, equal ones alike.
 
     With `below` all that are not one glyph get names below the coefficients, so that a rule can speak of them.
     """
@@ -103,7 +103,7 @@ def _named(table: RouthTable, bound: float, printer: Printer[B], *, below: bool 
 
 
 def _letters(table: RouthTable, printer: Printer[B]) -> list[str]:
-    """Return a letter for the coefficients and one for each row below, none that a parameter is written with."""
+    """Return a letter for the coefficients and one for each row below, different from the parameters."""
     used = set().union(*(entry.names for row in table.rows for entry in row.entries))
     forms = [symbol_latex(name, printer.symbols.get(name)) for name in used]
     taken = {form[0] for form in forms if re.match(r"[A-Za-z](?![A-Za-z])", form)}
@@ -122,18 +122,18 @@ def _name(i: int, j: int, letters: Sequence[str]) -> str:
 def _definition(
     value: Scalar, name: str, table: RouthTable, names: Names, printer: Printer[B], line: float
 ) -> Relation:
-    """Return name = value, or by the two rows above where the value written out is too wide."""
+    """Return name = value, or the definition by the two rows above if the value is too wide."""
     meaning = _made(value, table, names) if _is_wide(value, name, printer, line) else Literal(value)
     return Relation((Literal(Scalar.symbol(name)), meaning), ("=",))
 
 
 def _is_wide(value: Scalar, name: str, printer: Printer[B], line: float) -> bool:
-    """Tell whether name = value is wider than a line."""
+    """Return whether name = value is wider than a line."""
     return printer.relation(Relation((Literal(Scalar.symbol(name)), Literal(value)), ("=",))).width > line
 
 
 def _made(value: Scalar, table: RouthTable, names: Names) -> Formula:
-    """Return how the first entry with this value came about; a coefficient is only its value."""
+    """Return the origin of the first entry with this value; a coefficient has none but its value."""
 
     def short(entry: Scalar) -> Formula:
         return Literal(Scalar.symbol(names[entry]) if entry in names else entry)

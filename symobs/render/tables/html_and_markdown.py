@@ -1,4 +1,4 @@
-"""Routh's table on pages of HTML and in Markdown, which have tables of their own."""
+"""The Routh array as a table of HTML and Markdown."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _GAP = 1.4  # em
 
 
 def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple[str, str]:
-    """Return a table, and the display of what its names stand for, if any."""
+    """Return a table, and the display of the definitions of its names, if any."""
     found = fitted(block, printer, room_for(printer), _GAP, printer.width)
     columns, has_remarks = len(found.rows[0]), any(found.remarks)
     lines: list[str] = []
@@ -39,7 +39,7 @@ def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple
 def markdown_table(
     block: TableBlock, printer: LatexPrinter, words: Words, mathematics: Callable[[str], str]
 ) -> tuple[str, Sequence[Relation]]:
-    """Return a table without a head, and what its names stand for; a column for remarks where there are any."""
+    """Return a table without a head, with a column for remarks if any, and the definitions of its names."""
     found = fitted(block, printer, room_for(printer), _GAP, printer.width)
     columns, has_remarks = len(found.rows[0]), any(found.remarks)
     lines = [[""] * (1 + columns + has_remarks), ["---:", *[":---:"] * columns, *[":---"] * has_remarks]]

@@ -1,4 +1,4 @@
-"""Routh's table in LaTeX and on a terminal: powers, a rule, entries, and remarks beside the rows."""
+"""The Routh array in LaTeX and on a terminal: powers, a rule, entries, and remarks beside the rows."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TIGHT = r"\scriptsize\arraycolsep=1.5pt"
 
 
 def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
-    """Return an array, and below it what its names stand for; `words` sets a remark.
+    """Return an array, and below it the definitions of its names; `words` sets a remark.
 
     A table that is too wide even with names is set small, without remarks.
     """
@@ -51,7 +51,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
 
 
 def room_for(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
-    """Return what a choice of remarks leaves for the entries."""
+    """Return the width left for the entries by a choice of remarks."""
 
     def room(remarks: Sequence[Inlines]) -> float:
         widest = max(_em_width(remark, printer) for remark in remarks)
@@ -73,7 +73,7 @@ _RULE = " │ "
 
 
 def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> tuple[str, str]:
-    """Return the rows in aligned columns, and what their names stand for, if any; `words` writes a remark."""
+    """Return the rows in aligned columns, and the definitions of their names, if any; `words` writes a remark."""
     margin = 2 + len(str(block.table.rows[0].power)) + text_width(_RULE)
 
     def room(remarks: Sequence[Inlines]) -> float:
@@ -94,6 +94,6 @@ def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> tuple[s
 
 
 def _padded(column: Sequence[str]) -> list[str]:
-    """Return texts made equally wide."""
+    """Return texts padded to equal width."""
     widest = max(map(text_width, column))
     return [text + " " * (widest - text_width(text)) for text in column]

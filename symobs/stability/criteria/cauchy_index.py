@@ -1,4 +1,4 @@
-"""How many roots of a polynomial with rational coefficients lie to the right of the imaginary axis, and how many on it.
+"""Numbers of roots in the right half-plane and on the imaginary axis, by the Cauchy index.
 
 Nothing of Routh's table is used.  An irreducible factor f shares a root with f(−s) only where both are equal up to
 sign.  Its roots are then symmetric to the axis, and those on it are the real roots of f(iω).  Any other factor has none
@@ -23,12 +23,12 @@ _VARIABLE = "s"
 
 
 def right_half_plane_roots(coefficients: Sequence[Scalar]) -> int:
-    """Return how many roots have Re s > 0, with multiplicity; the coefficients are rational, highest power first."""
+    """Return the number of roots with Re s > 0, with multiplicity, of rational coefficients, highest power first."""
     return _counted(coefficients)[0]
 
 
 def imaginary_axis_roots(coefficients: Sequence[Scalar]) -> int:
-    """Return how many roots have Re s = 0, with multiplicity; the coefficients are rational, highest power first."""
+    """Return the number of roots with Re s = 0, with multiplicity, of rational coefficients, highest power first."""
     return _counted(coefficients)[1]
 
 
@@ -43,7 +43,7 @@ def _counted(coefficients: Sequence[Scalar]) -> tuple[int, int]:
 
 
 def _of_irreducible(f: Coefficients) -> tuple[int, int]:
-    """Return how many roots of an irreducible polynomial lie on the right, and on the axis."""
+    """Return the numbers of roots of an irreducible polynomial on the right, and on the axis."""
     order = len(f) - 1
     if not any(f[1::2]) or f == [1, 0]:  # symmetric to the origin; the factor s is
         on_axis = _real_roots(_turned(f[0::2])) if order > 1 else 1
@@ -61,7 +61,7 @@ def _turned(even: Coefficients) -> Coefficients:
 
 
 def _on_axis(f: Coefficients) -> tuple[Coefficients, Coefficients]:
-    """Return the part of f(iω)/iⁿ of degree n in ω, and the other part, its sign turned so that left roots count.
+    """Return the part of f(iω)/iⁿ of degree n in ω, and the other part, signed so that left roots count.
 
     f(iω)/iⁿ is Σ aₖ (−i)ᵏ ωⁿ⁻ᵏ: real part a₀ωⁿ − a₂ωⁿ⁻² + …, imaginary part −a₁ωⁿ⁻¹ + a₃ωⁿ⁻³ − ….
     """
@@ -72,13 +72,13 @@ def _on_axis(f: Coefficients) -> tuple[Coefficients, Coefficients]:
 
 
 def _real_roots(f: Coefficients) -> int:
-    """Return how many real roots a polynomial without double roots has: the Cauchy index of f′/f."""
+    """Return the number of real roots of a square-free polynomial: the Cauchy index of f′/f."""
     order = len(f) - 1
     return _index([(order - k) * c for k, c in enumerate(f[:-1])], f)
 
 
 def _index(above: Coefficients, below: Coefficients) -> int:
-    """Return the Cauchy index of above/below over the whole line, by the chain of Sturm."""
+    """Return the Cauchy index of above/below over the real line, by Sturm's chain."""
     chain = [below, above]
     while rest := _remainder(chain[-2], chain[-1]):
         chain.append([-c for c in rest])
@@ -88,7 +88,7 @@ def _index(above: Coefficients, below: Coefficients) -> int:
 
 
 def _remainder(f: Coefficients, by: Coefficients) -> Coefficients:
-    """Return the remainder of a division, whose scale does not matter as long as it is positive."""
+    """Return a positive multiple of the remainder of a division."""
     left = list(f)
     while len(left) >= len(by):
         lead = left[0] / by[0]
@@ -98,6 +98,6 @@ def _remainder(f: Coefficients, by: Coefficients) -> Coefficients:
 
 
 def _stripped(f: Coefficients) -> Coefficients:
-    """Return the coefficients from the first that is not 0 on."""
+    """Return the coefficients from the first nonzero one on."""
     start = next((k for k, c in enumerate(f) if c), len(f))
     return f[start:]

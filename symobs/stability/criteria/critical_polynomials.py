@@ -1,4 +1,4 @@
-"""Where roots can cross the stability boundary: the critical polynomials of a polynomial with parameters.
+"""Critical polynomials: where roots of a polynomial with parameters can cross the stability boundary.
 
 Let a₀ wⁿ + … + aₙ have its roots in Re w < 0 exactly where the given polynomial is stable.  As the parameters move, a root
 crosses the imaginary axis only where aₙ = 0 or the Hurwitz determinant Δₙ₋₁ = 0, since aₙ = ± a₀ ∏ rᵢ and
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StabilityBoundary:
-    """What stable means: Re s < −margin, or in discrete time |z| < radius."""
+    """The stability boundary: Re s < −margin, or in discrete time |z| < radius."""
 
     variable: str
     discrete: bool = False
@@ -43,11 +43,11 @@ class StabilityBoundary:
         return self.margin.names | self.radius.names
 
     def substitute(self, values: Mapping[str, Scalar]) -> StabilityBoundary:
-        """Return the boundary with symbols replaced."""
+        """Return the boundary with symbols substituted."""
         return replace(self, margin=self.margin.substitute(values), radius=self.radius.substitute(values))
 
     def moved(self, polynomial: Scalar) -> Scalar:
-        """Return χ(s − margin), or χ(radius z): stable in the usual sense where χ is stable in this one."""
+        """Return χ(s − margin), or χ(radius z), which is stable in the usual sense where χ is in this one."""
         if self.is_usual:
             return polynomial
         variable = Scalar.symbol(self.variable)
@@ -58,7 +58,7 @@ class StabilityBoundary:
 
 @dataclass(frozen=True)
 class CriticalPolynomials:
-    """The polynomial a₀ wⁿ + … + aₙ without denominators, and what may vanish where stability changes."""
+    """The polynomial a₀ wⁿ + … + aₙ without denominators, and its critical polynomials."""
 
     polynomial: Scalar
     boundary: StabilityBoundary
@@ -71,24 +71,24 @@ class CriticalPolynomials:
 
     @cached_property
     def denominator(self) -> Scalar:
-        """What the polynomial is divided by: where it vanishes there is no polynomial."""
+        """The denominator of the polynomial, which is undefined where it vanishes."""
         return self.polynomial.denominator
 
     @cached_property
     def written(self) -> tuple[Scalar, ...]:
-        """The coefficients Routh's table begins with: of the moved polynomial, in discrete time without denominators."""
+        """The first coefficients of the Routh array: of the shifted polynomial, in discrete time without denominators."""
         found = self.boundary.moved(self.polynomial).coefficients(self.boundary.variable)
         return tuple(c * self.scale for c in bilinear(found)) if self.boundary.discrete else found
 
     @cached_property
     def headed(self) -> tuple[Scalar, ...]:
-        """Those from the first that is not zero: in discrete time a root z = 1 for all parameters lowers the degree."""
+        """The coefficients from the first nonzero one on: in discrete time a fixed root z = 1 lowers the degree."""
         first = next(k for k, coefficient in enumerate(self.written) if not coefficient.is_zero)
         return self.written[first:]
 
     @cached_property
     def scale(self) -> Scalar:
-        """What clears the denominators of the moved polynomial."""
+        """The factor that clears the denominators of the shifted polynomial."""
         return self.boundary.moved(self.polynomial).denominator
 
     @cached_property
@@ -103,7 +103,7 @@ class CriticalPolynomials:
 
     @cached_property
     def values(self) -> tuple[Scalar, ...]:
-        """a₀, aₙ and Δₙ₋₁, those that are different."""
+        """The distinct ones of a₀, aₙ and Δₙ₋₁."""
         hurwitz = hurwitz_matrix(self.coefficients)
         last = max(self.order - 1, 0)
         found = [self.coefficients[0], self.coefficients[-1]]
@@ -113,7 +113,7 @@ class CriticalPolynomials:
 
     @property
     def never(self) -> bool:
-        """Whether one of them vanishes identically: then there is always a root on the boundary, or beyond."""
+        """Whether one of them vanishes identically, so that a root always lies on the boundary or beyond."""
         return any(value.is_zero for value in self.values)
 
     @cached_property
@@ -123,12 +123,12 @@ class CriticalPolynomials:
 
     @cached_property
     def factors(self) -> tuple[Scalar, ...]:
-        """The same, and the parameters of declared sign: they end where they vanish."""
+        """The proper factors, and the parameters of declared sign."""
         signed = [Scalar.symbol(name) for name in self.parameters if self.signs.get(name, "real") != "real"]
         return tuple(dict.fromkeys([*self.proper, *signed]))
 
     def allows(self, point: Mapping[str, Fraction]) -> bool:
-        """Tell whether the declared signs allow a rational point off the critical set."""
+        """Return whether the declared signs allow a rational point off the critical set."""
         up, down = {"positive", "nonnegative"}, {"negative", "nonpositive"}
         return all(
             value < 0 if self.signs.get(name) in down else value > 0
@@ -137,12 +137,12 @@ class CriticalPolynomials:
         )
 
     def is_stable(self, point: Mapping[str, Fraction]) -> bool:
-        """Tell whether the polynomial is stable at a rational point, by Routh's table; never where it has no meaning."""
+        """Return whether the polynomial is stable at a rational point, by the Routh array; False where it is undefined."""
         return value_at(self.denominator, point) != 0 and all_to_the_left(self.at(point))
 
     @cached_property
     def conditions(self) -> tuple[Scalar, ...]:
-        """What is positive exactly where the polynomial is stable (Liénard and Chipart 1914); a₀ may be of either sign."""
+        """The polynomials that are positive if and only if χ is stable (Liénard and Chipart 1914), for either sign of a₀."""
         a = self.coefficients
         found = [*lienard_chipart([a[0] * c for c in a]), *lienard_chipart([a[0] * c for c in a], others=True)]
         return tuple(dict.fromkeys(found))
@@ -153,6 +153,6 @@ class CriticalPolynomials:
 
 
 def irreducible(values: Iterable[Scalar]) -> tuple[Scalar, ...]:
-    """Return the distinct irreducible factors that are not constant."""
+    """Return the distinct nonconstant irreducible factors."""
     found = {f: None for value in values if not value.is_constant for f, _ in value.numerator.factors()[1]}
     return tuple(found)

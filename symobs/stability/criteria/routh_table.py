@@ -1,4 +1,4 @@
-"""Routh's table of a polynomial, with the two rules for zeros, and the check of such a table.
+"""The Routh array of a polynomial, with the two rules for zeros, and its check.
 
 The rows of a₀ sⁿ + … + aₙ are headed by the powers sⁿ, sⁿ⁻¹, …, s⁰.  The first two hold the coefficients, every other
 
@@ -26,7 +26,7 @@ ORIGINS = ("coefficients", "recurrence", "epsilon", "auxiliary")
 
 @dataclass(frozen=True)
 class RouthRow:
-    """The row of one power of the variable: its entries, and how it came about (one of `ORIGINS`)."""
+    """The row of one power of the variable: its entries, and its origin (one of `ORIGINS`)."""
 
     power: int
     entries: tuple[Scalar, ...]
@@ -35,14 +35,14 @@ class RouthRow:
 
 @dataclass(frozen=True)
 class RouthTable:
-    """The rows from sⁿ to s⁰; `epsilon` is the generator that stands for a small positive number, empty where none does."""
+    """The rows from sⁿ to s⁰; `epsilon` is the generator of a small positive number, empty if there is none."""
 
     rows: tuple[RouthRow, ...]
     epsilon: str = ""
 
     @property
     def first_column(self) -> tuple[Scalar, ...]:
-        """The entries whose signs decide."""
+        """The entries of the first column."""
         return tuple(row.entries[0] for row in self.rows)
 
     @property
@@ -58,7 +58,7 @@ class RouthTable:
 
 
 def routh_table(coefficients: Sequence[Scalar], taken: Iterable[str] = ()) -> RouthTable:
-    """Return the table of the polynomial with these coefficients, highest power first.
+    """Return the Routh array of the coefficients, highest power first.
 
     ε has none of the names `taken`, which other things have.  Raises ValueError where the first coefficient is zero.
     """
@@ -77,7 +77,7 @@ def routh_table(coefficients: Sequence[Scalar], taken: Iterable[str] = ()) -> Ro
 
 
 def _free_name(taken: set[str]) -> str:
-    """Return ε, or the first ε with an index that nothing else is called."""
+    """Return ε, or the first unused ε with an index."""
     name, index = "epsilon", 0
     while name in taken:
         index += 1
@@ -90,12 +90,12 @@ def _recurrence(p: Sequence[Scalar], q: Sequence[Scalar], power: int) -> tuple[S
 
 
 def _at(row: Sequence[Scalar], place: int) -> Scalar:
-    """Return an entry, 0 beyond the end of the row."""
+    """Return an entry, 0 beyond the end of a row."""
     return row[place] if place < len(row) else Scalar.of(0)
 
 
 def _usable(row: RouthRow, above: RouthRow, epsilon: str) -> RouthRow:
-    """Return the row that stands in the table: with what replaces a zero by which the next row would be divided."""
+    """Return the row with a zero pivot replaced by ε or by the derivative of the auxiliary polynomial."""
     first, *others = row.entries
     if first:
         return row
@@ -105,7 +105,7 @@ def _usable(row: RouthRow, above: RouthRow, epsilon: str) -> RouthRow:
 
 
 def _derivative(above: RouthRow) -> tuple[Scalar, ...]:
-    """Return the coefficients of the derivative of the polynomial that a row holds."""
+    """Return the coefficients of the derivative of the polynomial of a row."""
     return tuple(entry * (above.power - 2 * k) for k, entry in enumerate(above.entries) if above.power > 2 * k)
 
 
@@ -113,7 +113,7 @@ def _derivative(above: RouthRow) -> tuple[Scalar, ...]:
 
 
 def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
-    """Tell whether this is the table of the polynomial with these coefficients.
+    """Return whether a table is the Routh array of these coefficients.
 
     Nothing is divided: a row is held to the two above it by cross-multiplication.
     """
@@ -137,7 +137,7 @@ def is_routh_table(table: RouthTable, coefficients: Sequence[Scalar]) -> bool:
 def _follows(
     row: RouthRow, above: RouthRow, before: RouthRow | None, epsilon: str, coefficients: Sequence[Scalar]
 ) -> bool:
-    """Tell whether a row is what the two rows above it ask for; below the first one it holds every other coefficient."""
+    """Return whether a row follows from the two rows above it, or holds every other coefficient."""
     if before is None:
         factor, wanted, rule = Scalar.of(1), tuple(coefficients[1::2]), "coefficients"
     else:
@@ -159,7 +159,7 @@ def _follows(
 
 
 def sign_changes(table: RouthTable) -> int:
-    """Return how often the first column of a table without parameters changes sign, as ε tends to 0 from above.
+    """Return the number of sign changes in the first column of a numeric array, as ε tends to 0 from above.
 
     It is the number of roots with Re s > 0, except that ε may mislead: where there are roots on the imaginary axis, and
     where it stands in several places, which one ε makes equally small.
@@ -168,7 +168,7 @@ def sign_changes(table: RouthTable) -> int:
 
 
 def _sign(value: Scalar, epsilon: str) -> int:
-    """Return 1 or −1: the sign of a value that is not 0, for all small ε > 0."""
+    """Return 1 or −1: the sign of a nonzero value for all small ε > 0."""
     lowest = [_lowest(part, epsilon) for part in (value.numerator, value.denominator)]
     return 1 if (lowest[0] > 0) == (lowest[1] > 0) else -1
 

@@ -31,7 +31,7 @@ class StabilityVerdict:
     positive: tuple[Scalar, ...] = ()
 
     def inequalities(self, signs: Mapping[str, str]) -> list[str]:
-        """Return the conditions as texts: none where it always holds, `False` where it never does."""
+        """Return the conditions as texts: none if always stable, `False` if never."""
         if self.verdict == "no":
             return ["False"]
         solved = (as_inequality(value, signs) for value in self.positive)
@@ -80,7 +80,7 @@ def hurwitz_matrix(coefficients: Sequence[Scalar]) -> Matrix:
 
 
 def lienard_chipart(coefficients: Sequence[Scalar], *, others: bool = False) -> list[Scalar]:
-    """Return what must be positive for a₀ > 0: aₙ, aₙ₋₂, … with Δₙ₋₁, Δₙ₋₃, …; or, of the others, aₙ, aₙ₋₁, aₙ₋₃, …."""
+    """Return the conditions for a₀ > 0: aₙ, aₙ₋₂, … with Δₙ₋₁, Δₙ₋₃, …; or aₙ, aₙ₋₁, aₙ₋₃, …, all positive."""
     order = len(coefficients) - 1
     conditions = [coefficients[k] for k in ([order, *range(order - 1, 0, -2)] if others else range(order, 0, -2))]
     hurwitz = hurwitz_matrix(coefficients)
@@ -91,7 +91,7 @@ def lienard_chipart(coefficients: Sequence[Scalar], *, others: bool = False) -> 
 
 
 def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> StabilityVerdict:
-    """Strip what the declared signs settle; a condition that can never be positive settles the whole."""
+    """Drop conditions implied by the declared signs; one that is never positive decides `no`."""
     needed: dict[Scalar, None] = {}
     for condition in conditions:
         sign = sign_of(condition, signs)
@@ -104,7 +104,7 @@ def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability
 
 
 def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
-    """Return the part of a condition whose sign is not settled: factors of known sign and even powers are dropped.
+    """Return a condition without factors of known sign and even powers.
 
     An even power is kept as the factor's square where the factor may vanish, since the inequality is strict.
     """
@@ -119,7 +119,7 @@ def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
 
 
 def on_boundary(factor: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
-    """Tell whether all roots of an irreducible factor surely lie on the imaginary axis (the unit circle), each once.
+    """Return whether all roots of an irreducible factor are simple and certainly on the imaginary axis (unit circle).
 
     q(s) = p(s²) has only simple imaginary roots exactly when q + q′ is stable (Hermite and Biehler): the roots of p are
     then real, negative and distinct.
@@ -147,7 +147,7 @@ def is_marginal(
     discrete: bool,
     apart: Collection[Scalar] = (),
 ) -> bool:
-    """Tell whether all roots surely lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple.
+    """Return whether all roots certainly lie in Re s ≤ 0 (|z| ≤ 1), those on the boundary simple.
 
     Two factors with roots on the boundary must not meet: `apart` holds irreducible polynomials known not to vanish.
     """
@@ -162,7 +162,7 @@ def is_marginal(
 
 
 def meetings(factors: Iterable[Scalar], variable: str, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
-    """Return the irreducible polynomials in the parameters that vanish where two of some polynomials have a common root."""
+    """Return the irreducible factors of the pairwise resultants of some polynomials."""
     pairs = (resultant(left, right, variable) for left, right in combinations(factors, 2))
     return vanishing_factors(pairs, signs)
 
@@ -170,7 +170,7 @@ def meetings(factors: Iterable[Scalar], variable: str, signs: Mapping[str, str])
 def marginal_where(
     polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool
 ) -> tuple[Scalar, ...]:
-    """Return what must be ≥ 0 for the one root of a linear polynomial to lie in Re s ≤ 0 (|z| ≤ 1), where it can fail."""
+    """Return the conditions, each ≥ 0, for the root of a linear polynomial to lie in Re s ≤ 0 (|z| ≤ 1)."""
     coefficients = monic(polynomial, variable).coefficients(variable)
     if len(coefficients) != 2:
         return ()
@@ -180,7 +180,7 @@ def marginal_where(
 
 
 def is_beyond(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> bool:
-    """Tell whether some root surely lies in Re s > 0 (|z| > 1).
+    """Return whether some root certainly lies in Re s > 0 (|z| > 1).
 
     A factor with numbers for coefficients has one there where it is neither stable nor wholly on the boundary, since its
     roots on the boundary would bring a mirror image of every other.  With parameters two coefficients of surely opposite
@@ -208,7 +208,7 @@ def monic(polynomial: Scalar, variable: str) -> Scalar:
 
 
 def stable_somewhere(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> set[bool]:
-    """Return which outcomes are met at points that respect the declared signs: a proof that both occur, or neither."""
+    """Return the outcomes at sample points with the declared signs, which prove that both occur."""
     generator, met = random.Random(0), set[bool]()  # noqa: S311 - the same points in every run
     names = sorted(set(polynomial.names) - {variable})
     for _ in range(_POINTS):
@@ -231,7 +231,7 @@ def _number(generator: random.Random, sign: str) -> Fraction:
 
 
 def no_stable_compensator(transfer_function: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
-    """Tell whether a strictly proper P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
+    """Return whether a strictly proper P = N/χ has a zero z > 0 with χ(z) < 0, χ monic: then nothing stable stabilises it.
 
     With F = n/δ the loop's polynomial is χδ + Nn, which is monic as χδ is.  It is positive at z, being stable, so
     δ(z) < 0, although δ(s) tends to +∞: δ has a root beyond z.  (Half of the parity interlacing property of Youla,

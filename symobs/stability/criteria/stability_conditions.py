@@ -1,4 +1,4 @@
-"""For which parameters are all roots stable: the polynomials that must be positive, by Liénard and Chipart.
+"""Stability conditions in the parameters, by Liénard and Chipart.
 
 The roots of p(s) lie in Re s < −α where those of p(s − α) lie in Re s < 0, and in |z| < ρ where those of p(ρ z) lie in
 |z| < 1.  Where the leading coefficient vanishes a root has gone to infinity: that is not stable, and no condition
@@ -37,7 +37,7 @@ def stable_where(
     margin: Scalar | None = None,
     radius: Scalar | None = None,
 ) -> Simplified:
-    """Return the simplest list of polynomials found that are positive exactly where all roots are stable, with proof.
+    """Return the simplest list found of polynomials positive if and only if all roots are stable, with proof.
 
     Roots are stable in Re s < −margin, in discrete time in |z| < radius.
     """
@@ -55,7 +55,7 @@ def _terms(values: Sequence[Scalar]) -> int:
 
 
 def _length(positive: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[int, int, int]:
-    """Return how many conditions there are, how many are solved for no parameter, and how long all are."""
+    """Return the sort key of a list: number of conditions, number not solved for a parameter, total length."""
     written = [as_inequality(v, signs, beside=[o for o in positive if o != v]) for v in positive]
     open_ = sum(left == value for (left, _, _), value in zip(written, positive, strict=True) if value.size > 2)
     return len(positive), open_, _terms(positive)
@@ -72,7 +72,7 @@ def is_stable_where(
     radius: Scalar | None = None,
     proof: Equivalence | None = None,
 ) -> bool:
-    """Tell whether it is proven that all roots are stable exactly where all of `said` are positive (trusted).
+    """Return whether it is proved that all roots are stable if and only if all of `said` are positive (trusted).
 
     A proof that comes along is checked against the lists computed here; else one is looked for.  Saying something that
     is seen to follow from the rest is refused.
@@ -91,7 +91,7 @@ def is_stable_where(
 
 
 def _is_checked(proof: Equivalence, lists: Sequence[Sequence[Scalar]], signs: Mapping[str, str]) -> bool:
-    """Tell whether a proof is about one of the lists, and holds."""
+    """Return whether a proof concerns one of the lists, and holds."""
     return any(set(proof.raw) == set(map(cleared, found)) for found in lists) and proof.holds(signs)
 
 
@@ -109,7 +109,7 @@ def stability_conditions(
     margin: Scalar | None = None,
     radius: Scalar | None = None,
 ) -> list[Scalar]:
-    """Return the polynomials that are positive exactly where all roots lie in Re s < −margin, |z| < radius."""
+    """Return the polynomials positive if and only if all roots lie in Re s < −margin (|z| < radius)."""
     lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
     return min(lists, key=_terms)
 
@@ -123,7 +123,7 @@ def condition_lists(
     margin: Scalar | None = None,
     radius: Scalar | None = None,
 ) -> tuple[list[Scalar], list[Scalar]]:
-    """Return both lists of Liénard and Chipart, each of which says the same."""
+    """Return both equivalent lists of Liénard and Chipart."""
     moved, besides = _moved(polynomial, variable, margin=margin, radius=radius), list[Scalar]()
     if radius is not None and sign_of(radius, signs) != "positive":
         besides.append(radius.numerator * radius.denominator)
@@ -152,13 +152,13 @@ def _parts(polynomial: Scalar, variable: str) -> tuple[list[Scalar], list[Scalar
 
 
 def _with_positive_lead(coefficients: Sequence[Scalar], signs: Mapping[str, str]) -> list[Scalar]:
-    """Return the coefficients times ±1, or times the leading one where its sign is not certain."""
+    """Return the coefficients times ±1, or times the leading coefficient if its sign is uncertain."""
     lead = {"positive": Scalar.of(1), "negative": Scalar.of(-1)}.get(sign_of(coefficients[0], signs), coefficients[0])
     return [lead * c for c in coefficients]
 
 
 def _conditions(coefficients: Sequence[Scalar], *, discrete: bool, others: bool) -> list[Scalar]:
-    """Return what must be positive where the leading coefficient is; of the bilinear image it has to be too."""
+    """Return the conditions for a positive leading coefficient, which for a bilinear image is a condition itself."""
     if not discrete:
         return lienard_chipart(coefficients, others=others)
     image = bilinear(coefficients)

@@ -1,4 +1,4 @@
-"""Questions about regions given by conjunctions: empty, one inside the other, the same.
+"""Decisions on conjunctions of inequalities: emptiness, implication, equivalence.
 
 In turn: a rational point, tried exactly; a proof by products.  Where neither is found the answer is `undecided`.
 """
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Decision:
-    """`yes`, `no` or `undecided`, with the steps that prove a yes or the point that proves a no."""
+    """A decision, `yes`, `no` or `undecided`, with the proof of a yes or the point that refutes it."""
 
     verdict: str
     point: Point | None = None
@@ -34,7 +34,7 @@ _UNDECIDED = Decision("undecided")
 
 
 def decide_empty(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Decision:
-    """Tell whether the conditions, each > 0, hold nowhere; the steps of a yes lead from them to 0 > 0."""
+    """Decide whether the conditions, each > 0, are contradictory; a yes has the steps from them to 0 > 0."""
     state = _in_parts(conditions, signs)
     point, steps = nonempty_or_not(state.current, signs, Resources(0))
     if point is not None:
@@ -43,7 +43,7 @@ def decide_empty(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Deci
 
 
 def implies(conditions: Sequence[Scalar], other: Scalar, signs: Mapping[str, str]) -> Decision:
-    """Tell whether other > 0 wherever all conditions are > 0; a point of a no is one where they are and it is not."""
+    """Decide whether the conditions, each > 0, imply other > 0; a no has a counterexample."""
     state, wanted = _in_parts(conditions, signs, split=True), _in_parts((other,), signs)
     found = [_follows(part, state.current, signs) for part in wanted.current]
     for decision in found:
@@ -56,7 +56,7 @@ def implies(conditions: Sequence[Scalar], other: Scalar, signs: Mapping[str, str
 
 
 def equivalence_of(raw: Sequence[Scalar], said: Sequence[Scalar], signs: Mapping[str, str]) -> Equivalence | None:
-    """Return the proof that two lists of conditions hold at the same points; None where none is found.
+    """Return a proof that two lists of conditions are equivalent, None if none is found.
 
     Rational functions stand in it as numerator times denominator.
     """
@@ -85,7 +85,7 @@ def _follows(part: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) ->
 
 
 def _completed(point: Point, values: Sequence[Scalar], signs: Mapping[str, str]) -> Point:
-    """Return the point with values for names that play no part."""
+    """Return the point completed by values for names that do not occur."""
     missing = {name for name in names_of(values) if name not in point}
     usual = {name: Fraction(-1 if signs.get(name) in {"negative", "nonpositive"} else 1) for name in missing}
     return {**point, **usual}

@@ -1,4 +1,4 @@
-"""A list of values to be positive while it is rewritten: what each is made of, with the steps there and back."""
+"""Factorisation of the conditions of a list, with the proof steps in both directions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def cleared(value: Scalar) -> Scalar:
 
 @dataclass(frozen=True)
 class InequalitySystem:
-    """The list as it stands, the steps from it to the first one, and the steps from the first one to it."""
+    """A list of conditions, the steps from it to the original list, and the steps from the original list to it."""
 
     current: tuple[Scalar, ...]
     forward: tuple[Step, ...] = ()
@@ -44,12 +44,12 @@ class InequalitySystem:
         )
 
     def without(self, value: Scalar) -> tuple[Scalar, ...]:
-        """Return the others."""
+        """Return the other conditions."""
         return tuple(other for other in self.current if other != value)
 
 
 def split_into_factors(state: InequalitySystem, value: Scalar, signs: Mapping[str, str]) -> InequalitySystem:
-    """Replace a value by what of it is open: a product of odd powers, squares, and factors that are never negative."""
+    """Replace a value by its factors of uncertain sign, without squares and factors that are never negative."""
     if sign_of(value, signs) == "positive":
         return state.replaced(value, (), (by_signs(value),))
     if value.is_constant or value.size > FACTORED_UP_TO:
@@ -85,7 +85,7 @@ def split_into_factors(state: InequalitySystem, value: Scalar, signs: Mapping[st
 
 
 def _odd_factors(value: Scalar) -> tuple[Scalar, ...]:
-    """Return the factors of a product without squares; nothing of a square and of a long polynomial."""
+    """Return the odd factors of a product; nothing for a square or a long polynomial."""
     if value.size > FACTORED_UP_TO:
         return ()
     factors = value.factors()[1]
@@ -93,7 +93,7 @@ def _odd_factors(value: Scalar) -> tuple[Scalar, ...]:
 
 
 def split_products(state: InequalitySystem, signs: Mapping[str, str], given: Sequence[Scalar] = ()) -> InequalitySystem:
-    """Split products, those given apart, as long as the others settle the sign of a factor."""
+    """Split products as long as the other conditions imply the sign of a factor."""
     waiting = _products(state, given)
     while waiting:
         split = _split_one(state, waiting.pop(), signs)

@@ -54,7 +54,7 @@ class _Column:
 
 
 def combination(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Combination | None:
-    """Return such a combination with a positive right side, None where this search finds none."""
+    """Return a combination with a positive right side, None if the search finds none."""
     if goal.size + sum(value.size for value in known) > _ROWS:
         return None
     columns = list(islice(_columns(goal, known, signs), _COLUMNS + 1))
@@ -92,7 +92,7 @@ def _read(columns: Sequence[_Column], solution: Mapping[int, Fraction]) -> Combi
 
 
 def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> Iterable[_Column]:
-    """Return the unknown coefficients that might help: with multiples of monomials that occur elsewhere."""
+    """Return the candidate unknown coefficients: with multiples of monomials that occur elsewhere."""
     products: list[tuple[tuple[int, ...], Terms]] = [((k,), _terms(value)) for k, value in enumerate(known)]
     pairs = combinations_with_replacement(range(len(known)), 2)
     products += [((j, k), _terms(known[j] * known[k])) for j, k in pairs if known[j].size * known[k].size <= _ROWS]
@@ -118,7 +118,7 @@ def _columns(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) ->
 
 
 def _squares(targets: set[Monomial], signs: Mapping[str, str]) -> Iterable[_Column]:
-    """Return (u ± v)² for monomials u, v of which the product may have either sign."""
+    """Return (u ± v)² for monomials u, v with a product of uncertain sign."""
     roots = sorted({_half(monomial) for monomial in targets} - {None}, key=str)
     for first, second in combinations([root for root in roots if root is not None], 2):
         if _sign(_product(first, second), signs) == "real" and _product(first, second) in targets:
@@ -129,7 +129,7 @@ def _squares(targets: set[Monomial], signs: Mapping[str, str]) -> Iterable[_Colu
 
 
 def _half(monomial: Monomial) -> Monomial | None:
-    """Return the monomial whose square this is."""
+    """Return the square root of a monomial."""
     return tuple((name, e // 2) for name, e in monomial) if all(e % 2 == 0 for _, e in monomial) else None
 
 
@@ -139,7 +139,7 @@ def _product(left: Monomial, right: Monomial) -> Monomial:
 
 
 def _certain_part(monomial: Monomial, signs: Mapping[str, str]) -> Monomial:
-    """Return the monomial without the odd powers of names that may have either sign."""
+    """Return the monomial without the odd powers of names of uncertain sign."""
     up = {"positive", "nonnegative"}
     return tuple(
         (n, e - (e % 2 and signs.get(n, "real") not in up)) for n, e in monomial if e > 1 or signs.get(n) in up
@@ -147,7 +147,7 @@ def _certain_part(monomial: Monomial, signs: Mapping[str, str]) -> Monomial:
 
 
 def _quotients(targets: Iterable[Monomial], terms: Terms) -> set[Monomial]:
-    """Return 1 and the monomials which carry some term to a target."""
+    """Return 1 and the quotients of targets by terms."""
     found = {NOTHING}
     for target in targets:
         there = dict(target)
@@ -181,7 +181,7 @@ def _scalar(monomial: Monomial) -> Scalar:
 
 
 def _sign(monomial: Monomial, signs: Mapping[str, str]) -> str:
-    """Return `positive`, `nonnegative`, or `real` of what may be negative."""
+    """Return `positive`, `nonnegative`, or `real` if the sign is uncertain."""
     weak = down = False
     for name, exponent in monomial:
         sign = signs.get(name, "real")
@@ -193,7 +193,7 @@ def _sign(monomial: Monomial, signs: Mapping[str, str]) -> str:
 
 
 def _feasible(rows: Sequence[Monomial], columns: Sequence[Mapping[Monomial, int]]) -> dict[int, Fraction] | None:
-    """Return x ≥ 0 with Σ xⱼ columnⱼ = 1 in the first row and 0 in the others, None where this ends without one.
+    """Return x ≥ 0 with Σ xⱼ columnⱼ = e₁ by the simplex method, None if none is found.
 
     The simplex method on rows of integers, each up to a positive factor; the entry at `_RIGHT` is the right side.
     The last row is the sum of the artificial unknowns, which has to become 0.
@@ -227,7 +227,7 @@ def _feasible(rows: Sequence[Monomial], columns: Sequence[Mapping[Monomial, int]
 
 
 def _eliminated(line: Mapping[int, int], pivot: Mapping[int, int], place: int) -> dict[int, int]:
-    """Return a positive multiple of the line less what of the pivot's line makes its entry 0."""
+    """Return a positive multiple of the line minus the multiple of the pivot's line that makes its entry 0."""
     keep, take = pivot[place], line[place]
     found = {j: keep * entry for j, entry in line.items()}
     for j, entry in pivot.items():

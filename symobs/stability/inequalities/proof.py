@@ -49,7 +49,7 @@ class Opposite:
 
 @dataclass(frozen=True)
 class ProvedByZ3:
-    """z3 says that the value is positive wherever the values of `given` are."""
+    """A verdict of z3: the value is positive wherever the values of `given` are."""
 
     value: Scalar
     given: tuple[Scalar, ...]
@@ -60,7 +60,7 @@ Step: TypeAlias = Combined | Opposite | ProvedByZ3
 
 @dataclass(frozen=True)
 class Equivalence:
-    """Two lists of which each follows from the other: `forward` leads from `kept` to `raw`, `backward` back."""
+    """Two equivalent lists: `forward` leads from `kept` to `raw`, `backward` back."""
 
     raw: tuple[Scalar, ...]
     kept: tuple[Scalar, ...]
@@ -73,7 +73,7 @@ class Equivalence:
 
 
 def proves(steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether the steps, each of which is checked, lead from `known` > 0 to every goal > 0."""
+    """Return whether the steps, each checked, lead from `known` > 0 to every goal > 0."""
     found = set(known)
     for step in steps:
         if not _follows(step, found, signs):
@@ -83,7 +83,7 @@ def proves(steps: Sequence[Step], known: Sequence[Scalar], goals: Sequence[Scala
 
 
 def refutes(steps: Sequence[Step], known: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether the steps show that the known values are nowhere all positive."""
+    """Return whether the steps prove that the known values are nowhere all positive."""
     return proves(steps, known, (ZERO,), signs)
 
 
@@ -106,7 +106,7 @@ def _follows(step: Step, known: set[Scalar], signs: Mapping[str, str]) -> bool:
 
 
 def _is_never_negative(coefficient: Scalar, signs: Mapping[str, str]) -> bool:
-    """Tell whether a coefficient is defined everywhere, and nowhere negative."""
+    """Return whether a coefficient is everywhere defined and nonnegative."""
     weak = {"positive", "nonnegative", "zero"}
     return sign_of(coefficient, signs) in weak and never_zero(coefficient.denominator, signs)
 
@@ -119,7 +119,7 @@ def _sum(products: Sequence[Product]) -> Scalar:
 
 
 def asks_z3(proof: Equivalence | None) -> bool:
-    """Tell whether a proof rests on what z3 says."""
+    """Return whether a proof depends on z3."""
     steps = (*proof.forward, *proof.backward) if proof is not None else ()
     return any(_asks(step) for step in steps)
 
@@ -129,7 +129,7 @@ def _asks(step: Step) -> bool:
 
 
 def by_signs(value: Scalar) -> Combined:
-    """Return the step for a value that the declared signs make positive."""
+    """Return the step for a value positive by the declared signs."""
     return Combined(value, UNIT, ((value, ()),))
 
 
@@ -139,12 +139,12 @@ def is_product(value: Scalar, factors: Sequence[Scalar]) -> Combined:
 
 
 def is_quotient(value: Scalar, product: Scalar, factors: Sequence[Scalar], coefficient: Scalar = ONE) -> Combined:
-    """Return the step for a value whose product with known factors and a coefficient of known sign is known."""
+    """Return the step for a quotient of a known value by known factors and a coefficient of known sign."""
     return Combined(value, ((coefficient, tuple(factors)),), ((ONE, (product,)),))
 
 
 def contradiction(value: Scalar) -> Combined:
-    """Return the step to 0 > 0 from value > 0 where the value is never above 0."""
+    """Return the step to 0 > 0 from value > 0 for a value that is never positive."""
     return Combined(ZERO, (), ((ONE, (value,)), (-value, ())))
 
 

@@ -1,4 +1,4 @@
-"""Why a value is positive wherever others are: a search that needs no other program; `proof` checks what it finds.
+"""Search for a proof that a value is positive wherever others are; `proof` checks the result.
 
 *Shifted positivity*: where a known value is linear in a parameter p, its coefficient g₁ of certain sign, put
 p = (t − g₀)/g₁ with a new t > 0, the known value.  When enough parameters are replaced, every term of the goal may
@@ -43,7 +43,7 @@ _DOWN = {"negative", "nonpositive", "zero"}
 
 @dataclass(frozen=True)
 class Open:
-    """A polynomial in the names of a view, and the known value it is in the old names."""
+    """A polynomial in the names of a view, and the same known value in the old names."""
 
     polynomial: Scalar
     value: Scalar
@@ -51,7 +51,7 @@ class Open:
 
 @dataclass()
 class _SearchBudget:
-    """What is left to be tried for one goal."""
+    """The remaining steps of the search for one goal."""
 
     views: int
     programs: int
@@ -82,7 +82,7 @@ class View:
 
 
 def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...] | None:
-    """Return steps from the known values, all positive, to goal > 0; None where none are found."""
+    """Return steps from the known values, all positive, to goal > 0, None if none are found."""
     if goal in known:
         return ()
     if sign_of(goal, signs) == "positive":
@@ -94,7 +94,7 @@ def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tu
 
 
 def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...] | None:
-    """Return steps from the known values to 0 > 0; None where none are found."""
+    """Return steps from the known values to 0 > 0, None if none are found."""
     for value in known:
         if sign_of(value, signs) in _DOWN:
             return (contradiction(value),)
@@ -105,7 +105,7 @@ def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...
 def prove_by_opposite(
     value: Scalar, multiple: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]
 ) -> tuple[Step, ...] | None:
-    """Return the steps to value > 0 where −value > 0 is contradictory and a multiple of the value is known."""
+    """Return the steps to value > 0 if −value > 0 is contradictory and a multiple of the value is known."""
     cofactor = multiple / value
     other = Combined(-cofactor, ((ONE, (-value,)),), ((ONE, (multiple,)),))
     found = refute((-value, -cofactor, *known), signs)
@@ -192,7 +192,7 @@ def _replaced(view: View, place: int, name: str) -> tuple[View, Mapping[str, Sca
 
 
 def _stripped(item: Open, view: View) -> View | None:
-    """Add a known value, less the factors whose sign is certain in the view; None where nothing is left of it."""
+    """Add a known value without factors of certain sign; return None if it becomes constant."""
     if sign_of(item.polynomial, view.signs) == "positive":
         return None
     unit, factors = item.polynomial.factors()
@@ -260,7 +260,7 @@ def _finished(goal: Scalar, steps: tuple[Step, ...]) -> tuple[Step, ...]:
 
 
 def _by_combination(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
-    """Return the steps where multiples of what is known add up to a multiple of the image."""
+    """Return the steps by a positive combination of the known values."""
     parts = _over_positive(image, view)
     if parts is None:
         return None

@@ -1,4 +1,4 @@
-"""Rational points where polynomials are positive: floats look for them, fractions decide.
+"""Rational points where polynomials are positive, searched by floats and checked by fractions.
 
 The search goes one coordinate at a time to where most polynomials are positive, from starts that are the same in
 every run.  What it returns has been tried exactly; that it finds nothing says nothing.
@@ -42,19 +42,19 @@ _ALLOWED = {
 
 
 def holds_at(positive: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
-    """Tell whether all polynomials are positive at a rational point."""
+    """Return whether all polynomials are positive at a rational point."""
     return all(value_at(value, point) > 0 for value in positive)
 
 
 def respects(point: Mapping[str, Fraction], signs: Mapping[str, str]) -> bool:
-    """Tell whether the coordinates have their declared signs."""
+    """Return whether the coordinates have their declared signs."""
     return all(_may_be(value, signs.get(name, "real")) for name, value in point.items())
 
 
 def find_point(
     positive: Sequence[Scalar], signs: Mapping[str, str], *, names: Sequence[str] = (), starts: range = STARTS
 ) -> Point | None:
-    """Return a rational point of these signs where all polynomials are positive, None where none was met."""
+    """Return a rational point with these signs where all polynomials are positive, None if none was found."""
     names = sorted({*names, *names_of(positive)})
     if not all(map(is_free, names)) or sum(value.size for value in positive) > _TERMS:
         return None
@@ -78,7 +78,7 @@ def find_point(
 
 
 def find_points(positive: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Point, ...]:
-    """Return different points of that kind, as many as a few starts give."""
+    """Return distinct such points, from a few starts."""
     found = (find_point(positive, signs, starts=range(k, k + 1)) for k in range(_DIFFERENT))
     return tuple(point for point in found if point is not None)
 
@@ -90,7 +90,7 @@ def _rounded(point: Sequence[float]) -> Iterator[list[Fraction]]:
 
 
 def _simpler(point: Point, positive: Sequence[Scalar], signs: Mapping[str, str]) -> Point:
-    """Return a point with shorter coordinates at which the same holds."""
+    """Return a point with shorter coordinates and the same property."""
     for name, value in point.items():
         for simple in (Fraction(0), Fraction(1), Fraction(-1), *(value.limit_denominator(k) for k in (1, 2, 10, 100))):
             if simple == value:
@@ -107,7 +107,7 @@ def _may_be(value: float | Fraction, sign: str) -> bool:
 
 
 def _from_start(polynomials: Sequence[Sequence[Term]], signs: Sequence[str], start: int) -> list[float] | None:
-    """Return a point where all seem to be positive; `signs` belong to the coordinates."""
+    """Return a point where all are positive in floating point; `signs` belong to the coordinates."""
     generator = random.Random(start)  # noqa: S311 - the same starts in every run
     grids = [_grid(sign) for sign in signs]
     point = [1.0 if start == 0 and 1.0 in grid else generator.choice(grid) for grid in grids]
@@ -129,7 +129,7 @@ def _grid(sign: str) -> list[float]:
 
 
 def _best_on_line(lines: Sequence[Sequence[float]], grid: Sequence[float], sign: str) -> tuple[int, list[float]]:
-    """Return how many polynomials in one coordinate can be positive, as far as this sees, and where they are."""
+    """Maximise the number of positive polynomials along one coordinate; heuristic."""
     edges = sorted(root for line in lines for root in _roots(line))
     between = [(a + b) / 2 for a, b in pairwise(edges)]
     beyond = [x for e in edges for x in (e - 0.1 * (1 + abs(e)), e + 0.1 * (1 + abs(e)))]
@@ -167,7 +167,7 @@ def _horner(coefficients: Sequence[float], x: float) -> float:
 
 
 def _roots(line: Sequence[float]) -> list[float]:
-    """Return the real roots of a polynomial of first or second degree; of higher ones none."""
+    """Return the real roots of a polynomial of degree 1 or 2, none of a higher degree."""
     line = list(line)
     while len(line) > 1 and line[-1] == 0:
         line.pop()
@@ -181,7 +181,7 @@ def _roots(line: Sequence[float]) -> list[float]:
 
 
 def point_where_zero(vanishing: Scalar, positive: Sequence[Scalar], signs: Mapping[str, str]) -> Point | None:
-    """Return a rational point where one polynomial vanishes and others are positive: on a graph over the other names."""
+    """Return a rational zero of one polynomial where others are positive, on a graph over the other names."""
     for name in sorted(vanishing.names):
         if vanishing.degree(name) != 1 or not is_free(name):
             continue

@@ -37,7 +37,7 @@ class SignCase:
 def sign_cases(
     conditions: Sequence[Scalar], parameters: Sequence[str], signs: Mapping[str, str], *, ask: bool = True
 ) -> list[SignCase]:
-    """Return the cases in which each coefficient of a parameter that stands linearly has a certain sign.
+    """Return the cases in which each coefficient of a linear parameter has a certain sign.
 
     One case without `when` where they have one already; at most three expressions are split one after the other.
     """
@@ -77,7 +77,7 @@ def _possible(expression: Scalar, signs: Mapping[str, str]) -> tuple[str, ...]:
 
 
 def _where(case: SignCase, expression: Scalar, operator: str, *, ask: bool) -> SignCase:
-    """Return the case with one more sign: declared of a symbol, else put in for one, else assumed beside."""
+    """Return the case with one more sign: declared of a symbol, else substituted, else assumed."""
     when = (*case.when, (expression, operator + "=" * (operator == "=")))
     signs, put, assumed = dict(case.signs), dict(case.substitution), case.assumed
     conditions = case.conditions.positive
@@ -95,7 +95,7 @@ def _where(case: SignCase, expression: Scalar, operator: str, *, ask: bool) -> S
 
 
 def _put(expression: Scalar, signs: Mapping[str, str]) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
-    """Return what one symbol becomes where an expression vanishes, and what is > 0 by the sign declared of it.
+    """Return the solution of an expression = 0 for one symbol, and the inequality of its declared sign.
 
     One whose coefficient is constant, of unknown sign if there is one; none where no symbol will do.
     """

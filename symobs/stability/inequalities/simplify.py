@@ -1,4 +1,4 @@
-"""Lists of polynomials that must be positive, made short: every list returned is equivalent, with a proof.
+"""Simplification of lists of conditions, each with a proof of equivalence.
 
 Each polynomial is freed of factors of certain sign; an even power says that its factor is not 0, and stays as its
 square.  A product whose factors have certain signs where the others are positive is split.  What the others imply is
@@ -61,24 +61,24 @@ class Simplified:
 
     @property
     def verdict(self) -> str:
-        """`yes` where nothing is left to ask, `no` where all cannot be positive together, else `conditional`."""
+        """`yes` if no condition is left, `no` if they are contradictory, else `conditional`."""
         if not self.positive:
             return "yes"
         return "no" if self.positive == (ZERO,) else "conditional"
 
     @property
     def irredundant(self) -> bool:
-        """Whether it is proven that none of the list can be left out."""
+        """Whether the list is proved irredundant."""
         return {value for value, _ in self.witnesses} == set(self.positive) or self.verdict == "no"
 
     @property
     def is_settled(self) -> bool:
-        """Whether neither emptiness nor redundance is open."""
+        """Whether emptiness and redundancy are decided."""
         return self.verdict != "conditional" or (self.irredundant and self.point is not None)
 
 
 def simplify(raw: Sequence[Scalar], signs: Signs, *, beside: Sequence[Scalar] = (), ask: bool = True) -> Simplified:
-    """Return a short list equivalent to all of `raw` > 0 where all of `beside` are; with `ask`, z3 may help.
+    """Return a short list equivalent to all of `raw` > 0 given all of `beside` > 0; with `ask` also by z3.
 
     A rational function is taken as numerator times denominator.
     """
@@ -128,7 +128,7 @@ def nonempty_or_not(
 def _without_implied(
     state: InequalitySystem, signs: Signs, given: Sequence[Scalar], resources: Resources
 ) -> tuple[InequalitySystem, tuple[tuple[Scalar, Point], ...], tuple[tuple[Scalar, str], ...]]:
-    """Drop what the others imply, the longest first; return the points which show that the rest is needed too."""
+    """Drop implied conditions, the longest first; return points that prove the others necessary too."""
     witnesses, dropped = list[tuple[Scalar, Point]](), list[tuple[Scalar, str]]()
     open_ = (value for value in state.current if value not in given)
     for value in sorted(open_, key=lambda v: (-v.degrees()[0], -v.size, str(v) if v.size < _TOLD_APART else "")):
@@ -156,7 +156,7 @@ def prove_value(value: Scalar, known: Sequence[Scalar], signs: Signs) -> tuple[S
 
 
 def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Point | None:
-    """Return a rational point where the others are positive and a value is not, None where none was met."""
+    """Return a rational point where the others are positive and a value is not, None if none was found."""
     names = sorted(value.names)
     if sign_of(value, signs) in _DOWN:
         return find_point(others, signs, names=names)
@@ -169,7 +169,7 @@ def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Poin
 def _asked(
     value: Scalar, others: Sequence[Scalar], signs: Signs, resources: Resources
 ) -> tuple[Point | None, tuple[Step, ...] | None]:
-    """Return what z3 says to the same question: the point, tried exactly, or the step that there is none."""
+    """Return the answer of z3: a point, checked exactly, or the step that there is none."""
     answer, model = point_by_z3(others, signs, not_above=value, resources=resources)
     if answer == "no":
         return None, (ProvedByZ3(value, tuple(others)),)

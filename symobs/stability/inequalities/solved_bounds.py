@@ -1,4 +1,4 @@
-"""Conditions written as bounds of the parameters: h₁ < 1, h₂ > −b, and the box they make where nothing couples them."""
+"""Conditions as bounds of the parameters: h₁ < 1, h₂ > −b, and their box if they are uncoupled."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def solved(
     parameters: Sequence[str] = (),
     beside: Sequence[Scalar] = (),
 ) -> list[tuple[Scalar, str, Scalar]]:
-    """Return each condition > 0 as (left, operator, right), solved for a parameter where one stands in it linearly.
+    """Return each condition > 0 as (left, operator, right), solved for a parameter if it is linear in one.
 
     Its coefficient has a certain sign by the declared signs, or where `beside` and the other conditions are positive.
     """
@@ -83,7 +83,7 @@ class IntervalBox:
 
 
 def box(conditions: Sequence[Scalar], parameters: Sequence[str], signs: Mapping[str, str]) -> IntervalBox | None:
-    """Return the box which the conditions > 0 make, None where one of them couples parameters or is not linear."""
+    """Return the box of the conditions > 0, None if one of them is nonlinear or couples parameters."""
     lower: dict[str, list[Scalar]] = {name: [] for name in parameters}
     upper: dict[str, list[Scalar]] = {name: [] for name in parameters}
     needs = []
@@ -139,6 +139,6 @@ def _greatest(values: Sequence[Scalar], signs: Mapping[str, str]) -> Scalar | No
 
 
 def _holds(value: Scalar, sample: Mapping[str, Scalar], needs: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
-    """Tell whether a condition holds at a symbolic point where the needs are positive."""
+    """Return whether a condition holds at a symbolic point where the needs are positive."""
     there = value.substitute(sample)
     return sign_of(there, signs) == "positive" or any(sign_of(there / need, signs) == "positive" for need in needs)

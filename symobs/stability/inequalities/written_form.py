@@ -48,7 +48,7 @@ def as_inequality(
 
 
 def root_of_square(positive: Scalar) -> Scalar | None:
-    """Return f of f², which stands for f ≠ 0."""
+    """Return f of a square f², whose inequality is f ≠ 0."""
     if positive.size > FACTORED_UP_TO or positive.is_constant:
         return None
     unit, factors = positive.factors()

@@ -1,4 +1,4 @@
-"""The question whether there is a real point where polynomials are all positive, put to z3 (the extra `verify`).
+"""Existence of a real point where polynomials are all positive, by z3 (the extra `verify`).
 
 z3 is not required.  It is bounded by its own count of resources, never by a clock: the same question has the same answer
 on every machine.
@@ -24,10 +24,10 @@ _TERMS, _DEGREE = 2_000, 24
 
 
 class Resources:
-    """What may still be spent on the questions about one list."""
+    """The remaining resources of z3 for one list."""
 
     def __init__(self, left: int = TOGETHER) -> None:
-        """Start with all of it."""
+        """Start with all resources."""
         self.left = left
 
 
@@ -37,7 +37,7 @@ def names_of(values: Sequence[Scalar]) -> list[str]:
 
 
 def is_free(name: str) -> bool:
-    """Tell whether a generator is a symbol that may take any value of its sign: not √2, not π."""
+    """Return whether a generator is a symbol that may take any value of its sign: not √2, not π."""
     return name != PI and function_named(name) is None
 
 
@@ -48,7 +48,7 @@ def point_by_z3(
     not_above: Scalar | None = None,
     resources: Resources | None = None,
 ) -> tuple[str, Mapping[str, Fraction]]:
-    """Return `no` where no point of these signs makes all positive, else `maybe` with the point z3 has in mind, if any.
+    """Return `no` if all are positive at no point with these signs, else `maybe` with z3's point, if any.
 
     What it costs is taken from the resources, of which one question gets no more than `QUESTION`.  A point comes back
     rounded where it is no rational number: who needs it has to look.
@@ -90,12 +90,12 @@ def point_by_z3(
 
 
 def _cost(statistics: Any) -> int:
-    """Return what a question has cost."""
+    """Return the resources used by a query."""
     return int(statistics.get_key_value("rlimit count"))
 
 
 def none_by_z3(positive: Sequence[Scalar], signs: Mapping[str, str], *, not_above: Scalar | None = None) -> bool:
-    """Tell whether z3 shows that no point makes all positive, and one value not positive."""
+    """Return whether z3 proves that no point makes all positive and one value nonpositive."""
     return point_by_z3(positive, signs, not_above=not_above)[0] == "no"
 
 

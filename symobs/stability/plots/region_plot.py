@@ -1,4 +1,4 @@
-"""A region as a picture: where the window lies, the areas, the curves with points that are on them, the marks."""
+"""Plot of a region: its window, areas, curves and marked points."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _FAR = 8
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
-    """Return the picture of a region of two parameters."""
+    """Return the plot of a region of two parameters."""
     window = _window(region)
     areas, curves = [], []
     for number, slab in enumerate(region.plane.slabs):
@@ -58,7 +58,7 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
 
 
 def oriented(picture: RegionPicture, names: Sequence[str]) -> RegionPicture:
-    """Return the picture with the first of the names across."""
+    """Return the plot with the first of the names on the horizontal axis."""
     if picture.axes == tuple(names):
         return picture
 
@@ -175,7 +175,7 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
 
 
 def _finer(region: PlaneRegion, nodes: dict[Fraction, list[Fraction]], off: Fraction) -> dict[Fraction, list[Fraction]]:
-    """Return the nodes and the middles between them where some branch is farther than this off the straight line."""
+    """Return the nodes, refined where a branch deviates from the chord by more than this."""
     found = dict(nodes)
     for (x, low), (z, high) in pairwise(nodes.items()):
         middle = (x + z) / 2
@@ -197,7 +197,7 @@ def _clipped(value: Fraction, bounds: Interval) -> Fraction:
 def _area(
     cell: Cell, nodes: Sequence[Fraction], rows: Sequence[Sequence[Fraction]], window: tuple[Interval, Interval]
 ) -> tuple[Place, ...]:
-    """Return the polygon of a cell inside the window; nothing where it lies outside."""
+    """Return the polygon of a cell inside the window, empty if it lies outside."""
     vertical = window[1]
     below = [_clipped(row[cell.height - 1], vertical) if cell.height else vertical[0] for row in rows]
     above = [_clipped(row[cell.height], vertical) if cell.height < len(row) else vertical[1] for row in rows]
@@ -300,7 +300,7 @@ def equation_of(polynomial: Scalar, parameters: Sequence[str] = ()) -> Relation:
 
 
 def picture_of_line(region: LineRegion) -> LinePicture:
-    """Return the picture of a region of one parameter."""
+    """Return the plot of a region of one parameter."""
     ends = [_middle(end) for piece in region.intervals for end in (piece.low, piece.high) if end is not None]
     window = range_around(ends or [Fraction(0)])
     pieces = tuple((_end(piece.low), _end(piece.high)) for piece in region.intervals)

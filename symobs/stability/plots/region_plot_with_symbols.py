@@ -1,4 +1,4 @@
-"""The picture of a region with other symbols: drawn for some values of them, its curves labelled as they are in general."""
+"""Plot of a region with further symbols: drawn at sample values of them, its curves labelled in general."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _VALUES = ((1, 1, 1), (1, 2, 3), (2, 1, 3), (3, 1, 2))
 def picture_with_symbols(
     critical: CriticalPolynomials, parameters: Sequence[str], symbols: Sequence[str]
 ) -> Picture | None:
-    """Return the picture of a region of one or two parameters at values of the symbols; None where there is none to see."""
+    """Return the plot of a region of one or two parameters at values of the symbols, None if it is empty."""
     if not symbols or not 1 <= len(parameters) <= 2 or critical.never:
         return None
     for values in _choices(symbols, critical.signs):
@@ -43,7 +43,7 @@ def _choices(symbols: Sequence[str], signs: Mapping[str, str]) -> Iterator[dict[
 
 
 def _drawn(critical: CriticalPolynomials, parameters: Sequence[str], values: dict[str, Scalar]) -> Picture | None:
-    """Return the picture at these values, None where nothing is stable there."""
+    """Return the plot at these values, None if the region is empty there."""
     try:
         there = CriticalPolynomials(
             critical.polynomial.substitute(values), critical.boundary.substitute(values), critical.signs
@@ -67,7 +67,7 @@ def _drawn(critical: CriticalPolynomials, parameters: Sequence[str], values: dic
 def _general(
     factor: Scalar, values: Mapping[str, Scalar], critical: CriticalPolynomials, parameters: Sequence[str]
 ) -> Relation:
-    """Return the equation with symbols that becomes the one of this factor."""
+    """Return the equation with symbols that specialises to this factor."""
     for polynomial in critical.proper:
         there = polynomial.substitute(values)
         if not there.is_constant and (there / factor).is_constant:

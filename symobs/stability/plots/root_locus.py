@@ -1,4 +1,4 @@
-"""The paths of the roots as one parameter moves: at every node all of them, each joined to the nearest at the next node."""
+"""Root locus in one parameter: the roots at every node, each joined to the nearest at the next node."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BESIDE = (Fraction(1, 3000), Fraction(1, 600), Fraction(1, 200))
 
 
 def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary) -> PoleMap | None:
-    """Return the paths of the roots of a polynomial over the window of its region; None where a root goes to infinity."""
+    """Return the root locus over the window of a region, None if a root goes to infinity."""
     name, variable = region.name, boundary.variable
     if not polynomial.coefficients(variable)[0].is_constant or not boundary.names <= {variable}:
         return None
@@ -54,7 +54,7 @@ def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary
 
 
 def _way(region: LineRegion) -> tuple[Fraction, Fraction]:
-    """Return from where to where the parameter moves: across all ends of the region, and a little beyond."""
+    """Return the range of the parameter: all ends of the region, with a margin."""
     ends = [end.interval()[0] for piece in region.intervals for end in (piece.low, piece.high) if end is not None]
     samples = [piece.sample for piece in region.intervals]
     low, high = range_around(ends + samples or [Fraction(0)])
@@ -67,7 +67,7 @@ def _way(region: LineRegion) -> tuple[Fraction, Fraction]:
 
 
 def _nodes(polynomial: Scalar, variable: str, name: str, low: Fraction, high: Fraction) -> list[Fraction]:
-    """Return values of the parameter: evenly, and close to those at which two roots meet."""
+    """Return values of the parameter, evenly spaced and close to those with a double root."""
     way = high - low
     found = {low + way * k / NODES for k in range(NODES + 1)}
     meeting = discriminant(polynomial, variable)
@@ -84,7 +84,7 @@ def _roots(polynomial: Scalar, variable: str, name: str, value: Fraction) -> lis
 
 
 def _paired(before: Sequence[Place], after: Sequence[Place]) -> list[Place]:
-    """Return the roots in the order of those before: the nearest pairs first."""
+    """Return the roots in the order of the previous ones, nearest pairs first."""
     distances = sorted(
         ((x - a) ** 2 + (y - b) ** 2, i, j) for i, (x, y) in enumerate(before) for j, (a, b) in enumerate(after)
     )

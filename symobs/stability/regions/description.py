@@ -1,4 +1,4 @@
-"""A region of two parameters in words of formulas: over intervals of one, bounds of the other.
+"""Description of a region of two parameters: over intervals of one, bounds of the other.
 
 A branch of degree 1 or 2 is written as a quotient or with a square root, others by their number among the real roots of
 their polynomial.  Neighbouring cells with the same bounds are one part.
@@ -36,14 +36,14 @@ class Edge:
     name: str
 
     def is_finite_at(self, x: RealNumber) -> bool:
-        """Tell whether the branch does not run off there: its leading coefficient, or denominator, is not 0."""
+        """Return whether the branch is bounded there: its leading coefficient, or denominator, is nonzero."""
         below = self.polynomial.coefficients(self.name)[0] if self.closed is None else self.closed.denominator
         return below.is_constant or x.sign_of(integer_factor(below, next(iter(below.names)))) != 0
 
 
 @dataclass(frozen=True)
 class CylindricalPart:
-    """low < x < high and lower(x) < y < upper(x), None where there is no bound.
+    """A cylindrical part: low < x < high and lower(x) < y < upper(x), None for no bound.
 
     `begins` and `reaches`: whether the lower and the higher end of x belong to it, with the bounds that stand there.
     """
@@ -86,7 +86,7 @@ def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two stable cells that meet along a piece of a wall, and whether this piece is all that a cell has there."""
+    """Two stable cells adjacent along a segment of a wall, and whether the segment is the whole side of a cell."""
 
     left: int
     right: int
@@ -95,21 +95,21 @@ class Meeting:
 
 
 def meetings_of(region: PlaneRegion) -> list[Meeting]:
-    """Return all meetings, wall by wall."""
+    """Return all adjacencies, wall by wall."""
     lefts = Counter(left for left, _, _, _ in region.joins)
     rights = Counter(right for _, right, _, _ in region.joins)
     return [Meeting(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
 
 
 def is_regular(part: CylindricalPart, end: RealNumber | None) -> bool:
-    """Tell whether the bounds of a part have a meaning at one of its ends."""
+    """Return whether the bounds of a part are defined at one of its ends."""
     edges = [edge for edge in (part.lower, part.upper) if edge is not None]
     # the number of a root may be another one on the wall itself
     return end is not None and all(edge.closed is not None and edge.is_finite_at(end) for edge in edges)
 
 
 def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
-    """Tell whether parts leave nothing out: where cells meet, the piece of the wall belongs to a part on one side."""
+    """Return whether the parts cover the region: each segment between adjacent cells belongs to a part."""
     part_of = {cell: part for part in found for cell in part.cells}
     return not region.holes and all(
         part_of[m.left] is part_of[m.right]
@@ -122,7 +122,7 @@ def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
 def between(
     name: str, low: Scalar | None, high: Scalar | None, opening: str = "<", closing: str = "<"
 ) -> Relation | None:
-    """Return low < name < high, or what of it is bounded; None where nothing is."""
+    """Return low < name < high, without infinite bounds, None if both are infinite."""
     symbol = Literal(Scalar.symbol(name))
     if low is not None and high is not None:
         return Relation((Literal(low), symbol, Literal(high)), (opening, closing))
@@ -132,7 +132,7 @@ def between(
 
 
 def relations_of(part: CylindricalPart, names: tuple[str, str]) -> tuple[Relation, ...]:
-    """Return the inequalities of a part whose bounds have closed forms: of x, then of y."""
+    """Return the inequalities of a part with closed forms: of x, then of y."""
     x, y = names
     ends = [None if number is None else number.scalar(x) for number in (part.low, part.high)]
     bounds = [None if edge is None else edge.closed for edge in (part.lower, part.upper)]
@@ -141,12 +141,12 @@ def relations_of(part: CylindricalPart, names: tuple[str, str]) -> tuple[Relatio
 
 
 def is_written(part: CylindricalPart) -> bool:
-    """Tell whether every bound of y has a closed form."""
+    """Return whether every bound of y has a closed form."""
     return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 
 
 def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Slab, Edge | None, Edge | None]:
-    """Return the slab of a cell, and what bounds it below and above."""
+    """Return the slab of a cell, and its lower and upper bound."""
     slab, below, above = region.bounds(cell)
     return slab, _edge(region, slab, below), _edge(region, slab, above)
 
@@ -160,7 +160,7 @@ def _edge(region: PlaneRegion, slab: Slab, branch: Branch | None) -> Edge | None
 
 
 def _closed(polynomial: Scalar, names: tuple[str, str], number: int, x: Fraction) -> Scalar | None:
-    """Return a root in y of degree 1 or 2, the one of this number at x and as far as the slab reaches."""
+    """Return the closed form of the root in y of this index over the slab, for degree 1 or 2."""
     coefficients = polynomial.coefficients(names[1])
     if len(coefficients) == 2:
         return -coefficients[1] / coefficients[0]

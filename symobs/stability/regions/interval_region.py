@@ -1,4 +1,4 @@
-"""The region of one parameter in which a polynomial is stable: open intervals between its critical points."""
+"""Stability regions of one parameter: open intervals between critical points."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class IntervalPiece:
 
 @dataclass(frozen=True)
 class LineRegion:
-    """All values of one parameter at which the polynomial is stable."""
+    """The set of stable values of one parameter."""
 
     critical: CriticalPolynomials
     name: str
@@ -62,7 +62,7 @@ class LineRegion:
 
     @cached_property
     def cuts(self) -> tuple[RealNumber, ...]:
-        """The points with stable intervals on both sides: they are not in the region."""
+        """The excluded points with stable intervals on both sides."""
         pairs = zip(self.pieces[:-1], self.pieces[1:], strict=True)
         return tuple(high.low for low, high in pairs if low.stable and high.stable and high.low is not None)
 
@@ -87,20 +87,20 @@ class LineRegion:
         )
 
     def through_holes(self) -> tuple[tuple[Scalar, ...], ...]:
-        """Return nothing: a point of a line is no hole but a cut."""
+        """Return nothing: an excluded point of a line is a cut."""
         return ()
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is stable."""
+        """Whether the region is empty."""
         return not self.intervals
 
     @property
     def everywhere(self) -> bool:
-        """Whether every value that is allowed is stable."""
+        """Whether every admissible value is stable."""
         return len(self.pieces) == len(self.intervals) and not self.surrounded()
 
     @property
     def bounded(self) -> bool:
-        """Whether no interval reaches to infinity."""
+        """Whether every interval is bounded."""
         return all(piece.low is not None and piece.high is not None for piece in self.intervals)

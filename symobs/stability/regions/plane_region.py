@@ -1,4 +1,4 @@
-"""The region of two parameters in which a polynomial is stable: its cells, its components, its holes."""
+"""Stability regions of two parameters: cells, components and holes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Component:
 
 @dataclass(frozen=True)
 class Hole:
-    """An isolated point that is not in the region though everything around it is; `y` is None where it has no closed form."""
+    """An isolated excluded point of the region; `y` is None if it has no closed form."""
 
     x: RealNumber
     y: RealNumber | None
@@ -58,7 +58,7 @@ class Hole:
 
 @dataclass(frozen=True)
 class PlaneRegion:
-    """All (x, y), `names`, at which the polynomial is stable, as cells of the plane divided by its critical curves."""
+    """The set of stable (x, y), `names`, as cells of the plane divided by the critical curves."""
 
     critical: CriticalPolynomials
     names: tuple[str, str]
@@ -101,7 +101,7 @@ class PlaneRegion:
 
     @cached_property
     def fibres(self) -> dict[int, Fibre]:
-        """What lies on those walls that have stable cells on both sides, or where a stable cell may run off to infinity."""
+        """The fibres over walls with stable cells on both sides, or where a stable cell may be unbounded."""
         found: dict[int, Fibre] = {}
         for wall in self.plane.walls:
             left, right = any(self.stable_in(wall.index)), any(self.stable_in(wall.index + 1))
@@ -172,7 +172,7 @@ class PlaneRegion:
 
     @cached_property
     def holes(self) -> tuple[Hole, ...]:
-        """The isolated points that are missing."""
+        """The isolated excluded points."""
         found = []
         for index, number in self._places_of_holes:
             low, high = self.fibres[index].separators[number : number + 2]
@@ -186,7 +186,7 @@ class PlaneRegion:
 
     @cached_property
     def cuts(self) -> tuple[tuple[int, int], ...]:
-        """Branches (slab, number in the stack) with stable cells on both sides: they are not in the region."""
+        """The excluded branches (slab, number in the stack) with stable cells on both sides."""
         return tuple(
             (slab, place)
             for slab in range(len(self.plane.slabs))
@@ -196,7 +196,7 @@ class PlaneRegion:
 
     @cached_property
     def walls_cut(self) -> tuple[tuple[int, int], ...]:
-        """Pieces (wall, separator) of vertical critical lines with stable cells on both sides: they are not in the region."""
+        """The excluded segments (wall, separator) of vertical lines with stable cells on both sides."""
         return tuple(
             (index, gap)
             for index, found in self.fibres.items()
@@ -251,7 +251,7 @@ class PlaneRegion:
         return tuple(factor for factor in factors if factor in self.critical.proper)
 
     def through_holes(self) -> tuple[tuple[Scalar, ...], ...]:
-        """Return for every isolated point that is missing the critical factors that vanish there."""
+        """Return, for every isolated excluded point, the critical factors that vanish there."""
         found = []
         for index, number in self._places_of_holes:
             separators = self.fibres[index].separators
@@ -261,12 +261,12 @@ class PlaneRegion:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing is stable."""
+        """Whether the region is empty."""
         return self.critical.never or not any(cell.stable for cell in self.cells)
 
     @property
     def everywhere(self) -> bool:
-        """Whether every point that is allowed is stable."""
+        """Whether every admissible point is stable."""
         stable = all(cell.stable for cell in self.cells if cell.allowed)
         return stable and not self.surrounded() and not self.holes
 
@@ -282,7 +282,7 @@ def _pairs(values: Sequence[bool]) -> list[tuple[bool, bool]]:
 
 @lru_cache(maxsize=64)
 def plane_region(critical: CriticalPolynomials, names: tuple[str, str]) -> PlaneRegion:
-    """Return the region, its stacks standing over that name in whose place the other has the lower degree."""
+    """Return the region, with the projection on the name that gives the other the lower degree."""
 
     def height(name: str) -> tuple[int, int]:
         degrees = [factor.degree(name) for factor in critical.factors]
@@ -293,7 +293,7 @@ def plane_region(critical: CriticalPolynomials, names: tuple[str, str]) -> Plane
 
 
 def can_be_divided(region: PlaneRegion) -> bool:
-    """Tell whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
+    """Return whether the plane can be divided in reasonable time: FLINT's resultants cannot be interrupted."""
     if region.critical.never:
         return True
     if projection_size(region.critical.factors, region.names) > LARGEST_PROJECTION:

@@ -1,4 +1,4 @@
-"""What a region must pass before it is believed (trusted): other means than those that found it.
+"""Check of a region by independent means (trusted).
 
 The plane's division is proved by `exact.plane_proof`.  The critical values are held against determinants of numbers at
 random points, the verdict in every cell against the isolated roots of the polynomial at its sample, the list of
@@ -37,7 +37,7 @@ _POINTS = 3
 
 
 def are_critical(critical: CriticalPolynomials) -> bool:
-    """Tell whether the coefficients are those of the moved polynomial, and the critical factors all there.
+    """Return whether the coefficients are those of the shifted polynomial, and the critical factors complete.
 
     At random points: (w − 1)ⁿ χ((w + 1)/(w − 1)) = Σ aₖ wⁿ⁻ᵏ in discrete time, else χ itself; a₀, aₙ and the determinant of the
     n − 1 first rows and columns of Hurwitz' matrix must vanish where a product of powers of the factors does.
@@ -59,7 +59,7 @@ def are_critical(critical: CriticalPolynomials) -> bool:
 
 
 def _is_product(value: Scalar, factors: Sequence[Scalar]) -> bool:
-    """Tell whether a polynomial is a number times powers of these."""
+    """Return whether a polynomial is a product of powers of these, up to a number."""
     for factor in factors:
         while not value.is_constant and (quotient := value / factor).denominator.is_constant:
             value = quotient
@@ -79,7 +79,7 @@ def _ratio(critical: CriticalPolynomials, a: Sequence[Fraction], point: Mapping[
 
 @lru_cache(maxsize=256)
 def is_region(region: LineRegion | PlaneRegion, bounds: tuple[RegionInequality, ...] | None) -> bool:
-    """Tell whether a region is what it says, and these inequalities hold exactly on it (None: it is empty)."""
+    """Return whether a region is correct, and these inequalities hold exactly on it (None: it is empty)."""
     critical = region.critical
     if critical.never:
         return bounds is None
@@ -92,7 +92,7 @@ def is_region(region: LineRegion | PlaneRegion, bounds: tuple[RegionInequality, 
 
 
 def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> bool:
-    """Tell whether a division is whole, and in every cell the isolated roots say what is said of it."""
+    """Return whether a decomposition is complete, and the isolated roots agree with the stability of every cell."""
     if isinstance(region, PlaneRegion):
         whole = holds(region.divided(further))
     else:
@@ -105,7 +105,7 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
 
 
 def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
-    """Tell whether parts are all stable cells, each once, and every bound in closed form is the branch it stands for.
+    """Return whether the parts are all stable cells, each once, and every closed form equals its branch.
 
     A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
     around the branch at the slab's point: no other branch does.
@@ -143,7 +143,7 @@ def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
 
 
 def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
-    """Tell whether a closed form solves its polynomial, and at the slab's point lies between the samples around it."""
+    """Return whether a closed form is a root, and lies between the adjacent samples at the slab's point."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
     left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))
     at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})

@@ -1,4 +1,4 @@
-"""Which kind of region a polynomial has, and whether it can be had in reasonable time."""
+"""Choice of the exact region of a polynomial, within limits of time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=64)
 def exact_region(critical: CriticalPolynomials, names: tuple[str, ...]) -> LineRegion | PlaneRegion | None:
-    """Return the exact region in one or two parameters, None in more or where the plane is too much to divide.
+    """Return the exact region in one or two parameters, None for more parameters or too high a degree.
 
     A parameter that may be 0 and not beyond has a boundary that belongs to it, which open cells do not see.
     """

@@ -30,7 +30,7 @@ class RegionInequality(NamedTuple):
     operator: str = ">"
 
     def at(self, point: dict[str, Fraction]) -> bool:
-        """Tell whether it holds at a rational point."""
+        """Return whether the inequality holds at a rational point."""
         value = value_at(self.polynomial, point)
         return value > 0 if self.operator == ">" else value != 0
 
@@ -44,7 +44,7 @@ class Sample:
 
 
 class ExactRegion(Protocol):
-    """What the two kinds of region have in common."""
+    """The interface of exact regions of one and two parameters."""
 
     @property
     def critical(self) -> CriticalPolynomials:
@@ -57,12 +57,12 @@ class ExactRegion(Protocol):
         """Return critical factors that vanish on every curve with the region on both sides."""
 
     def through_holes(self) -> tuple[tuple[Scalar, ...], ...]:
-        """Return for every isolated point that is missing the critical factors that vanish there."""
+        """Return, for every isolated excluded point, the critical factors that vanish there."""
 
 
 @lru_cache(maxsize=256)
 def short_list(region: ExactRegion) -> tuple[RegionInequality, ...]:
-    """Return the inequalities; none where everything is stable.  The region must not be empty."""
+    """Return the inequalities of a nonempty region; none if every admissible point is stable."""
     samples = region.samples(())
     bounds = [RegionInequality(factor, "!=") for factor in region.surrounded()]
     bounds += _oriented(region.critical.proper, samples)
@@ -86,7 +86,7 @@ def short_list(region: ExactRegion) -> tuple[RegionInequality, ...]:
 
 
 def is_exact(region: ExactRegion, bounds: Sequence[RegionInequality]) -> bool:
-    """Tell whether these inequalities hold exactly on the region."""
+    """Return whether these inequalities hold exactly on the region."""
     factors = irreducible(bound.polynomial for bound in bounds)
     # these do not vanish anywhere in the region; of others a curve or a point inside might be left out by a list
     known = {*region.critical.factors, *irreducible(region.critical.conditions)}
@@ -103,7 +103,7 @@ def _hold(bounds: Iterable[RegionInequality], sample: Sample) -> bool:
 
 
 def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[RegionInequality]:
-    """Return those polynomials of one sign at all stable samples, turned so that it is positive."""
+    """Return the polynomials of constant sign at all stable samples, signed to be positive."""
     found = []
     for polynomial in polynomials:
         signs = {value_at(polynomial, sample.point) > 0 for sample in samples if sample.stable}
@@ -113,7 +113,7 @@ def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[
 
 
 def _candidates(critical: CriticalPolynomials, samples: Sequence[Sample]) -> list[RegionInequality]:
-    """Return the conditions' factors of one sign on the region, and what is left of each condition, simple ones first."""
+    """Return the factors of the conditions with constant sign on the region, and their cofactors, simple ones first."""
     found: dict[RegionInequality, None] = {}
     for condition in critical.conditions:
         if condition.is_constant:
@@ -137,7 +137,7 @@ def _length(polynomial: Scalar) -> tuple[int, int]:
 
 
 def _next(waiting: list[RegionInequality], missed: Sequence[Sample], samples: Sequence[Sample]) -> RegionInequality:
-    """Take out the simplest candidate that excludes a point which is missed and no stable one."""
+    """Remove the simplest candidate that excludes a wrongly included point and no stable one."""
     for bound in waiting:
         stable = all(bound.at(sample.point) for sample in samples if sample.stable)
         if stable and not all(bound.at(sample.point) for sample in missed):
@@ -150,7 +150,7 @@ def _next(waiting: list[RegionInequality], missed: Sequence[Sample], samples: Se
 def _without_the_superfluous(
     bounds: Sequence[RegionInequality], samples: Sequence[Sample], holes: Sequence[tuple[Scalar, ...]]
 ) -> tuple[RegionInequality, ...]:
-    """Drop what the others imply, the longest first; keep what alone excludes a curve or a point."""
+    """Drop implied inequalities, the longest first, except those that alone exclude a curve or a point."""
     kept = list(bounds)
     unstable = [sample for sample in samples if not sample.stable]
     for bound in sorted(bounds, key=lambda b: _length(b.polynomial), reverse=True):

@@ -1,4 +1,4 @@
-r"""Letters as MathML: the notation gives a letter's LaTeX, and here it becomes elements.
+r"""Letters as MathML, from the LaTeX of the notation.
 
 Only what forms of letters are made of is read: letters, digits, sub- and superscripts, accents, alphabets, names of
 functions, parentheses.  Anything else is shown as the text it is; nothing raises, and all text is escaped.
@@ -74,7 +74,7 @@ _ALPHABETS = {
 
 @dataclass(frozen=True)
 class LatexPart:
-    """One part of a form: an element, and what stands below and above at its right."""
+    """One part of a form: an element with its sub- and superscript."""
 
     base: str
     below: str = ""
@@ -113,13 +113,13 @@ def indexed(part: LatexPart, index: str) -> LatexPart:
 
 
 def _over(base: str, mark: str) -> str:
-    """Put a mark over an element; bars and dots are set as limits, for as accents browsers let them touch the letter."""
+    """Put a mark over an element, bars and dots as limits, since browsers set accents too close."""
     accent = "" if mark[0] in ".¯" else ' accent="true"'
     return f'<mover{accent}>{base}<mo stretchy="false">{mark}</mo></mover>'
 
 
 class _Reader:
-    """Reads a form from the left to the right."""
+    """A parser of forms."""
 
     def __init__(self, form: str) -> None:
         self.pieces: list[str] = _PIECE.findall(form)
@@ -156,7 +156,7 @@ class _Reader:
             parts.append(LatexPart(last.written, script) if last.below else replace(last, below=script))
 
     def argument(self) -> str:
-        """Return what a command or a script takes, as one element: a piece, or what stands in braces."""
+        """Return the argument of a command or a script as one element: a piece, or a group in braces."""
         while self.place < len(self.pieces) and self.pieces[self.place] in _SPACES:
             self.place += 1
         piece = self.next()
@@ -164,7 +164,7 @@ class _Reader:
         return row(tuple(part.written for part in parts)) if parts else "<mrow></mrow>"
 
     def raw(self) -> str:
-        """Return the text that an alphabet takes."""
+        """Return the argument of an alphabet as text."""
         while self.place < len(self.pieces) and self.pieces[self.place] in _SPACES:
             self.place += 1
         piece = self.next()
@@ -176,7 +176,7 @@ class _Reader:
         return words
 
     def part(self, piece: str) -> list[LatexPart]:
-        """Return what a piece, with its argument, stands for."""
+        """Return the part of a piece with its argument."""
         name = piece[1:] if piece.startswith("\\") and len(piece) > 1 else ""
         if piece == "{":
             inside = self.sequence("}")
@@ -204,7 +204,7 @@ class _Reader:
         return [LatexPart(f"<mi{_normal(words)}>{escape(words)}</mi>")]
 
     def function(self, name: str) -> list[LatexPart]:
-        """A function's name; a space where its argument has no parentheses."""
+        """Return a function's name; a space where its argument has no parentheses."""
         follows = self.pieces[self.place] if self.place < len(self.pieces) else "("
         space = [] if follows == "(" else [LatexPart(APPLY), LatexPart(THIN)]
         return [LatexPart(f"<mi{_normal(name)}>{escape(name)}</mi>"), *space]
@@ -228,12 +228,12 @@ _SIGN_ELEMENTS = {"(": OPENING, ")": CLOSING, "-": "<mo>−</mo>", r"\ldots": "<
 
 
 def _normal(word: str) -> str:
-    """A single letter would be slanted; words are upright anyway."""
+    """Return a function's name, a single letter made upright."""
     return ' mathvariant="normal"' if len(word) == 1 else ""
 
 
 def _upright(letter: str) -> str:
-    """Capital Greek letters stand upright, as in LaTeX."""
+    """Return a letter, capital Greek ones upright as in LaTeX."""
     return ' mathvariant="normal"' if letter.isupper() else ""
 
 
@@ -244,7 +244,7 @@ def _in_alphabet(name: str, words: str) -> str:
 
 
 def _styled(letter: str, alphabets: tuple[str, ...]) -> str:
-    """Return a letter in the first alphabet that has it; itself where none has."""
+    """Return a letter in the first alphabet that has it, else the letter itself."""
     kind = "CAPITAL" if letter.isupper() else "SMALL"
     for alphabet in alphabets:
         with suppress(KeyError):

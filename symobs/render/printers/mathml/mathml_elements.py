@@ -1,4 +1,4 @@
-"""The elements of MathML that printed formulas are made of, and where a line may end between them.
+"""Elements of MathML, and the line breaks between them.
 
 Signs carry their form (prefix, infix or postfix), because a line that was broken may begin or end with one.
 """
@@ -50,17 +50,17 @@ def row(elements: tuple[str, ...]) -> str:
 
 
 def text(words: str) -> str:
-    """Return upright text; a space at its ends is kept."""
+    """Return upright text, spaces at its ends included."""
     return f"<mtext>{escape(words).replace(' ', '&#xA0;')}</mtext>"
 
 
 def table(rows: list[str], kind: str) -> str:
-    """Return lines as a table of one of the kinds that the page's style knows: `aligned`, `centred` or `lines`."""
+    """Return lines as a table of a kind of the page's style: `aligned`, `centred` or `lines`."""
     return f'<mtable class="{kind}" displaystyle="true">{"".join(f"<mtr>{line}</mtr>" for line in rows)}</mtable>'
 
 
 def pieces(elements: tuple[str, ...], width: float) -> Iterator[str]:
-    """Yield a formula in running text in the pieces between which a line may end."""
+    """Yield the pieces of a formula in running text between line breaks."""
     breaks: frozenset[str] = frozenset()
     if width > _KEPT:
         breaks = _MANY if width > _AT_RELATIONS else _FEW
@@ -75,5 +75,5 @@ def pieces(elements: tuple[str, ...], width: float) -> Iterator[str]:
 
 
 def is_word(element: str) -> bool:
-    """Whether an element is a name of several letters."""
+    """Return whether an element is a name of several letters."""
     return re.match(r"<m(?:sub><m)?i>[^<]{2,}</mi>", element) is not None

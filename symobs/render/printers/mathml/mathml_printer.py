@@ -1,4 +1,4 @@
-"""Formulas as MathML Core, which browsers set by themselves: no script, no font, no network.
+"""Formulas as MathML Core, without scripts, fonts or network.
 
 A box is a row of elements.  Signs carry their form (prefix or infix), because a line that was broken may begin with one.
 A long formula in running text is several `math` elements, between which a browser may end a line: inside one it cannot.
@@ -136,7 +136,7 @@ class MathmlPrinter(Printer[MathmlBox]):
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
     def letter(self, name: str, mark: str) -> MathmlBox:
-        """A letter; ẋ, x with the index k or k + 1."""
+        """Return a letter; ẋ, x with the index k or k + 1."""
         form = self.letter_latex(name)
         first, *rest = parts_of(form)
         if mark == "dot":
@@ -149,7 +149,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(widths.source_width(f"{form}_{{{mark}}}"), level, elements, 0, apart)
 
     def leaf(self, value: Scalar) -> MathmlBox:
-        """A whole number or a symbol."""
+        """Return a whole number or a symbol."""
         if value.is_constant:
             digits = decimal(value.fraction().numerator)
             step = _DIGITS if self.running and len(digits) > _LONG_NUMBER else len(digits)
@@ -159,7 +159,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return self.named(symbol_latex(name, self.symbols.get(name)))
 
     def named(self, form: str) -> MathmlBox:
-        """The letter."""
+        """Return the letter."""
         parts = parts_of(form)
         apart = (parts[0].base, parts[0].below) if len(parts) == 1 and parts[0].below and not parts[0].above else None
         return MathmlBox(widths.source_width(form), Level.ATOM, tuple(part.written for part in parts), 0, apart)
@@ -169,27 +169,27 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(0.5, Level.ATOM, ("<mi>I</mi>",))
 
     def empty(self, shape: tuple[int, int]) -> MathmlBox:
-        """A zero with its shape."""
+        """Return a zero with its shape."""
         below = f"<mrow><mn>{shape[0]}</mn><mo>×</mo><mn>{shape[1]}</mn></mrow>"
         return MathmlBox(2.0, Level.ATOM, (f"<msub><mn>0</mn>{below}</msub>",))
 
     def sign(self, *, negative: bool, leading: bool) -> MathmlBox:
-        """Plus or minus."""
+        """Return plus or minus."""
         sign = MINUS if negative else PLUS
         element = f'<mo form="prefix">{sign}</mo>' if leading else BINARY[sign]
         return MathmlBox(widths.SIGN if leading else widths.OPERATOR, Level.SUM, (element,))
 
     def comparison(self, operator: str) -> MathmlBox:
-        """The sign of a relation."""
+        """Return the sign of a relation."""
         return MathmlBox(widths.RELATION, Level.SUM, (RELATIONS[operator],))
 
     def joined(self, parts: Sequence[MathmlBox], level: Level) -> MathmlBox:
-        """The elements one after the other."""
+        """Return the elements one after the other."""
         elements = tuple(element for part in parts for element in part.elements)
         return MathmlBox(sum(part.width for part in parts), level, elements, max(part.height for part in parts))
 
     def between(self, left: MathmlBox, right: MathmlBox) -> MathmlBox:
-        """A dot before a number, a thin space beside what is tall or a word; else a sign that is only read out."""
+        """Return a dot before a number, a thin space beside a tall factor or a word, else an invisible times."""
         if _NUMBER.match(right.elements[0]):
             return MathmlBox(0.7, Level.PRODUCT, (DOT,))
         if self.running and left.width + right.width > _WIDE:
@@ -198,7 +198,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(0.17, Level.PRODUCT, (_SPACED,)) if is_apart else MathmlBox(0.0, Level.PRODUCT, (TIMES,))
 
     def grouped(self, box: MathmlBox) -> MathmlBox:
-        """Parentheses that grow with what they hold; in running text a line may end between them."""
+        """Return parentheses as tall as their content, breakable in running text."""
         if self.running:
             return MathmlBox(box.width + 0.8, Level.ATOM, (OPENING, *box.elements, CLOSING), box.height)
         if box.height == 0:
@@ -207,7 +207,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(box.width + 1.6, Level.ATOM, (f"<mrow>{inside}</mrow>",), box.height)
 
     def fraction(self, above: MathmlBox, below: MathmlBox) -> MathmlBox:
-        """A fraction; in exponents, and in running text where one part is long, a slash."""
+        """Return a fraction; in exponents, and in running text where one part is long, a slash."""
         width = max(above.width, below.width)
         is_long = self.running and (width > _NARROW or min(above.level, below.level) < Level.PRODUCT)
         if self.in_exponent or is_long:
@@ -217,13 +217,13 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(width + widths.FRACTION_BAR, Level.FRACTION, (element,), 1)
 
     def raised(self, base: MathmlBox, exponent: int) -> MathmlBox:
-        """A power."""
+        """Return a power."""
         digits = f"<mn>{abs(exponent)}</mn>"
         script = digits if exponent >= 0 else f'<mrow><mo form="prefix">−</mo>{digits}</mrow>'
         return self._above(base, script, len(str(exponent)) * widths.DIGIT)
 
     def transposed(self, base: MathmlBox) -> MathmlBox:
-        """The transpose."""
+        """Return the transpose."""
         return self._above(base, TRANSPOSE, 0.7)
 
     def _above(self, base: MathmlBox, script: str, width: float) -> MathmlBox:
@@ -237,14 +237,14 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(width, Level.POWER, (f"<msup>{base.one}{script}</msup>",), base.height)
 
     def applied(self, function: str, argument: MathmlBox) -> MathmlBox:
-        """A function's name and its argument."""
+        """Return a function's name and its argument."""
         form = self.function_latex(function)
         is_enclosed = ">(</mo>" in argument.elements[0][:60]
         elements = (*elements_of(form), APPLY, *(() if is_enclosed else (THIN,)), *argument.elements)
         return MathmlBox(widths.source_width(form) + argument.width + 0.2, Level.PRODUCT, elements, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
-        """A table in brackets; in running text small, or a list where it is wide."""
+        """Return a table in brackets; in running text small, or a list where it is wide."""
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
@@ -262,7 +262,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return f"<mtd{size}>{strut}{entry.source}</mtd>"
 
     def rate(self, box: MathmlBox, name: str = "t") -> MathmlBox:
-        """d/dt before a stack."""
+        """Return d/dt before a stack."""
         below = row(("<mi>d</mi>", *elements_of(symbol_latex(name))))
         elements = (f"<mfrac><mi>d</mi>{below}</mfrac>", _SPACED.replace(TIMES, APPLY), *box.elements)
         return MathmlBox(box.width + 1.2, Level.PRODUCT, elements, max(1, box.height))
@@ -270,7 +270,7 @@ class MathmlPrinter(Printer[MathmlBox]):
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> MathmlBox:
-        """E to a power; fractions in the exponent are written with a slash."""
+        """Return the exponential, fractions in its exponent with a slash."""
         script = copy(self)
         script.in_exponent, script.known = True, {}
         exponent = script.scalar(argument)
@@ -278,17 +278,17 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, (element,))
 
     def root(self, argument: MathmlBox) -> MathmlBox:
-        """A square root."""
+        """Return a square root."""
         return MathmlBox(argument.width + 0.9, Level.ATOM, (f"<msqrt>{argument.source}</msqrt>",), argument.height)
 
     def summed(self, over: MathmlBox, term: MathmlBox) -> MathmlBox:
-        """A sum over all that fulfil an equation."""
+        """Return a sum over all that fulfil an equation."""
         width = widths.SCRIPT * over.width + term.width
         elements = (f'<munder><mo form="prefix">∑</mo>{over.one}</munder>', *term.elements)
         return MathmlBox(width, Level.PRODUCT, elements, max(2, term.height))
 
     def evaluated(self, box: MathmlBox, equations: Sequence[MathmlBox]) -> MathmlBox:
-        """The value behind a bar."""
+        """Return the value behind a bar."""
         where: list[str] = []
         for equation in equations:
             where += [COMMA, *equation.elements] if where else equation.elements
@@ -297,7 +297,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(width, Level.POWER, (element,), max(1, box.height))
 
     def integral(self, limits: tuple[MathmlBox, MathmlBox], integrand: MathmlBox, name: MathmlBox) -> MathmlBox:
-        """An integral with its limits."""
+        """Return an integral with its limits."""
         lower, upper = limits
         sign = f'<msubsup><mo form="prefix">∫</mo>{lower.one}{upper.one}</msubsup>'
         elements = (sign, *integrand.elements, THIN, "<mi>d</mi>", *name.elements)
@@ -307,40 +307,40 @@ class MathmlPrinter(Printer[MathmlBox]):
     # -- glyphs of broken lines -----------------------------------------------------------------------------------
 
     def parentheses(self, content: Sequence[MathmlBox]) -> tuple[MathmlBox, MathmlBox]:
-        """A pair of a fixed size: a sign grows with its own row only, and these may stand in two."""
+        """Return a pair of parentheses of fixed size, which may be on different rows."""
         return _sized("(", ")", _SIZES[min(3, max(box.height for box in content))], 0.8)
 
     def brackets(self) -> tuple[MathmlBox, MathmlBox]:
-        """The same, square."""
+        """Return the same, square."""
         return _sized("[", "]", _SIZES[0], 0.6)
 
     def separators(self) -> tuple[MathmlBox, MathmlBox]:
-        """Comma and semicolon."""
+        """Return comma and semicolon."""
         return MathmlBox(0.5, Level.SUM, (COMMA,)), MathmlBox(0.7, Level.SUM, (SEMICOLON,))
 
     def dot(self) -> MathmlBox:
-        """The dot."""
+        """Return the dot."""
         return MathmlBox(0.9, Level.SUM, (DOT,))
 
     def slash(self) -> MathmlBox:
-        """A slash."""
+        """Return a slash."""
         return MathmlBox(0.5, Level.SUM, (SLASH,))
 
     def digits(self, run: str) -> MathmlBox:
-        """A part of a number."""
+        """Return a part of a number."""
         return MathmlBox(len(run) * widths.DIGIT, Level.ATOM, (f"<mn>{run}</mn>",))
 
     def continued(self) -> MathmlBox:
-        """A hooked arrow."""
+        """Return a hooked arrow."""
         return MathmlBox(1.5, Level.SUM, (f'<mi mathvariant="normal">↪</mi>{THIN}',))
 
     def star(self, number: int) -> MathmlBox:
-        """An asterisk with a number."""
+        """Return an asterisk with a number."""
         element = f'<msub><mi mathvariant="normal">\N{ASTERISK OPERATOR}</mi><mn>{number}</mn></msub>'
         return MathmlBox(0.5 + len(str(number)) * widths.DIGIT * widths.SCRIPT, Level.ATOM, (element,))
 
     def entry_of(self, matrix: MathmlBox, indices: Sequence[int]) -> MathmlBox:
-        """The matrix with its indices, in parentheses where it is more than a letter."""
+        """Return the matrix with its indices, in parentheses where it is more than a letter."""
         base = matrix if matrix.level == Level.ATOM and not matrix.indexed else self.grouped(matrix)
         separator = "," if max(indices) > 9 else ""
         below = separator.join(map(str, indices))
@@ -348,39 +348,39 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(width, Level.POWER, (f"<msub>{base.one}<mn>{below}</mn></msub>",), base.height)
 
     def indent(self) -> MathmlBox:
-        """A space."""
+        """Return a space."""
         return MathmlBox(1.0, Level.SUM, ('<mspace width="1em"/>',))
 
     def framed(self, box: MathmlBox) -> MathmlBox:
-        """A row that the page's style frames."""
+        """Return a framed row."""
         return MathmlBox(
             box.width + widths.FRAME, Level.ATOM, (f'<mrow class="answer">{box.source}</mrow>',), max(1, box.height)
         )
 
     def stacked(self, lines: Sequence[MathmlBox]) -> MathmlBox:
-        """Lines of a table, all but the first indented."""
+        """Return lines of a table, all but the first indented."""
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         element = table([f"<mtd>{line.source}</mtd>" for line in indented], "lines")
         return MathmlBox(max(line.width for line in indented) + widths.COLUMN_GAP, Level.SUM, (element,), 2)
 
     def punctuation(self, mark: str) -> MathmlBox:
-        """A comma or full stop."""
+        """Return a comma or full stop."""
         return MathmlBox(0.45, Level.SUM, (text(mark),))
 
     def gap(self) -> MathmlBox:
-        """A wide space."""
+        """Return a wide space."""
         return MathmlBox(2.0, Level.SUM, ('<mspace width="2em"/>',))
 
 
 def is_large(entry: MathmlBox) -> bool:
-    """Whether an entry of a table is set large: a fraction with more than numbers in it."""
+    """Return whether an entry of a table is set large: a fraction with more than numbers in it."""
     has_fraction = any(element.startswith("<mfrac>") for element in entry.elements[:2])
     return has_fraction and not _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
 
 
 def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
-    """A matrix as a list of its entries, [a, b; c, d]."""
+    """Return a matrix as a list of its entries, [a, b; c, d]."""
     elements: list[str] = []
     for line in rows:
         for place, entry in enumerate(line):
@@ -391,7 +391,7 @@ def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
 
 
 def _sized(opening: str, closing: str, size: str, width: float) -> tuple[MathmlBox, MathmlBox]:
-    """A pair of fences of one size."""
+    """Return a pair of fences of one size."""
     attributes = f'stretchy="true" symmetric="true" minsize="{size}" maxsize="{size}"'
     left, right = (
         f'<mo form="{form}" {attributes}>{fence}</mo>' for form, fence in (("prefix", opening), ("postfix", closing))
