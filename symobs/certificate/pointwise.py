@@ -38,8 +38,30 @@ def never_together_zero(
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     if known is None:
         return True
-    together = [*(known.remainder(relation) for relation in relations), *known.generators]
-    return _implied(together, signs, nonzero) is None
+    for part in _parts(known, signs, nonzero):
+        together = [*(part.remainder(relation) for relation in relations), *part.generators]
+        if _implied(together, signs, nonzero) is not None:
+            return False
+    return True
+
+
+def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
+    """Yield ideals one of which vanishes at each real point of these signs where an ideal does.
+
+    Among finitely many points a polynomial of the ideal in one parameter alone tells those apart where different factors
+    of it vanish, and leaves out those where none can.
+    """
+    for name in ideal.field.names if EIGENVALUE not in ideal.field.position and ideal.dimension else ():
+        alone = ideal.minimal_polynomial(name)
+        factors = [factor for factor in vanishing_factors([alone], signs) if factor not in nonzero]
+        if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
+            continue
+        for factor in factors:
+            part = _implied([*ideal.generators, factor], signs, nonzero)
+            if part is not None:
+                yield from _parts(part, signs, nonzero)
+        return
+    yield ideal
 
 
 def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]) -> tuple[Scalar, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 import symobs
 from symobs._dataclass import dataclass
 from symobs.errors import InputError, UsageError
-from symobs.system import as_plant
+from symobs.system import StateSpace, as_plant
 
 if TYPE_CHECKING:
     from symobs.derivation.builder import Page
@@ -93,13 +93,18 @@ def _of_plants(function: Callback) -> Callback:
     @wraps(function)
     def reading(*arguments: Any, **keywords: Any) -> Result:
         if arguments and arguments[0] is not None:
-            arguments = (as_plant(arguments[0], only=only), *arguments[1:])
+            arguments = (_asked_anew(as_plant(arguments[0], only=only)), *arguments[1:])
         elif keywords.get("plant") is not None:
-            keywords["plant"] = as_plant(keywords["plant"], only=only)
+            keywords["plant"] = _asked_anew(as_plant(keywords["plant"], only=only))
         result: Result = function(*arguments, **keywords)
         return result
 
     return reading  # type: ignore[return-value]
+
+
+def _asked_anew(plant: Any) -> Any:
+    """Return a plant on whose strata nothing was found: what a task finds there is freed with its result."""
+    return plant.asked_anew() if isinstance(plant, StateSpace) else plant
 
 
 def _registered(function: Callback) -> Callback:

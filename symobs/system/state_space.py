@@ -10,6 +10,7 @@ from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismat
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
 from symobs.system.control_system import read_control_system
+from symobs.system.findings import Findings
 from symobs.system.matrices import Matrices
 from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
 from symobs.system.symbols import Symbols
@@ -17,7 +18,7 @@ from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_ti
 from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFunction, read_transfer_function, realise
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
 
 class StateSpace:
@@ -71,6 +72,7 @@ class StateSpace:
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
+        self.is_stratum = False
         given = [part for part in parts.values() if part is not None]
         known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in part.field.position and "t" in part.names for part in given):
@@ -274,6 +276,38 @@ class StateSpace:
         plant = copy(self)
         plant.symbols = symbols
         return plant
+
+    # -- what is found on strata ---------------------------------------------------------------------------------------
+
+    @cached_property
+    def findings(self) -> Findings:
+        """What was found on the strata of this plant, and on those that it is a stratum of."""
+        return Findings()
+
+    def stratum(self, there: StateSpace) -> StateSpace:
+        """Return the plant of one of the strata of this one: what is found of it is shared, and it is one object."""
+        if there is self:
+            return self
+        there.is_stratum, there.findings = True, self.findings
+        found: StateSpace = self.findings.same(there)
+        return found
+
+    def beside(self, plant: StateSpace) -> StateSpace:
+        """Return another plant, made of this one, that shares what is found."""
+        plant.is_stratum, plant.findings = self.is_stratum, self.findings
+        return plant
+
+    def once(self, question: Hashable, find: Callable[[], Any]) -> Any:
+        """Return the answer of a question about this plant; on a stratum what was found there once."""
+        return self.findings.once((question, self), find) if self.is_stratum else find()
+
+    def asked_anew(self) -> StateSpace:
+        """Return the same plant with nothing found on its strata: what is found for a result is freed with it."""
+        return copy(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what makes the plant; what was found on its strata is no part of that."""
+        return {name: value for name, value in vars(self).items() if name != "findings"}
 
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices of a task are given."""

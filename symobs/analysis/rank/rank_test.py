@@ -124,7 +124,10 @@ class RankResult(Result):
     @classmethod
     def of(cls, plant: StateSpace, method_name: str) -> Self:
         """Return the result for a plant."""
-        return cls(plant, method_name, rank_answer(*cls.pair(plant), plant.ideal))
+        found: Self = plant.once(
+            (cls, method_name), lambda: cls(plant, method_name, rank_answer(*cls.pair(plant), plant.ideal))
+        )
+        return found
 
     @staticmethod
     def pair(plant: StateSpace) -> tuple[Matrix, Matrix]:

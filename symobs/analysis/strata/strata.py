@@ -6,7 +6,7 @@ elsewhere for the plant restricted to the stratum, whose claims hold modulo the 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from symobs.analysis.strata.loci import Region, loci
 from symobs.analysis.strata.rank_cases import parametrised, undecided_conditions
@@ -28,39 +28,64 @@ if TYPE_CHECKING:
     Solve: TypeAlias = Callable[[StateSpace, dict[str, Scalar]], Result]
 
 
+class Place(NamedTuple):
+    """A stratum on which nothing is asked yet: its conditions, and the values of parameters where it is solved for them.
+
+    Where it is not `open` nothing can be told of it.
+    """
+
+    when: tuple[Condition, ...]
+    values: dict[str, Scalar] | None
+    is_open: bool = True
+
+
 def strata(plant: StateSpace, existence: Iterable[Scalar], solve: Solve) -> tuple[Case, ...]:
     """Return the cases of the factors of `existence` that can vanish; `solve` answers on the plant of the stratum.
 
-    Where a factor is linear in a parameter whose coefficient can vanish, there are two cases of it.  A case is undecided
-    (its result is None) where its equations, or the claims of its answer, are beyond what can be checked.
+    A case is undecided (its result is None) where its equations, or the claims of its answer, are beyond what can be
+    checked.
+    """
+    found = solved(plant, places(plant, existence), solve)
+    return tuple({frozenset(case.when): case for case in found}.values())
+
+
+def places(plant: StateSpace, existence: Iterable[Scalar]) -> tuple[Place, ...]:
+    """Return the strata where factors of `existence` vanish, as far as they can.
+
+    Where a factor is linear in a parameter whose coefficient can vanish, there are two of it.
     """
     signs = plant.symbols.signs
-    found: list[Case] = []
+    found: list[Place] = []
     region = region_of(plant)
     for factor in vanishing_factors(existence, signs):
         if factor in region.nonzero:
             continue
         linear = None if plant.equations else _linear(factor, signs)
         if linear is None:
-            found += _below([factor], region, plant, solve)
+            found += _below([factor], region)
             continue
         values, lead = linear
         zeros = region.vanishing(lead)
         when = (Condition("existence", factor, "=="), *(Condition("route", f) for f in zeros))
-        found += _case(when, values, plant, solve)
+        found.append(Place(when, values))
         for f in zeros:
-            found += _below([factor, f], region, plant, solve)
-    return tuple({frozenset(case.when): case for case in found}.values())
+            found += _below([factor, f], region)
+    return tuple({frozenset(place.when): place for place in found}.values())
 
 
 def common_zeros(plant: StateSpace, equations: Iterable[Scalar], solve: Solve) -> tuple[Case, ...]:
     """Return the cases of the strata where several polynomials vanish together."""
-    return tuple(_below(equations, region_of(plant), plant, solve))
+    return solved(plant, common_places(plant, equations), solve)
 
 
-def equations_of(case: Case) -> tuple[Scalar, ...]:
-    """Return what vanishes where a case holds."""
-    return tuple(condition.expression for condition in case.when if condition.operator == "==")
+def common_places(plant: StateSpace, equations: Iterable[Scalar]) -> tuple[Place, ...]:
+    """Return the strata where several polynomials vanish together."""
+    return tuple(_below(equations, region_of(plant)))
+
+
+def equations_of(place: Place) -> frozenset[Scalar]:
+    """Return what vanishes on a stratum."""
+    return frozenset(condition.expression for condition in place.when if condition.operator == "==")
 
 
 def region_of(plant: StateSpace) -> Region:
@@ -72,33 +97,44 @@ def region_of(plant: StateSpace) -> Region:
     )
 
 
-def _below(equations: Iterable[Scalar], region: Region, plant: StateSpace, solve: Solve) -> Iterator[Case]:
-    """Yield the cases of the common zeros of equations, with parameters put in where they can be solved for them."""
+def _below(equations: Iterable[Scalar], region: Region) -> Iterator[Place]:
+    """Yield the common zeros of equations, with the values of parameters where they can be solved for them."""
     for locus in loci(equations, region):
         when = undecided_conditions(locus)
         if locus.ideal is None:
-            yield Case(when, {}, None)
+            yield Place(when, {}, is_open=False)
         elif locus != region.whole:
-            yield from _case(when, parametrised(Node(locus, 0, ()), region), plant, solve)
+            yield Place(when, parametrised(Node(locus, 0, ()), region))
+
+
+def places_of(cases: Iterable[Case]) -> tuple[Place, ...]:
+    """Return where the cases of a test are."""
+    return tuple(
+        Place(case.when, dict(case.substitution) or None)
+        if case.result is not None
+        else Place(case.when, {}, is_open=False)
+        for case in cases
+    )
 
 
 def carried(plant: StateSpace, cases: Iterable[Case], solve: Solve) -> tuple[Case, ...]:
     """Return the cases of a test with the answers of another task there."""
-    found: list[Case] = []
-    for case in cases:
-        values = dict(case.substitution) or None
-        found += _case(case.when, values, plant, solve) if case.result is not None else [case]
-    return tuple(found)
+    return solved(plant, places_of(cases), solve)
 
 
-def _case(
-    when: tuple[Condition, ...], values: dict[str, Scalar] | None, plant: StateSpace, solve: Solve
-) -> Iterator[Case]:
+def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Case, ...]:
+    """Return the cases of some strata, each with the answer of a task there."""
+    return tuple(case for place in asked for case in _case(place, plant, solve))
+
+
+def _case(place: Place, plant: StateSpace, solve: Solve) -> Iterator[Case]:
     """Yield a case; none where there is no plant, or nothing is asked for."""
+    when, values, _ = place
+    if not place.is_open or plant.findings.are_over:
+        yield Case(when, {}, None)
+        return
     try:
-        equations, others = ([c.expression for c in when if c.operator == sign] for sign in ("==", "!="))
-        there = plant.restricted((), others)
-        there = there.restricted(equations) if values is None else there.substitute(values)
+        there = _plant_on(place, plant)
         found = solve(there, values or {})
         if there.equations:  # its own strata are made now, where what cannot be claimed on them can be left undecided
             _ = found.case_tree
@@ -111,6 +147,13 @@ def _case(
         if values is not None and not plant.equations:
             raise
         yield Case(when, {}, None)
+
+
+def _plant_on(place: Place, plant: StateSpace) -> StateSpace:
+    """Return the plant of a stratum."""
+    equations, others = ([c.expression for c in place.when if c.operator == sign] for sign in ("==", "!="))
+    there = plant.restricted((), others)
+    return plant.stratum(there.restricted(equations) if place.values is None else there.substitute(place.values))
 
 
 def _linear(factor: Scalar, signs: Mapping[str, str]) -> tuple[dict[str, Scalar], Scalar] | None:

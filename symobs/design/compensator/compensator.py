@@ -11,6 +11,7 @@ from symobs.derivation.builder import relation
 from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.design.gain.gain_cases import design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError, together
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
@@ -22,6 +23,7 @@ from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText,
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from symobs.analysis.strata.strata import Place
     from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
     from symobs.system import StateSpace
 
@@ -35,8 +37,8 @@ class CompensatorDesign(OutputFeedback):
     @classmethod
     def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
         """Return the compensator for these polynomials."""
-        feedback = StateFeedbackDesign.of(plant, control, "ackermann")
-        estimator = ObserverDesign.of(plant, observer, "ackermann")
+        feedback = design_of(StateFeedbackDesign, plant, control)
+        estimator = design_of(ObserverDesign, plant, observer)
         return cls.of(feedback, estimator, name)
 
     @classmethod
@@ -70,6 +72,10 @@ class CompensatorDesign(OutputFeedback):
             if self.plant.matrices.has_feedthrough:
                 moved = moved - L @ D @ K
             yield Claim(relation(F, K @ moved.inverse @ L), e)
+
+    @property
+    def _estimator_places(self) -> tuple[Place, ...]:
+        return places_where(self.estimator)
 
     @property
     def coupling(self) -> Matrix:

@@ -9,12 +9,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import strata
+from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.design.gain.gain_cases import design_of
 from symobs.design.gain.gain_design import letters_of
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, completed, require_rank
 from symobs.errors import CertificateRejected
@@ -25,6 +26,7 @@ from symobs.formula.term import block, identity, letter
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.analysis.strata.strata import Place
     from symobs.result import Case
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
@@ -42,7 +44,7 @@ class MinimalOrderCompensator(OutputFeedback):
     @classmethod
     def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
         """Return the compensator for these polynomials, in the coordinates [C; R]."""
-        feedback = StateFeedbackDesign.of(plant, control, "ackermann")
+        feedback = design_of(StateFeedbackDesign, plant, control)
         estimator = ReducedOrderObserver.of(plant, observer, completed(plant.matrices.C), "partition")
         return cls.of(feedback, estimator, name)
 
@@ -113,15 +115,19 @@ class MinimalOrderCompensator(OutputFeedback):
         factors = vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs)
         return (*own, *(Condition("existence", factor) for factor in factors if factor not in known))
 
+    @property
+    def _estimator_places(self) -> tuple[Place, ...]:
+        """The strata of the observer, and those where the control law cannot be solved for u."""
+        return (*self.estimator.places, *self._ill_posed_places)
+
     @cached_property
-    def gain_strata(self) -> tuple[Case, ...]:
-        """The strata of both gains, and those where the control law cannot be solved for u."""
-        return (*super().gain_strata, *self.ill_posed)
+    def _ill_posed_places(self) -> tuple[Place, ...]:
+        return places(self.plant, [value.numerator for value in self.existence])
 
     @cached_property
     def ill_posed(self) -> tuple[Case, ...]:
         """The strata where the control law cannot be solved for u."""
-        return strata(self.plant, [value.numerator for value in self.existence], self.on)
+        return solved(self.plant, self._ill_posed_places, self.on)
 
     @property
     def other_gains_may_do(self) -> bool:

@@ -6,10 +6,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import carried, strata
+from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Certificate, Claim, check
 from symobs.conditions import sign_of, vanishing_factors
 from symobs.derivation.builder import relation
+from symobs.design.gain.gain_cases import places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer, transfer_matrix
@@ -19,8 +20,9 @@ from symobs.result import Case, Result
 from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Hashable, Iterator, Mapping
 
+    from symobs.analysis.strata.strata import Place
     from symobs.conditions import Condition
     from symobs.design.full_order.observer import ObserverDesign
     from symobs.design.full_order.state_feedback import StateFeedbackDesign
@@ -164,15 +166,22 @@ class OutputFeedback(Result):
         return tuple({c.expression: c for c in both}.values())
 
     @cached_property
-    def gain_strata(self) -> tuple[Case, ...]:
-        """Every stratum where (A, B) or (C, A) loses its rank, with the whole compensator there."""
-        return carried(self.plant, (*self.feedback.case_tree, *self.estimator.case_tree), self.on)
+    def gain_places(self) -> tuple[Place, ...]:
+        """Every stratum where (A, B) or (C, A) loses its rank, each of them once."""
+        found = (*places_where(self.feedback), *self._estimator_places)
+        return tuple({frozenset(place.when): place for place in found}.values())
+
+    @property
+    def _estimator_places(self) -> tuple[Place, ...]:
+        """The strata of the estimator."""
+        raise NotImplementedError
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
-        """The strata of the gains, and those where an unstable F may lose poles."""
-        cancelled = strata(self.plant, self._cancelling, self.on) if self._may_lose_poles else ()
-        return tuple({frozenset(case.when): case for case in (*self.gain_strata, *cancelled)}.values())
+        """The whole compensator on the strata of the gains, and where an unstable F may lose poles."""
+        cancelled = places(self.plant, self._cancelling) if self._may_lose_poles else ()
+        asked = {frozenset(place.when): place for place in (*self.gain_places, *cancelled)}
+        return solved(self.plant, asked.values(), self.on)
 
     @property
     def _may_lose_poles(self) -> bool:
@@ -189,9 +198,17 @@ class OutputFeedback(Result):
 
     def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
         """Return the compensator on a stratum."""
-        control, observer = self.feedback.desired, self.estimator.desired
-        assert control is not None and observer is not None  # noqa: S101, PT018 - cases belong to desired polynomials
-        return type(self).designed(plant, control.substitute(values), observer.substitute(values), self.method)
+        assert self.feedback.desired is not None  # noqa: S101 - cases belong to desired polynomials
+        assert self.estimator.desired is not None  # noqa: S101
+        control, observer = self.feedback.desired.substitute(values), self.estimator.desired.substitute(values)
+        kind, name = type(self), self.method
+        found: Self = plant.once((kind, control, observer, name), lambda: kind.designed(plant, control, observer, name))
+        return found
+
+    @property
+    def asked_for(self) -> tuple[Hashable, ...]:
+        """What a compensator of a plant is asked for by."""
+        return type(self), self.method, self.feedback.desired, self.estimator.desired
 
     @property
     def is_single(self) -> bool:

@@ -2,17 +2,35 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from symobs.analysis.strata.strata import carried, common_zeros, strata
+from symobs.analysis.strata.strata import common_places, places, places_of, solved
 from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
 
 if TYPE_CHECKING:
-    from symobs.design.gain.gain_design import GainDesign
+    from symobs.analysis.strata.strata import Place
+    from symobs.design.gain.gain_design import GainDesign, Places
     from symobs.exact import Scalar
     from symobs.result import Case
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
+
+Design = TypeVar("Design", bound="GainDesign")
+
+
+def design_of(
+    kind: type[Design],
+    plant: StateSpace,
+    desired: DesiredPolynomial,
+    method_name: str = "ackermann",
+    zero: Places = (),
+    *,
+    decoupled: bool = False,
+) -> Design:
+    """Return the design for a plant; on a stratum it is found once."""
+    question = kind, desired, method_name, zero, decoupled
+    found: Design = plant.once(question, lambda: kind.of(plant, desired, method_name, zero, decoupled=decoupled))
+    return found
 
 
 def cases_of_gain(design: GainDesign) -> tuple[Case, ...]:
@@ -25,8 +43,8 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
     plant, letter = design.plant, design.letter
 
     def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-        found = type(design).of(
-            there, desired.substitute(values), design.method, design.zero, decoupled=design.decoupled
+        found = design_of(
+            type(design), there, desired.substitute(values), design.method, design.zero, decoupled=design.decoupled
         )
         own = design.answer[letter]
         if own is None or found.answer[letter] is None:
@@ -35,14 +53,24 @@ def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]
             kept = own.substitute(values)
         except ZeroDivisionError:
             return found
-        return found.with_answer(letter, kept) if there.admits(kept) else found
+        if kept == found.answer[letter] or not there.admits(kept):
+            return found
+        return found.with_answer(letter, kept)
 
-    if design.zero and design.answer[letter] is None and design.divides and plant.field.names:
-        return common_zeros(plant, design.needed, solve) if design.needed else ()
-    found = carried(plant, design.test.case_tree, solve)
-    if design.pair.is_observable or design.answer[letter] is not None:
-        return (*found, *strata(plant, chosen(design), solve))
-    return (*found, *common_zeros(plant, design.existence, solve)) if design.existence else found
+    return solved(plant, places_where(design), solve)
+
+
+def places_where(design: GainDesign) -> tuple[Place, ...]:
+    """Return the strata on which modes, gain or whether there is one are others than in general."""
+    plant, gain = design.plant, design.answer[design.letter]
+    if design.desired is None:
+        return places_of(design.test.case_tree) if plant.field.names else ()
+    if design.zero and gain is None and design.divides and plant.field.names:
+        return common_places(plant, design.needed) if design.needed else ()
+    found = places_of(design.test.case_tree)
+    if design.pair.is_observable or gain is not None:
+        return (*found, *places(plant, chosen(design)))
+    return (*found, *common_places(plant, design.existence)) if design.existence else found
 
 
 def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
@@ -51,7 +79,7 @@ def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
     def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
         return type(design).of_given(there, design.answer[design.letter].substitute(values))
 
-    return carried(design.plant, design.test.case_tree, solve) if design.plant.field.names else ()
+    return solved(design.plant, places_where(design), solve)
 
 
 def chosen(design: GainDesign) -> tuple[Scalar, ...]:

@@ -19,6 +19,8 @@ from symobs.exact.linear_algebra.krylov import Krylov
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from symobs.exact import Ideal
+
 #: So many orders of the outputs, links of chains and ways to share the factors of φ are tried.
 ORDERS, LINKS, SHARES = 6, 6, 8
 
@@ -36,10 +38,10 @@ class Chains:
     driven: Matrix
 
     @staticmethod
-    def of(A: Matrix, C: Matrix, order: Sequence[int]) -> Chains:
-        """Return the chains for an order of the outputs; (C, A) must be observable."""
+    def of(A: Matrix, C: Matrix, order: Sequence[int], ideal: Ideal | None = None) -> Chains:
+        """Return the chains for an order of the outputs; (C, A) must be observable.  What lies in `ideal` is 0."""
         states = A.shape[0]
-        lengths = _lengths(A, C, order)
+        lengths = _lengths(A, C, order, ideal)
         outputs = tuple(i for i in order if lengths[i])
         rows = [_powers(C.select([i], range(states)), A, lengths[i]) for i in outputs]
         inverse = Matrix.block([[row] for part in rows for row in part]).T.inverse()
@@ -116,7 +118,7 @@ def _powers(row: Matrix, A: Matrix, length: int) -> list[Matrix]:
     return rows[:length]
 
 
-def _lengths(A: Matrix, C: Matrix, order: Sequence[int]) -> list[int]:
+def _lengths(A: Matrix, C: Matrix, order: Sequence[int], ideal: Ideal | None) -> list[int]:
     """Return how many of cᵢ, cᵢA, … are independent of those chosen before them, level by level."""
     states = A.shape[0]
     lengths = [0] * C.shape[0]
@@ -124,7 +126,7 @@ def _lengths(A: Matrix, C: Matrix, order: Sequence[int]) -> list[int]:
     waiting = {i: C.select([i], range(states)) for i in order}
     while waiting:
         for i in list(waiting):
-            if rank(Matrix.block([[row] for row in [*chosen, waiting[i]]])) == len(chosen):
+            if rank(Matrix.block([[row] for row in [*chosen, waiting[i]]]), ideal) == len(chosen):
                 del waiting[i]
                 continue
             chosen.append(waiting[i])
@@ -133,13 +135,15 @@ def _lengths(A: Matrix, C: Matrix, order: Sequence[int]) -> list[int]:
     return lengths
 
 
-def simple_gains(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Iterator[Matrix]:
+def simple_gains(
+    A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str, ideal: Ideal | None = None
+) -> Iterator[Matrix]:
     """Yield gains with det(sI − A + LC) = φ that are easy to read, for an observable pair."""
     yield from _of_one_output(A, C, factors, variable)
     coefficients = _coefficients(factors, variable)
     count = C.shape[0]
     for order in islice(permutations(range(count)), ORDERS if not (A.names or C.names) else 2):
-        chains = Chains.of(A, C, order)
+        chains = Chains.of(A, C, order, ideal)
         for link in islice(permutations(range(len(chains.outputs))), LINKS):
             yield chains.gain(chains.linked(link, coefficients), count)
         for share in islice(shares(factors, chains.lengths, variable), SHARES):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
-from symobs.design.pole_placement.sylvester import charts_of
+from symobs.design.pole_placement.sylvester import charts_of, has_meaning
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, letter
@@ -40,9 +40,9 @@ class Family:
         assert factors is not None  # noqa: S101 - a member exists
         A, C, _ = pair.seen
         own = names[: A.shape[0] * (C.shape[0] - 1)]
-        charts = charts_of(A, C, factors, pair.variable, own)
+        charts = charts_of(A, C, factors, pair.variable, own, pair.ideal)
         part = pair.part_of(member)
-        inside = (chart for chart in charts if A.shape[0] and chart.free_entries(part) is not None)
+        inside = (chart for chart in charts if A.shape[0] and has_meaning(chart.free_entries(part), pair.ideal))
         return Family(pair, next(inside, charts[0]), names, member)
 
     @property

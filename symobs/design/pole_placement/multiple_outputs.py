@@ -13,7 +13,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import power_rows
 from symobs.design.pole_placement.brunovsky_chains import cost, simple_gains
 from symobs.design.pole_placement.single_output import Pair
-from symobs.design.pole_placement.sylvester import charts_of
+from symobs.design.pole_placement.sylvester import charts_of, has_meaning
 from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
 
 if TYPE_CHECKING:
@@ -88,9 +88,10 @@ class SeveralOutputs(Pair):
         A, C, S = self.seen
         if not A.shape[0]:
             return Matrix.zeros(self.A.shape[0], C.shape[0])
-        found = sorted(dict.fromkeys(simple_gains(A, C, factors, self.variable)), key=cost)
-        charts = charts_of(A, C, factors, self.variable, ())
-        inside = (L for L in found if any(chart.free_entries(L) is not None for chart in charts))
+        simple = dict.fromkeys(simple_gains(A, C, factors, self.variable, self.ideal))
+        found = sorted((L for L in simple if has_meaning(L, self.ideal)), key=cost) or list(simple)
+        charts = charts_of(A, C, factors, self.variable, (), self.ideal)
+        inside = (L for L in found if any(has_meaning(chart.free_entries(L), self.ideal) for chart in charts))
         return (S @ next(inside, found[0])).normal()
 
     @property

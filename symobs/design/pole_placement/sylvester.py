@@ -9,7 +9,7 @@ r, rM, …, rMⁿ⁻¹ are X⁻¹.  Source: S. P. Bhattacharyya and E. de Souza,
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import count
+from itertools import count, islice
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,8 @@ from symobs.exact import Matrix, Scalar, apply_polynomial, companion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from symobs.exact import Ideal
 
 #: Where placement by the equation comes from.
 SYLVESTER = "S. P. Bhattacharyya and E. de Souza 1982, Systems & Control Letters 1, 261-263"
@@ -135,14 +137,26 @@ class Sylvester:
             return None
 
 
+def has_meaning(value: Matrix | None, ideal: Ideal | None) -> bool:
+    """Tell whether there is a value where an ideal vanishes: whether it divides by nothing that does."""
+    return value is not None and (ideal is None or value.common_denominator() not in ideal)
+
+
 def charts_of(
-    A: Matrix, C: Matrix, factors: tuple[Scalar, ...], variable: str, names: tuple[str, ...]
+    A: Matrix,
+    C: Matrix,
+    factors: tuple[Scalar, ...],
+    variable: str,
+    names: tuple[str, ...],
+    ideal: Ideal | None = None,
 ) -> list[Sylvester]:
     """Return charts: for each row of G that may be held, then for the sum of all rows and for another combination.
 
-    Every cyclic member lies in the chart of almost every combination.
+    Every cyclic member lies in the chart of almost every combination.  What lies in `ideal` is 0.
     """
     shift, outputs = parting_shift(A, C, factors, variable), range(C.shape[0])
+    if ideal is not None:
+        shift = _shift_on(A, C, factors, variable, shift, ideal)
     weights = [tuple(int(i == j) for j in outputs) for i in outputs]
     if len(outputs) > 1:
         weights += [(1,) * len(outputs), tuple(i + 1 for i in outputs)]
@@ -164,6 +178,19 @@ def parting_shift(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str
             if fewer < left:
                 shift, left = shift + entry, fewer
                 break
+    return shift
+
+
+def _shift_on(
+    A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str, shift: Matrix | None, ideal: Ideal
+) -> Matrix | None:
+    """Return a shift for which φ(A − L₀C) is regular where an ideal vanishes: this one, or the first of a few that is."""
+    size = A.shape[0] * C.shape[0]
+    start = Matrix.zeros(*C.T.shape) if shift is None else shift
+    for other in (shift, *(start + entry for entry in islice(_entries(*C.T.shape), 2 * size))):
+        chart = Sylvester(A, C, tuple(factors), variable, (), other, ())
+        if chart.resultant not in ideal:
+            return other
     return shift
 
 

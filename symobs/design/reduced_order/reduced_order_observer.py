@@ -5,17 +5,16 @@ In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  Wi
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import carried, equations_of, strata
+from symobs.analysis.strata.strata import equations_of, places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.design.full_order.observer import ObserverDesign
-from symobs.design.gain.gain_cases import chosen
+from symobs.design.gain.gain_cases import chosen, design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, unit_rows
@@ -36,6 +35,8 @@ from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+
+    from symobs.analysis.strata.strata import Place
 
 
 class Partition(NamedTuple):
@@ -108,8 +109,13 @@ class ReducedOrderObserver(Result):
     @classmethod
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, T: Matrix, method_name: str) -> Self:
         """Return the observer in the coordinates T, or the negative result."""
-        inner = ObserverDesign.of(_unmeasured(plant, partition(plant, T)), desired, "ackermann")
-        return cls.assembled(plant, inner, desired, T, method_name)
+
+        def find() -> Self:
+            inner = design_of(ObserverDesign, _unmeasured(plant, partition(plant, T)), desired)
+            return cls.assembled(plant, inner, desired, T, method_name)
+
+        found: Self = plant.once((cls, desired, T, method_name), find)
+        return found
 
     @classmethod
     def assembled(
@@ -219,7 +225,6 @@ class ReducedOrderObserver(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The whole question again where T is singular or the pair (A₁₂, A₂₂) loses its rank."""
-        determinant = self.answer["T"].determinant()
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
@@ -228,22 +233,28 @@ class ReducedOrderObserver(Result):
             usable = not plant.simplified(T.determinant()).is_zero
             return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
 
-        own = strata(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)), solve)
+        return solved(self.plant, self.places, solve)
+
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """The strata where T is singular or the pair (A₁₂, A₂₂) loses its rank, each of them once."""
+        determinant = self.answer["T"].determinant()
+        own = places(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)))
         if self.plant.outputs == 1 and not self.unmoved_modes:
             return own
-        found = {frozenset(equations_of(case)): case for case in own}
-        for case in carried(self.plant, self._inner_cases, solve):
-            found.setdefault(frozenset(equations_of(case)), case)
+        found = {equations_of(place): place for place in own}
+        for place in self._inner_places:
+            found.setdefault(equations_of(place), place)
         return tuple(found.values())
 
     @property
-    def _inner_cases(self) -> tuple[Case, ...]:
-        """The cases of the inner gain, apart from where there is no pair (A₁₂, A₂₂) that they speak of."""
+    def _inner_places(self) -> tuple[Place, ...]:
+        """The strata of the inner gain, apart from where there is no pair (A₁₂, A₂₂) that they speak of."""
         known = {condition.expression for condition in self.domain}
         apart = [Condition("domain", c.expression) for c in self.inner.domain if c.expression not in known]
         return tuple(
-            replace(case, when=(*case.when, *(c for c in apart if _meets(case, c.expression))))
-            for case in self.inner.case_tree
+            place._replace(when=(*place.when, *(c for c in apart if _meets(place, c.expression))))
+            for place in places_where(self.inner)
         )
 
     @cached_property
@@ -258,10 +269,10 @@ class ReducedOrderObserver(Result):
         }
 
 
-def _meets(case: Case, value: Scalar) -> bool:
-    """Tell whether a value may vanish where the equations of a case hold."""
+def _meets(place: Place, value: Scalar) -> bool:
+    """Tell whether a value may vanish where the equations of a stratum hold."""
     try:
-        return not Ideal.of((*equations_of(case), value)).is_whole
+        return not Ideal.of((*equations_of(place), value)).is_whole
     except TooLarge:
         return True
 
@@ -275,9 +286,8 @@ def require_rank(plant: StateSpace) -> None:
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
     """Return the plant of x₂ alone, seen through A₁₂."""
-    return StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols).restricted(
-        plant.equations, plant.nonzero
-    )
+    seen = StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols)
+    return plant.beside(seen.restricted(plant.equations, plant.nonzero))
 
 
 @method("reduced_order_observer/partition", source="S0, (4.32)-(4.41); Luenberger 1971")

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import carried, strata
+from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
@@ -145,11 +145,14 @@ class FeedforwardDesign(Result):
         """The strata of the gains, and those where the gain at rest loses its rank."""
 
         def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
-            return type(self).of(self.loop.on(plant, values), self.method)
+            loop = self.loop.on(plant, values)
+            found: Result = plant.once(
+                (type(self), self.method, *loop.asked_for), lambda: type(self).of(loop, self.method)
+            )
+            return found
 
-        there = carried(self.plant, self.loop.gain_strata, on)
-        own = strata(self.plant, [value.numerator for value in self.existence], on)
-        return tuple({case.when: case for case in (*own, *there)}.values())
+        own = places(self.plant, [value.numerator for value in self.existence])
+        return solved(self.plant, {place.when: place for place in (*own, *self.loop.gain_places)}.values(), on)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import carried, common_zeros, strata
+from symobs.analysis.strata.strata import common_places, places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
@@ -24,6 +24,7 @@ from symobs.specification import read_gain
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.analysis.strata.strata import Place
     from symobs.conditions import Condition
     from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.specification import MatrixText, Name, Poles, PolynomialText
@@ -162,18 +163,28 @@ class TrackingDesign(Result):
 
         def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             start = None if self.start is None else self.start.substitute(values)
-            return type(self).of(self.loop.on(plant, values), self.reference.substitute(values), start, self.method)
+            loop, reference = self.loop.on(plant, values), self.reference.substitute(values)
+            found: Result = plant.once(
+                (type(self), self.method, reference, start, *loop.asked_for),
+                lambda: type(self).of(loop, reference, start, self.method),
+            )
+            return found
 
-        cases = carried(self.plant, self.loop.gain_strata, on)
+        return solved(self.plant, self._places, on)
+
+    @property
+    def _places(self) -> tuple[Place, ...]:
+        """The strata of the gains, and where K_d is another one or a reference can be followed after all."""
         if self.answer["w"] is None:
             known = {condition.expression for condition in self.loop.holds_where}
             own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
-            return tuple({case.when: case for case in (*cases, *strata(self.plant, own, on))}.values())
+            found = (*self.loop.gain_places, *places(self.plant, own))
+            return tuple({place.when: place for place in found}.values())
         left = (self.answer["w"] @ (self.plant.matrices.A - self.reference) @ self.passed).normal()
         obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
         if any(entry.is_constant for entry in obstacles):
-            return cases
-        return (*cases, *common_zeros(self.plant, obstacles, on))
+            return self.loop.gain_places
+        return (*self.loop.gain_places, *common_places(self.plant, obstacles))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -71,9 +71,17 @@ class Ideal:
             return value.numerator
         field = self.field | value.field
         if field is not self.field:
-            return _ideal(self.generators, field).remainder(value)
+            return self.within(field).remainder(value)
         moved = field.lift(value.numerator_part, value.field).project_to_context(self.home)
         return self._back(moved.reduction_primitive_part(self.basis))  # type: ignore[attr-defined]
+
+    def within(self, field: Field) -> Ideal:
+        """Return the ideal in a larger field: further generators leave a reduced basis of the same order what it is."""
+        if (EIGENVALUE in field.position) != (EIGENVALUE in self.field.position):
+            return _ideal(self.generators, field)
+        home = _home(field)
+        moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in self.generators]
+        return Ideal(field, fmpz_mpoly_vec(moved, home), home)
 
     def reduced_column(self, entries: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Return the normal forms of the entries of a vector, times one common rational number.

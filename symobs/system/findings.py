@@ -1,0 +1,52 @@
+"""What was found for the strata of one problem: each plant and each answer once, and how much may still be found."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable
+
+#: How many answers may be found on the strata of one problem.
+_ANSWERS = 400
+
+
+class _Failed(NamedTuple):
+    """That there was no answer, and why."""
+
+    reason: Exception
+
+
+class Findings:
+    """A table that the plants of all strata of one problem share; it is freed with them.
+
+    Two threads may find the same at the same time: what is kept is the first, and both have equal values.
+    """
+
+    def __init__(self) -> None:
+        """Start with nothing found."""
+        self._found: dict[Hashable, Any] = {}
+        self.left = _ANSWERS
+
+    @property
+    def are_over(self) -> bool:
+        """Whether nothing more may be found: what is left of the strata is undecided."""
+        return self.left <= 0
+
+    def once(self, key: Hashable, find: Callable[[], Any]) -> Any:
+        """Return what was found under a key, found now if it was not; what failed fails again in the same way."""
+        known = self._found.get(key)
+        if known is None:
+            self.left -= 1
+            try:
+                known = find()
+            except Exception as error:  # noqa: BLE001 - it is raised again
+                known = _Failed(error)
+            known = self._found.setdefault(key, known)
+        if isinstance(known, _Failed):
+            raise known.reason.with_traceback(None)
+        return known
+
+    def same(self, value: Any) -> Any:
+        """Return the value equal to this one that was seen first: what is the same is found to be so at once."""
+        return self._found.setdefault(("value", value), value)
