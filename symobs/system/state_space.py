@@ -287,7 +287,10 @@ class StateSpace:
 
     def once(self, question: Hashable, find: Callable[[], Any]) -> Any:
         """Return the answer of a question about this plant; on a stratum what was found there once."""
-        return self.findings.once((question, self), find) if self.is_stratum else find()
+        if not self.is_stratum:
+            return find()
+        cost = 1 + sum(equation.size for equation in self.equations)
+        return self.findings.once((question, self), cost, find)
 
     def asked_anew(self) -> StateSpace:
         """Return the same plant with nothing found on its strata: what is found for a result is freed with it."""
