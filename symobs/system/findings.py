@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-#: What may be spent on the strata of one problem: an answer costs one, and one for each term of its equations.
+#: What may be spent on the strata of one problem: an answer costs one, and one for each of the first terms of its equations.
 _BUDGET = 800
 
 

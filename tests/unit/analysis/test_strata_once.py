@@ -6,9 +6,7 @@ import gc
 import pickle
 import weakref
 from collections import Counter
-from typing import Any
-
-import pytest
+from typing import TYPE_CHECKING, Any
 
 import symobs
 from symobs.analysis.rank.rank_test import RankResult
@@ -16,6 +14,9 @@ from symobs.certificate.pointwise import never_together_zero
 from symobs.design.gain.gain_design import GainDesign
 from symobs.exact import Scalar
 from symobs.system import findings
+
+if TYPE_CHECKING:
+    import pytest
 
 a, b = Scalar.symbol("a"), Scalar.symbol("b")
 
