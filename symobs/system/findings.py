@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-#: How many answers may be found on the strata of one problem.
-_ANSWERS = 400
+#: What may be spent on the strata of one problem: an answer costs one, and one for each of the first terms of its equations.
+_BUDGET = 800
 
 
 class _Failed(NamedTuple):
@@ -26,18 +26,18 @@ class Findings:
     def __init__(self) -> None:
         """Start with nothing found."""
         self._found: dict[Hashable, Any] = {}
-        self.left = _ANSWERS
+        self.left = _BUDGET
 
     @property
     def are_over(self) -> bool:
         """Whether nothing more may be found: what is left of the strata is undecided."""
         return self.left <= 0
 
-    def once(self, key: Hashable, find: Callable[[], Any]) -> Any:
-        """Return what was found under a key, found now if it was not; what failed fails again in the same way."""
+    def once(self, key: Hashable, cost: int, find: Callable[[], Any]) -> Any:
+        """Return what was found under a key, or what is found now at this cost; what failed fails again in the same way."""
         known = self._found.get(key)
         if known is None:
-            self.left -= 1
+            self.left -= cost
             try:
                 known = find()
             except Exception as error:  # noqa: BLE001 - it is raised again

@@ -20,6 +20,9 @@ from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFun
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
+#: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
+_LONG = 25
+
 
 class StateSpace:
     """A linear plant: ẋ = A x + B u, y = C x + D u (x(k+1) = … in discrete time).
@@ -299,7 +302,10 @@ class StateSpace:
 
     def once(self, question: Hashable, find: Callable[[], Any]) -> Any:
         """Return the answer of a question about this plant; on a stratum what was found there once."""
-        return self.findings.once((question, self), find) if self.is_stratum else find()
+        if not self.is_stratum:
+            return find()
+        cost = 1 + min(_LONG, sum(equation.size for equation in self.equations))
+        return self.findings.once((question, self), cost, find)
 
     def asked_anew(self) -> StateSpace:
         """Return the same plant with nothing found on its strata: what is found for a result is freed with it."""

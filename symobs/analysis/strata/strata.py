@@ -123,22 +123,31 @@ def carried(plant: StateSpace, cases: Iterable[Case], solve: Solve) -> tuple[Cas
 
 
 def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Case, ...]:
-    """Return the cases of some strata, each with the answer of a task there."""
-    return tuple(case for place in asked for case in _case(place, plant, solve))
+    """Return the cases of some strata, each with the answer of a task there.
+
+    All are answered before the strata of one of them are looked at: what may be found goes to the widest strata first.
+    """
+
+    def answer(place: Place) -> Result | None:
+        if not place.is_open or plant.findings.are_over:
+            return None
+        return solve(_plant_on(place, plant), place.values or {})
+
+    def with_strata(case: Case) -> Result | None:
+        # Its own strata are made now, where what cannot be claimed on them can be left undecided.
+        if case.result is not None and case.result.plant.equations:
+            _ = case.result.case_tree
+        return case.result
+
+    found = [(place, case) for place in asked for case in _case(place, plant, lambda place=place: answer(place))]
+    return tuple(each for place, case in found for each in _case(place, plant, lambda case=case: with_strata(case)))
 
 
-def _case(place: Place, plant: StateSpace, solve: Solve) -> Iterator[Case]:
-    """Yield a case; none where there is no plant, or nothing is asked for."""
+def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) -> Iterator[Case]:
+    """Yield the case of a stratum with what is found there; none where there is no plant, or nothing is asked for."""
     when, values, _ = place
-    if not place.is_open or plant.findings.are_over:
-        yield Case(when, {}, None)
-        return
     try:
-        there = _plant_on(place, plant)
-        found = solve(there, values or {})
-        if there.equations:  # its own strata are made now, where what cannot be claimed on them can be left undecided
-            _ = found.case_tree
-        yield Case(when, values or {}, found)
+        yield Case(when, values or {}, find())
     except ZeroDivisionError:
         return
     except NotWritten:
