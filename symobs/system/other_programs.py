@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symobs.errors import InputError
+from symobs.exact import Scalar
 from symobs.system.state_space import StateSpace
 from symobs.system.symbols import is_sympy
 
@@ -44,9 +45,9 @@ def _from_sympy(system: Any) -> StateSpace:
     if not all(hasattr(found, name) for name in ("num", "den", "var")):
         message = f"a system of SymPy with one input and one output is expected, but a {type(found).__name__} came"
         raise InputError(message, where="plant", repair=_MAKE_ONE)
-    from sympy import Symbol
+    from symobs.exact.sympy_bridge.conversion import scalar_to_sympy  # noqa: PLC0415 - SymPy is imported only on demand
 
-    variable = "z" if dt else "s"
-    own = {found.var: Symbol(variable)}
+    variable = Scalar.symbol("z" if dt else "s")
+    own = {found.var: scalar_to_sympy(variable)}
     coefficients = (found.num.subs(own), found.den.subs(own))
     return StateSpace.from_transfer_function(coefficients, dt)
