@@ -4,19 +4,15 @@ from symobs.result.registry import (
     Method,
     Task,
     choose,
-    format_named,
-    formats,
     method,
     methods,
-    output_format,
-    page_of,
-    render,
     task,
     task_in_time,
     task_named,
     tasks,
 )
 from symobs.result.result import Case, Document, Result, Stratum
+from symobs.result.writers import format_named, formats, output_format, page_of, render
 
 __all__ = [
     "Case",

@@ -1,27 +1,22 @@
-"""The registries of tasks, methods and formats (trusted): they register themselves in modules that are discovered."""
+"""The registries of tasks and methods (trusted), which are filled when their modules are imported."""
 
 from __future__ import annotations
 
-import importlib
 import inspect
-import pkgutil
-from collections.abc import Callable, Iterator, Mapping
-from functools import lru_cache, wraps
-from importlib.util import find_spec
+from collections.abc import Callable, Mapping
+from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import symobs
 from symobs._dataclass import dataclass
-from symobs.errors import InputError, UsageError
+from symobs.errors import InputError
+from symobs.result.writers import discover, import_named
 from symobs.system import StateSpace, as_plant
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
-    from symobs.result.result import Document, Result
+    from symobs.result.result import Result
 
-Kind = TypeVar("Kind", bound=type)
 Callback = TypeVar("Callback", bound=Callable[..., Any])
-Writer = TypeVar("Writer", bound="Callable[[Page, Any], None]")
 
 
 @dataclass(frozen=True)
@@ -53,9 +48,6 @@ class Task:
 _TASKS: dict[str, Task] = {}
 _IN_TIME: list[str] = []
 _METHODS: dict[str, Method] = {}
-_FORMATS: dict[str, Any] = {}
-_PAGES: dict[type, Callable[[Page, Any], None]] = {}
-_DISCOVERED: set[str] = set()
 
 
 def task(function: Callback) -> Callback:
@@ -136,74 +128,14 @@ def method(name: str, *, source: str, page: Callable[..., None] | None = None) -
     return register
 
 
-def page_of(kind: type[Result]) -> Callable[[Writer], Writer]:
-    """Register the function that writes the page of a result type.
-
-    It stands beside the type, in the module of the same name with `_page` after it, and is imported when first needed.
-    """
-
-    def register(writer: Writer) -> Writer:
-        _PAGES[kind] = writer
-        return writer
-
-    return register
-
-
-def writer_of(kind: type[Result]) -> Callable[[Page, Any], None]:
-    """Return what writes the page of a result type: its own, or that of the type it is derived from."""
-    for base in kind.__mro__:
-        if base not in _PAGES and find_spec(f"{base.__module__}_page") is not None:
-            importlib.import_module(f"{base.__module__}_page")
-        if base in _PAGES:
-            return _PAGES[base]
-    message = f"no page is registered for {kind.__name__}: write {kind.__module__.replace('.', '/')}_page.py"
-    raise NotImplementedError(message)
-
-
-def output_format(kind: Kind) -> Kind:
-    """Register an output format: a class with `name`, `suffix` and `render(document)`."""
-    _FORMATS[kind.name] = kind()  # type: ignore[attr-defined]
-    return kind
-
-
 def _summary(function: Callable[..., Any]) -> str:
     return (inspect.getdoc(function) or "").partition("\n")[0]
-
-
-def _discover(package: str) -> None:
-    """Import every module of a package and of its folders, once: of what was interrupted the rest follows next time."""
-    if package not in _DISCOVERED:
-        for name in _modules(package):
-            importlib.import_module(name)
-        _DISCOVERED.add(package)
-
-
-@lru_cache(maxsize=8)
-def _modules(package: str) -> tuple[str, ...]:
-    """Return the modules of a package and of its folders by dotted name, without importing them."""
-    return tuple(name for path in importlib.import_module(package).__path__ for name in _below(path, package))
-
-
-def _below(folder: str, package: str) -> Iterator[str]:
-    for found in pkgutil.iter_modules([folder]):
-        name = f"{package}.{found.name}"
-        if found.ispkg:
-            yield from _below(f"{folder}/{found.name}", name)
-        else:
-            yield name
-
-
-def _look_at(package: str, name: str) -> None:
-    """Import the modules of this name below a package, wherever they lie."""
-    for found in _modules(package):
-        if found.rpartition(".")[2] == name:
-            importlib.import_module(found)
 
 
 def tasks() -> Mapping[str, Task]:
     """Return all tasks by name."""
     for package in symobs.TASK_PACKAGES:
-        _discover(package)
+        discover(package)
     return _TASKS
 
 
@@ -211,7 +143,7 @@ def task_named(name: str) -> Task | None:
     """Return a task, None where there is none; a module of its name is looked at first: a run pays for what it needs."""
     if name not in _TASKS:
         for package in symobs.TASK_PACKAGES:
-            _look_at(package, name)
+            import_named(package, name)
     return _TASKS.get(name) or tasks().get(name)
 
 
@@ -229,27 +161,3 @@ def choose(of: str, name: str, automatic: str) -> Method:
         existing = ", ".join(["auto", *(found.name for found in methods(of).values())])
         raise InputError(message, where="specification.method", repair=f"write one of {existing}")
     return _METHODS[wanted]
-
-
-def formats() -> Mapping[str, Any]:
-    """Return all output formats by name."""
-    _discover(symobs.FORMAT_PACKAGE)
-    return _FORMATS
-
-
-def render(document: Document, format_name: str) -> str | bytes:
-    """Return a document in a format; raises `UsageError` naming the formats that exist."""
-    rendered: str | bytes = format_named(format_name).render(document)
-    return rendered
-
-
-def format_named(name: str) -> Any:
-    """Return a format; raises `UsageError` naming those that exist.
-
-    A module with the format's name is looked at first, so that a run which needs one format does not pay for all.
-    """
-    _look_at(symobs.FORMAT_PACKAGE, name)
-    if name not in _FORMATS and name not in formats():
-        message = f"{name[:40]!r} is not an output format"
-        raise UsageError(message, repair=f"use one of {', '.join(sorted(_FORMATS))}")
-    return _FORMATS[name]

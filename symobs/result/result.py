@@ -19,7 +19,7 @@ from symobs.derivation import translated
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.result.conversions import Faces
-from symobs.result.registry import render, writer_of
+from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

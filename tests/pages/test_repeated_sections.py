@@ -9,7 +9,7 @@ import pytest
 import symobs
 from symobs.errors import InputError
 from symobs.problem import read
-from symobs.result.registry import render
+from symobs.result.writers import render
 
 TWO = """
     tasks = ["state_feedback", "tracking"]

@@ -87,15 +87,15 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page.blocks.append(_title(document))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
-    page.tell_given(together)
+    page.emit_given(together)
     for index, steps in enumerate(parts):
         if index in apart:
-            page.told.clear()
-            page.tell_given(apart[index])
+            page.printed.clear()
+            page.emit_given(apart[index])
         for step in steps:
             if not _is_statement(step):
-                page.tell_step(step)
-        page.told |= _inside(steps)
+                page.emit_step(step)
+        page.printed |= _inside(steps)
     page.blocks += _sources(numbers)
     return _punctuated(page.blocks)
 
@@ -143,8 +143,8 @@ def _given_relations(step: Step) -> Iterator[Relation]:
 
 def _inside(steps: Sequence[Step]) -> set[Step]:
     """Return the steps of the sections, which later derivations need not repeat."""
-    told = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
-    return {*told, *(replace(step, answer=False) for step in told if isinstance(step, (Define, Equal, Where)))}
+    printed = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
+    return {*printed, *(replace(step, answer=False) for step in printed if isinstance(step, (Define, Equal, Where)))}
 
 
 def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
@@ -191,24 +191,24 @@ class _PageBlocks:
         self.theorems = dict(numbers or {})
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
-        self.told: set[Step] = set()
+        self.printed: set[Step] = set()
         self.numbers = [0]
         self.numbered = numbered
 
-    def tell(self, steps: Sequence[Step]) -> None:
+    def emit(self, steps: Sequence[Step]) -> None:
         """Emit a derivation, the given data first."""
-        self.tell_given([step for step in steps if _is_statement(step)])
+        self.emit_given([step for step in steps if _is_statement(step)])
         for step in steps:
             if not _is_statement(step):
-                self.tell_step(step)
+                self.emit_step(step)
 
-    def tell_given(self, statement: Sequence[Step]) -> None:
+    def emit_given(self, statement: Sequence[Step]) -> None:
         """Emit the given data that are not printed yet."""
         news = [new for step in statement for new in self.news(step)]
         if news:
             self.blocks.append(Heading("", (PHRASES["given"],)))
             for step in news:
-                self.tell_step(step)
+                self.emit_step(step)
 
     def news(self, step: Step) -> Iterator[Step]:
         """Yield the parts of a step of the statement that are not printed yet."""
@@ -230,56 +230,56 @@ class _PageBlocks:
             case _:
                 yield step
 
-    def tell_step(self, step: Step) -> None:
+    def emit_step(self, step: Step) -> None:
         match step:
             case Given(relations=relations, sentence=sentence, silent=silent):
-                self.say(sentence)
-                self.show(() if silent or (sentence and _is_condition(step)) else relations)
+                self.emit_sentence(sentence)
+                self.emit_display(() if silent or (sentence and _is_condition(step)) else relations)
             case Define(relation=relation, sentence=sentence, answer=answer, silent=silent):
-                self.say(sentence)
-                self.show(() if silent else (relation,), boxed=answer)
+                self.emit_sentence(sentence)
+                self.emit_display(() if silent else (relation,), boxed=answer)
             case Equal(relations=relations, sentence=sentence, answer=answer):
-                self.say(sentence)
-                self.show(relations, boxed=answer)
+                self.emit_sentence(sentence)
+                self.emit_display(relations, boxed=answer)
             case Solve(equation=equation, solution=solution, sentence=sentence):
-                self.say(sentence)
-                self.show((equation, solution))
+                self.emit_sentence(sentence)
+                self.emit_display((equation, solution))
             case Conclude(sentence=Sentence() as sentence, verified=True):
                 self.blocks.append(Verified(filled(sentence, self.convention)))
             case Note(sentence=sentence, caution=True):
                 self.blocks.append(Caution(LABELS["caution"], filled(sentence, self.convention)))
             case Conclude(sentence=sentence) | Note(sentence=sentence):
-                self.say(sentence)
+                self.emit_sentence(sentence)
             case Diagram(name=name, labels=labels, sentence=sentence):
-                self.say(sentence)
+                self.emit_sentence(sentence)
                 self.blocks.append(Drawing(name, labels))
             case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
-                self.say(sentence)
+                self.emit_sentence(sentence)
                 from symobs.render.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
 
                 self.blocks.append(
                     TableBlock(table, variable, remarks(table, variable), filled(Sentence("routh_where")))
                 )
                 for finding in findings:
-                    self.say(finding)
+                    self.emit_sentence(finding)
             case Where(fact=fact, sentence=sentence, answer=answer):
-                self.say(sentence)
-                self.show(fact.where, boxed=answer)
+                self.emit_sentence(sentence)
+                self.emit_display(fact.where, boxed=answer)
             case Survey():
-                self.tell_survey(step)
+                self.emit_survey(step)
             case Plot(picture=picture, sentence=sentence):
-                self.say(sentence)
+                self.emit_sentence(sentence)
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 self.blocks.append(PictureBlock(picture, caption(picture)))
             case Case(when=when, steps=steps, sentence=sentence):
-                self.tell_case(when, steps, sentence)
+                self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):
-                self.tell_given((step,))
+                self.emit_given((step,))
             case Section(title=title, steps=steps):
-                self.tell_section(title, steps)
+                self.emit_section(title, steps)
 
-    def tell_section(self, title: Sentence, steps: Sequence[Step]) -> None:
+    def emit_section(self, title: Sentence, steps: Sequence[Step]) -> None:
         is_numbered = self.numbered and title.key not in _UNNUMBERED
         self.numbers[-1] += is_numbered
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
@@ -289,10 +289,10 @@ class _PageBlocks:
         columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
         self.blocks += self.side_by_side(columns)
         for step in steps:
-            if step not in columns and (isinstance(step, Section) or step not in self.told):
-                self.tell_step(step)
+            if step not in columns and (isinstance(step, Section) or step not in self.printed):
+                self.emit_step(step)
         self.numbers.pop()
-        if self.blocks[-1] is heading and not self.told.isdisjoint(steps):  # all of it was told before
+        if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
             self.blocks.pop()
             self.numbers[-1] -= is_numbered
 
@@ -303,30 +303,30 @@ class _PageBlocks:
             cells = [_PageBlocks(self.convention, given=self.given, numbers=self.theorems) for _ in row]
             for cell, steps in zip(cells, row, strict=True):
                 for step in steps:
-                    cell.tell_step(step)
+                    cell.emit_step(step)
             rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
         if rows:
             yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
 
-    def tell_survey(self, step: Survey) -> None:
+    def emit_survey(self, step: Survey) -> None:
         """Emit the summary of a region, its parts one below the other."""
         for finding in step.findings:
-            self.say(finding)
-        self.say(step.sentence)
+            self.emit_sentence(finding)
+        self.emit_sentence(step.sentence)
         for part in step.parts:
             self.blocks.append(Display(part))
 
-    def tell_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
+    def emit_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Emit the steps of a case, whose data hold only there."""
         inner = _PageBlocks(self.convention, given=self.given, numbered=False, numbers=self.theorems)
-        inner.say(sentence)
-        inner.tell(steps)
+        inner.emit_sentence(sentence)
+        inner.emit(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
         for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
             label += [", ", relation] if place else [relation]
         self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
 
-    def say(self, sentence: Sentence | None) -> None:
+    def emit_sentence(self, sentence: Sentence | None) -> None:
         """Emit a sentence, appended to a paragraph before it."""
         if sentence is None:
             return
@@ -337,7 +337,7 @@ class _PageBlocks:
         else:
             self.blocks.append(Paragraph(inlines))
 
-    def show(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
+    def emit_display(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
         """Emit a display, appended to an unfinished display before it; a box ends a display."""
         if not relations:
             return

@@ -35,6 +35,7 @@ TRUSTED = [
     *sorted(path for path in (ROOT / "symobs" / "derivation").rglob("*.py") if path.name != "builder.py"),
     ROOT / "symobs" / "result" / "registry.py",
     ROOT / "symobs" / "result" / "result.py",
+    ROOT / "symobs" / "result" / "writers.py",
 ]
 #: The tests that stand for each of their files, by its name; small and direct ones, so that all mutants can be tried.
 TESTS = {
@@ -57,6 +58,7 @@ TESTS = {
     "rejection.py": "check steps_refused",
     "registry.py": "registry result",
     "result.py": "check result",
+    "writers.py": "registry result",
 }
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 OPTIONS = ["-q", "--no-header", "--tb=no", "-p", "no:cacheprovider"]

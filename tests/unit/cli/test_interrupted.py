@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.result import registry
+from symobs.result import registry, writers
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -46,7 +46,7 @@ def test_an_import_of_sympy_that_is_interrupted_is_made_anew(module: str) -> Non
 
 def test_a_discovery_that_is_interrupted_goes_on_the_next_time(monkeypatch: pytest.MonkeyPatch) -> None:
     # The package counted as seen, and the tasks of its other modules were unknown.
-    monkeypatch.setattr(registry, "_DISCOVERED", set())
+    monkeypatch.setattr(writers, "_DISCOVERED", set())
     asked: list[str] = []
     importing = importlib.import_module
 

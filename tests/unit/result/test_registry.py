@@ -23,6 +23,7 @@ from symobs.result import (
     task_in_time,
     task_named,
     tasks,
+    writers,
 )
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(symobs, "TASK_PACKAGES", ("tasks_of_one", "tasks_of_two"))
     monkeypatch.setattr(symobs, "FORMAT_PACKAGE", "formats_of_three")
     for name, empty in (("_TASKS", {}), ("_METHODS", {}), ("_FORMATS", {}), ("_IN_TIME", []), ("_DISCOVERED", set())):
-        monkeypatch.setattr(registry, name, empty)
+        monkeypatch.setattr(registry if hasattr(registry, name) else writers, name, empty)
     yield
     for name in [name for name in sys.modules if name.split(".")[0] in PACKAGES]:
         del sys.modules[name]
@@ -142,7 +143,7 @@ def test_a_task_that_is_known_is_not_looked_for(monkeypatch: pytest.MonkeyPatch)
         return plant
 
     assert known(None) is None
-    monkeypatch.setattr(registry, "_modules", pytest.fail)
+    monkeypatch.setattr(writers, "_modules", pytest.fail)
     found = task_named("known")
     assert found is not None
     assert found.name == "known"
@@ -168,7 +169,7 @@ def test_a_method_is_looked_for_where_it_is_not_known(monkeypatch: pytest.Monkey
 
 
 def test_formats_are_found() -> None:
-    assert format_named("plain") is registry._FORMATS["plain"]
+    assert format_named("plain") is writers._FORMATS["plain"]
     assert imported() == {"formats_of_three.plain"}
     assert format_named("odd").name == "odd"
     assert imported() == THREE

@@ -33,6 +33,7 @@ from symobs.result import (
     task_in_time,
     task_named,
     tasks,
+    writers,
 )
 from tests.support.problems.steps import A, F, said
 
@@ -315,7 +316,8 @@ def empty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Take what is registered away again."""
     tasks(), formats()
     for name, copy in (("_TASKS", dict), ("_METHODS", dict), ("_FORMATS", dict), ("_IN_TIME", list)):
-        monkeypatch.setattr(registry, name, copy(getattr(registry, name)))
+        owner = registry if hasattr(registry, name) else writers
+        monkeypatch.setattr(owner, name, copy(getattr(owner, name)))
 
 
 @pytest.mark.usefixtures("empty")
@@ -424,16 +426,16 @@ def test_only_what_is_asked_for_is_imported(monkeypatch: pytest.MonkeyPatch) -> 
     """Of a package every module is imported once, and a single one by its name."""
     imported: list[str] = []
     monkeypatch.setattr("importlib.import_module", imported.append)
-    monkeypatch.setattr(registry, "_DISCOVERED", set())
+    monkeypatch.setattr(writers, "_DISCOVERED", set())
 
     class Info:
         name = "observer"
 
-    monkeypatch.setattr(registry, "_modules", lambda package: [Info()] if package.endswith("design") else [])
+    monkeypatch.setattr(writers, "_modules", lambda package: [Info()] if package.endswith("design") else [])
     monkeypatch.setattr(registry, "_TASKS", {})
     assert task_named("observer") is None
     assert imported[0] == "symobs.design.full_order.observer"
     imported.clear()
-    registry._discover("symobs.design")
-    registry._discover("symobs.design")
+    writers.discover("symobs.design")
+    writers.discover("symobs.design")
     assert imported in ([], ["symobs.design.full_order.observer"])
