@@ -78,7 +78,8 @@ def _initialiser(cls: Any, parts: dict[str, Any]) -> Callable[..., None]:
 def _compiled(cls: Any, parts: dict[str, Any]) -> Callable[..., None]:
     """Return `__init__`, which takes the parts by place or by name as the standard library's does."""
     known: dict[str, Any] = {"_missing": _MISSING}
-    by_place, by_name, lines = ["self"], [], ["own = self.__dict__"]  # a frozen class refuses any other way
+    by_place, by_name = ["self"], list[str]()
+    lines = ["own = self.__dict__"]  # a frozen class refuses to be written to in any other way
     for name, part in parts.items():
         value, given = name, part.default is not _MISSING or part.default_factory is not _MISSING
         if part.default is not _MISSING:
