@@ -9,7 +9,9 @@ from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 from symobs.exact.kernel.generators import PI, symbols_named
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
+
+    from symobs.system import StateSpace
 
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
@@ -25,11 +27,7 @@ class Faces:
     def symbols(self) -> dict[str, str]:
         """Every symbol of the result with its sign."""
         result: Any = self
-        names = set(result.plant.symbols.signs) | set(result.plant.field.names)
-        for value in result.answer.values():
-            names |= getattr(value, "names", frozenset())
-        names = {plain for name in names for plain in symbols_named(name)} - {result.plant.variable, "t", PI}
-        return {name: result.plant.symbols.sign(name) for name in sorted(names)}
+        return signs(result.plant, result.answer.values())
 
     def to_latex(self) -> str:
         """Return the derivation as a LaTeX article."""
@@ -53,6 +51,13 @@ class Faces:
     def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
         kinds = {"plain": "text", "markdown": "markdown", "latex": "fragment", "html": "html_fragment"}
         return {f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}
+
+
+def signs(plant: StateSpace, values: Iterable[Any] = ()) -> dict[str, str]:
+    """Return every symbol of a plant and of some values with its sign."""
+    names = {*plant.symbols.signs, *plant.field.names}.union(*(getattr(value, "names", ()) for value in values))
+    names = {plain for name in names for plain in symbols_named(name)} - {plant.variable, "t", PI}
+    return {name: plant.symbols.sign(name) for name in sorted(names)}
 
 
 def to_json(value: Any) -> Any:

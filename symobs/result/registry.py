@@ -89,7 +89,8 @@ def _of_plants(function: Callback) -> Callback:
         elif keywords.get("plant") is not None:
             keywords["plant"] = _asked_anew(as_plant(keywords["plant"], only=only))
         result: Result = function(*arguments, **keywords)
-        return result
+        asked = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
+        return result.specified(asked)
 
     return reading  # type: ignore[return-value]
 

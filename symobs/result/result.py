@@ -61,6 +61,8 @@ class Result(Faces):
     certificates: tuple[Certificate, ...] = field(init=False)
     #: The method whose page is asked for; `auto` leaves the page free to be the most readable one.
     page_method: str = field(default="auto", kw_only=True)
+    #: What the task was asked for beside the plant, as it was given.
+    specification: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
 
     task: ClassVar[str]
     #: Whether the answers are functions of time, or of a horizon.
@@ -172,9 +174,17 @@ class Result(Faces):
 
     def asked(self, method_name: str) -> Self:
         """Return the same result with the page of a method; its claims do not speak of the page."""
-        other = object.__new__(type(self))
-        other.__dict__.update(self.__dict__, page_method=method_name)
+        other = self._copied(page_method=method_name)
         other.__dict__.pop("derivation", None)
+        return other
+
+    def specified(self, specification: Mapping[str, Any]) -> Self:
+        """Return the same result, which knows what was asked for; its claims do not speak of that either."""
+        return self._copied(specification=specification)
+
+    def _copied(self, **changed: Any) -> Self:
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, **changed)
         return other
 
     # -- faces ---------------------------------------------------------------------------------------------------------

@@ -173,4 +173,4 @@ def test_objects_are_pickled_and_matched() -> None:
 
 def test_every_class_of_parts_is_made_this_way() -> None:
     wrong = [path for path in SOURCES if "from dataclasses import dataclass" in path.read_text("utf-8")]
-    assert [path.name for path in wrong] == ["record.py"]
+    assert [path.name for path in wrong] == ["_dataclass.py"]

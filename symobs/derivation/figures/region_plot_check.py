@@ -225,8 +225,11 @@ def _inside(area: Sequence[Place], near: Fraction) -> Iterator[Place]:
 
 def _crossings(area: Sequence[Place], y: Fraction) -> Iterator[Fraction]:
     """Yield where the edges of a polygon cross a horizontal line."""
-    for (x0, y0), (x1, y1) in zip(area, (*area[1:], area[0]), strict=True):
-        if (y0 <= y) != (y1 <= y):
+    above, below = y.numerator, y.denominator  # the integers of a fraction are compared in a fraction of the time
+    sides = [height.numerator * below <= above * height.denominator for _, height in area]
+    for k, side in enumerate(sides):
+        if side != sides[k - 1]:
+            (x0, y0), (x1, y1) = area[k - 1], area[k]
             yield x0 + (x1 - x0) * (y - y0) / (y1 - y0)
 
 

@@ -87,6 +87,10 @@ class Field:
             return self
         return _join(self, other)
 
+    def without(self, names: frozenset[str]) -> Field:
+        """Return the field of the other generators."""
+        return _without(self, names)
+
     def __le__(self, other: Field) -> bool:
         """Return whether every generator of this field is one of `other`."""
         return all(name in other.position for name in self.names)
@@ -129,11 +133,11 @@ class Route:
     def carry(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the polynomial in the target's context; composition is the faster way for short ones."""
         if len(polynomial) <= 1:
+            if polynomial.is_constant():
+                return self.target.constant(polynomial.leading_coefficient() if polynomial else 0)
             place = self.generators.index(polynomial) if polynomial in self.generators else None
             if place is not None and place not in self.missing:
                 return self.images[place]
-            if polynomial.is_constant():
-                return self.target.constant(polynomial.leading_coefficient() if polynomial else 0)
         if self.missing:
             degrees = polynomial.degrees()
             if any(degrees[i] > 0 for i in self.missing):
@@ -168,6 +172,11 @@ def _field(names: tuple[str, ...]) -> Field:
         if found is None:
             found = _FIELDS[names] = Field(names)
         return found
+
+
+@lru_cache(maxsize=1024)
+def _without(field: Field, names: frozenset[str]) -> Field:
+    return Field.of([name for name in field.names if name not in names])
 
 
 @lru_cache(maxsize=1024)

@@ -136,10 +136,10 @@ class Matrix:
         """All entries, row by row."""
         return tuple(entry for row in self.rows for entry in row)
 
-    @property
+    @cached_property
     def names(self) -> frozenset[str]:
         """The generators that really occur."""
-        return frozenset().union(*(entry.names for entry in self.entries))
+        return frozenset().union(*(entry.names for entry in self.entries)) if self.field.names else frozenset()
 
     @property
     def size(self) -> int:

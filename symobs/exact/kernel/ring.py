@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import log2
 from typing import TYPE_CHECKING, TypeAlias
 
-from flint import fmpz, fmpz_mat, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mat, fmpz_mpoly
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -24,6 +24,8 @@ _WHOLE_TEXT, _TOLD = 40, 6
 _LOOKED_AT = 6
 #: From this many terms on a common divisor is first looked for in a leading coefficient.
 _LONG = 150
+#: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
+_COEFFICIENT_LIMIT = 2**31
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 
@@ -280,3 +282,47 @@ def degree_bound(polynomial: fmpz_mpoly) -> int:
     if len(polynomial) == 1:
         return int(polynomial.total_degree())
     return sum(map(int, polynomial.degrees())) if polynomial else 0
+
+
+def occurring(polynomial: fmpz_mpoly, names: Sequence[str]) -> list[str]:
+    """Return those of the names of the generators that occur in a polynomial."""
+    if polynomial.is_constant():
+        return []
+    return [name for name, degree in zip(names, polynomial.degrees(), strict=True) if degree > 0]
+
+
+def factors_of(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
+    """Factor over Z into (unit, primitive irreducible factors with positive leading coefficient)."""
+    if polynomial.is_constant():
+        return int(number_of(polynomial)), []
+    if max(abs(c) for c in polynomial.coeffs()) < _COEFFICIENT_LIMIT:
+        try:
+            unit, parts = polynomial.factor()
+        except OverflowError:
+            unit, parts = _factor_over_rationals(field, polynomial)
+    else:
+        unit, parts = _factor_over_rationals(field, polynomial)
+    whole, found = int(unit), []
+    for part, power in parts:
+        positive = part
+        if part.leading_coefficient() < 0:
+            positive, whole = -part, whole * (-1) ** (power % 2)
+        found.append((positive, int(power)))
+    found.sort(key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
+    return whole, found
+
+
+def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:
+    letters = tuple(f"x{index}" for index in range(len(field.names)))  # the library keeps what it is asked for
+    rational = fmpq_mpoly_ctx.get(letters, field.context.ordering())
+    _, parts = rational.from_dict({p: fmpq(c) for p, c in polynomial.terms()}).factor()
+    found, product = [], field.one
+    for part, power in parts:
+        scale = fmpz(1)
+        for coefficient in part.coeffs():
+            scale = scale * coefficient.q // scale.gcd(coefficient.q)
+        whole = field.context.from_dict({p: (c * scale).p for p, c in part.terms()})
+        _, whole = whole.primitive()
+        found.append((whole, power))
+        product = product * whole**power
+    return number_of(polynomial / product), found

@@ -10,25 +10,31 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mpoly
+from flint import fmpz, fmpz_mpoly
 
 from symobs.errors import WrongKind
 from symobs.exact.kernel.canonical_text import scalar_text
 from symobs.exact.kernel.field import RATIONALS, Field
-from symobs.exact.kernel.ring import common_factor, degree_bound, invariants, length_bits, polynomial_fingerprint
+from symobs.exact.kernel.ring import (
+    common_factor,
+    degree_bound,
+    factors_of,
+    invariants,
+    length_bits,
+    number_of,
+    occurring,
+    polynomial_fingerprint,
+)
 from symobs.exact.kernel.univariate import coefficients_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-#: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
-_COEFFICIENT_LIMIT = 2**31
-
 
 class Scalar:
     """An element numerator / denominator of a field."""
 
-    __slots__ = ("denominator_part", "field", "known_hash", "numerator_part")
+    __slots__ = ("denominator_part", "field", "known_hash", "known_names", "numerator_part")
 
     def __init__(self, field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> None:
         """Take reduced parts; `reduced` is the general constructor."""
@@ -84,7 +90,9 @@ class Scalar:
         """Return the same value as an element of `field`, which must contain the generators it uses."""
         if field is self.field:
             return self
-        return Scalar(field, field.lift(self.numerator_part, self.field), field.lift(self.denominator_part, self.field))
+        below = self.denominator_part
+        below = field.one if below.is_one() else field.lift(below, self.field)
+        return Scalar(field, field.lift(self.numerator_part, self.field), below)
 
     def over(self, denominator: fmpz_mpoly) -> fmpz_mpoly:
         """Return the numerator over a multiple of the denominator."""
@@ -198,9 +206,11 @@ class Scalar:
 
     @property
     def names(self) -> frozenset[str]:
-        """The generators that really occur."""
-        degrees = zip(self.field.names, self.numerator_part.degrees(), self.denominator_part.degrees(), strict=True)
-        return frozenset(name for name, above, below in degrees if above > 0 or below > 0)
+        """The generators that really occur; kept, since they are asked for again and again."""
+        if not hasattr(self, "known_names"):
+            parts = (part for part in (self.numerator_part, self.denominator_part) if not part.is_one())
+            self.known_names: frozenset[str] = frozenset().union(*(occurring(part, self.field.names) for part in parts))
+        return self.known_names
 
     @property
     def size(self) -> int:
@@ -235,7 +245,7 @@ class Scalar:
 
     def fraction(self) -> Fraction:
         """Return a constant as a `Fraction`."""
-        return Fraction(int(_constant(self.numerator_part)), int(_constant(self.denominator_part)))
+        return Fraction(int(number_of(self.numerator_part)), int(number_of(self.denominator_part)))
 
     def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
         """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""
@@ -294,12 +304,10 @@ class Scalar:
         relevant = {name: value for name, value in values.items() if name in self.field.position}
         if not relevant:
             return self
-        above, below = (_compose(p, self.field, relevant) for p in (self.numerator_part, self.denominator_part))
-        return above / below
-
-
-def _constant(polynomial: fmpz_mpoly) -> fmpz:
-    return polynomial.leading_coefficient() if polynomial else fmpz(0)
+        above = _compose(self.numerator_part, self.field, relevant)
+        if self.denominator_part.is_one():
+            return above
+        return above / _compose(self.denominator_part, self.field, relevant)
 
 
 def _plain_terms(polynomial: fmpz_mpoly) -> tuple[tuple[tuple[int, ...], int], ...]:
@@ -319,55 +327,20 @@ def _from_terms(
 def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
     """Return the factors of a nonzero value; cached."""
     field = value.field
-    above, over = _factor(field, value.numerator_part)
-    below, under = _factor(field, value.denominator_part)
+    above, over = factors_of(field, value.numerator_part)
+    below, under = factors_of(field, value.denominator_part)
     found = [(Scalar(field, part, field.one), power) for part, power in over]
     found += [(Scalar(field, part, field.one), -power) for part, power in under]
     return Scalar.rational(above, below), tuple(found)
 
 
-def _factor(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fmpz_mpoly, int]]]:
-    """Factor over Z into (unit, primitive irreducible factors with positive leading coefficient)."""
-    if polynomial.is_constant():
-        return int(_constant(polynomial)), []
-    if max(abs(c) for c in polynomial.coeffs()) < _COEFFICIENT_LIMIT:
-        try:
-            unit, parts = polynomial.factor()
-        except OverflowError:
-            unit, parts = _factor_over_rationals(field, polynomial)
-    else:
-        unit, parts = _factor_over_rationals(field, polynomial)
-    whole, found = int(unit), []
-    for part, power in parts:
-        positive = part
-        if part.leading_coefficient() < 0:
-            positive, whole = -part, whole * (-1) ** (power % 2)
-        found.append((positive, int(power)))
-    found.sort(key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
-    return whole, found
-
-
-def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:
-    letters = tuple(f"x{index}" for index in range(len(field.names)))  # the library keeps what it is asked for
-    rational = fmpq_mpoly_ctx.get(letters, field.context.ordering())
-    _, parts = rational.from_dict({p: fmpq(c) for p, c in polynomial.terms()}).factor()
-    found, product = [], field.one
-    for part, power in parts:
-        scale = fmpz(1)
-        for coefficient in part.coeffs():
-            scale = scale * coefficient.q // scale.gcd(coefficient.q)
-        whole = field.context.from_dict({p: (c * scale).p for p, c in part.terms()})
-        _, whole = whole.primitive()
-        found.append((whole, power))
-        product = product * whole**power
-    return _constant(polynomial / product), found
-
-
 def _compose(polynomial: fmpz_mpoly, field: Field, values: Mapping[str, Scalar]) -> Scalar:
     """Evaluate a polynomial at scalars: clear denominators generator by generator, compose once."""
-    target = Field.of([name for name in field.names if name not in values])
+    target = field.without(frozenset(values))
     for value in values.values():
         target = target | value.field
+    if polynomial.is_constant():
+        return Scalar(target, target.context.constant(number_of(polynomial)), target.one)
     powers = dict(zip(field.names, polynomial.degrees(), strict=True))
     clearing = target.one
     images = []

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.convention import STANDARD, Convention
+from symobs.exact import Matrix
 from symobs.result import Case, Result, output_format
-from symobs.result.conversions import to_json
+from symobs.result.conversions import signs, to_json
 from symobs.result.in_convention import Viewed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.render.page.sheet import Sheet
     from symobs.result import Document
+    from symobs.system import StateSpace
 
 SCHEMA = "symobs/1"
 
@@ -100,9 +103,36 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
         "cases": [_case_object(case, answers) for case in result.case_tree],
         "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
         "symbols": result.symbols,
+        "plant": _plant_object(result.plant),
+        "specification": {name: _given(value) for name, value in result.specification.items()},
         **answers,
         "in_convention": {"name": convention.name, **in_convention},
     }
+
+
+def _plant_object(plant: StateSpace) -> dict[str, Any]:
+    """Return the data: the matrices there are, the sampling time, and the names with their signs."""
+    if plant.polynomial is not None:
+        data: dict[str, Any] = {"polynomial": to_json(plant.polynomial)}
+    else:
+        m = plant.matrices
+        present = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_input and m.has_output}
+        data = {name: to_json(getattr(m, name)) for name, is_there in present.items() if is_there}
+    dt = plant.dt if isinstance(plant.dt, int) else str(plant.dt)
+    return {**data, "dt": dt, "symbols": signs(plant, [plant.polynomial])}
+
+
+def _given(value: Any) -> Any:
+    """Return a part of a specification as it was given; what JSON has no form for as its text."""
+    if value is None or isinstance(value, (str, int)):
+        return value
+    if isinstance(value, Mapping):
+        return {str(key): _given(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_given(entry) for entry in value]
+    if isinstance(value, Matrix):
+        return to_json(value)
+    return _given(value.tolist()) if hasattr(value, "tolist") else str(value)
 
 
 def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:

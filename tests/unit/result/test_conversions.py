@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import random
 
 import pytest
@@ -91,3 +92,40 @@ def test_json_says_an_answer_once() -> None:
 )
 def test_json_is_written_as_the_plain_encoder_would(value: dict[str, object]) -> None:
     assert _written(value) == json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def test_json_says_what_was_asked() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", dt=sympy.Rational(1, 10), symbols={"b": "positive"})
+    asked = {"poles": [sympy.Rational(1, 2), "1/4"], "method": "auto"}
+    (found,) = json.loads(symobs.observer(plant, **asked).to_json())["results"]
+    assert found["plant"] == {
+        "A": [["0", "1"], ["0", "-b"]],
+        "B": [["0"], ["1"]],
+        "C": [["1", "0"]],
+        "D": [["0"]],
+        "dt": "1/10",
+        "symbols": {"b": "positive"},
+    }
+    assert found["specification"] == {"poles": ["1/2", "1/4"], "method": "auto"}
+    without_input = symobs.observability(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"))
+    (found,) = json.loads(without_input.to_json())["results"]
+    assert found["plant"] == {"A": [["0", "1"], ["0", "-1"]], "C": [["1", "0"]], "dt": 0, "symbols": {}}
+    assert found["specification"] == {}
+
+
+def test_what_was_asked_is_kept() -> None:
+    asked = {"polynomial": "(s+1)^2"}
+    design = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"), **asked)
+    kept = [
+        design,
+        pickle.loads(pickle.dumps(design)),  # noqa: S301 - our own bytes
+        design.asked("matching"),
+        design.with_answer("L", design.answer["L"]),
+    ]
+    assert [dict(one.specification) for one in kept] == [asked] * 4
+
+
+def test_a_polynomial_alone_is_the_data() -> None:
+    region = symobs.stability_region(polynomial="s^2 + k*s + 1", parameters=["k"])
+    (found,) = json.loads(region.to_json())["results"]
+    assert found["plant"] == {"polynomial": "s**2 + s*k + 1", "dt": 0, "symbols": {"k": "real"}}
