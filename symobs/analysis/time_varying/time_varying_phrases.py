@@ -73,6 +73,13 @@ PHRASES: dict[str, str] = {
     "x0_not_unique": "The initial state cannot be found from it, since the hidden states add nothing to an output.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask time_varying_observability": "Is the plant observable?",
+    "ask time_varying_observability interval": "Is the plant observable on the interval from {start} to {end}?",
+    "also time_varying_observability output": "Find the initial state that explains the output {output}.",
+    "also time_varying_observability input": "The input is {input}.",
+}
+
 DEMANDS: dict[str, str] = {
     "stack_yes": "says_rank_full",
     "case_stack_yes": "says_rank_full",

@@ -20,10 +20,21 @@ PHRASES: dict[str, str] = {
     "no_feedforward_none": "The transfer function of the plant is zero, so no input moves the output, at rest or not. There is no such $F_v$.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask feedforward": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new input.",
+    "ask feedforward observer=full": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new "
+    "input.",
+    "ask feedforward observer=minimal": "Design state feedback, an observer of minimal order, and a feedforward gain for which the output at rest equals the "
+    "new input.",
+}
+
 DEMANDS: dict[str, str] = {
     "no_feedforward_zero": "needs_rank_full",
 }
 
-OPENS = ("feedforward_law",)
+RESTS_ON: dict[str, str] = {
+    "feedforward_gain": "feedforward",
+    "feedforward_smallest": "feedforward",
+}
 
-RESTS_ON: dict[str, str] = {"feedforward_gain": "feedforward", "feedforward_smallest": "feedforward"}
+OPENS = ("feedforward_law",)

@@ -61,6 +61,26 @@ PHRASES: dict[str, str] = {
     "boundary_undecided": "What is true on the boundary of this region is not decided here.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask pbh": "Test the observability of the pair ($C$, $A$) eigenvalue by eigenvalue.",
+    "ask pbh of=observability": "Test the observability of the pair ($C$, $A$) eigenvalue by eigenvalue.",
+    "ask pbh of=controllability": "Test the controllability of the pair ($A$, $B$) eigenvalue by eigenvalue.",
+    "ask detectability": "Is the pair ($C$, $A$) detectable?",
+    "ask detectability meaning=asymptotic": "Is the pair ($C$, $A$) detectable, the hidden modes being asymptotically stable?",
+    "ask detectability meaning=lyapunov": "Is the pair ($C$, $A$) detectable, the hidden modes being stable in the sense of Lyapunov?",
+    "ask stabilizability": "Is the pair ($A$, $B$) stabilizable?",
+    "ask stabilizability meaning=asymptotic": "Is the pair ($A$, $B$) stabilizable, the modes that are not reached being asymptotically stable?",
+    "ask stabilizability meaning=lyapunov": "Is the pair ($A$, $B$) stabilizable, the modes that are not reached being stable in the sense of Lyapunov?",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "only_stable": ("stable",),
+    "marginal_continuous": ("marginal",),
+    "marginal_discrete": ("marginal",),
+    "beyond_continuous": ("beyond",),
+    "beyond_discrete": ("beyond",),
+}
+
 DEMANDS: dict[str, str] = {
     "pbh_yes_observability": "needs_rank_full",
     "pbh_yes_controllability": "needs_rank_full",
@@ -72,14 +92,6 @@ DEMANDS: dict[str, str] = {
     "yes_stabilizability": "needs_modes_stable",
     "no_detectability": "needs_modes_unstable",
     "no_stabilizability": "needs_modes_unstable",
-}
-
-ASSERTS: dict[str, tuple[str, ...]] = {
-    "only_stable": ("stable",),
-    "marginal_continuous": ("marginal",),
-    "marginal_discrete": ("marginal",),
-    "beyond_continuous": ("beyond",),
-    "beyond_discrete": ("beyond",),
 }
 
 RESTS_ON: dict[str, str] = {

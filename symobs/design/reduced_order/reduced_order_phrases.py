@@ -50,10 +50,25 @@ PHRASES: dict[str, str] = {
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask reduced_order_observer": "Design an observer of minimal order.",
+    "ask reduced_order_observer poles": "Design an observer of minimal order with the poles {poles}.",
+    "ask reduced_order_observer poles=1": "Design an observer of minimal order with the pole {poles}.",
+    "ask reduced_order_observer polynomial": "Design an observer of minimal order with the characteristic polynomial {polynomial}.",
+    "also reduced_order_observer T": "Use the coordinates $T x$.",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {
     "reduced_impossible": ("not_polynomial",),
     "reduced_not_unique": ("polynomial",),
     "reduced_all_fixed": ("polynomial",),
+}
+
+RESTS_ON: dict[str, str] = {
+    "mere_copy": "first_attempt",
+    "first_part_measures": "reduced_pair",
+    "reduced_observer": "reduced_order",
+    "undetermined_ansatz": "undetermined",
 }
 
 OPENS = (
@@ -65,14 +80,12 @@ OPENS = (
     "parts_with_feedthrough",
 )
 
-RESTS_ON: dict[str, str] = {
-    "mere_copy": "first_attempt",
-    "first_part_measures": "reduced_pair",
-    "reduced_observer": "reduced_order",
-    "undetermined_ansatz": "undetermined",
-}
-
-EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails", "mere_copy_grows")
+EXPLAINS = (
+    "first_part_measures",
+    "mere_copy",
+    "mere_copy_fails",
+    "mere_copy_grows",
+)
 
 SPELLS_OUT = (
     "coordinates",

@@ -17,6 +17,20 @@ PHRASES: dict[str, str] = {
     "tracking_polynomial": "with the polynomial",
 }
 
-OPENS = ("tracking_law", "tracking_errors", "tracking_errors_one")
+QUESTIONS: dict[str, str] = {
+    "ask tracking": "Let the state follow the states $x_d$ of its own unforced motion, by state feedback and an observer of minimal order.",
+    "ask tracking reference_matrix": "Let the state follow every reference $x_d$, by state feedback and an observer of minimal order. Is that possible?",
+    "ask tracking reference_matrix reference_start": "Let the state follow the reference $x_d$ from the initial state given, by state feedback and an observer of "
+    "minimal order. Is that possible?",
+    "also tracking observer=full": "The observer is to have full order.",
+}
 
-RESTS_ON: dict[str, str] = {"tracking_law": "tracking"}
+RESTS_ON: dict[str, str] = {
+    "tracking_law": "tracking",
+}
+
+OPENS = (
+    "tracking_law",
+    "tracking_errors",
+    "tracking_errors_one",
+)

@@ -1,1 +1,0 @@
-"""TODO symobs/phrases/english/design."""
