@@ -81,8 +81,14 @@ ASSERTS: dict[str, tuple[str, ...]] = _table("ASSERTS")
 #: rejected where its relation, its facts or its definition do not meet it.
 DEMANDS: dict[str, str] = _table("DEMANDS")
 
-#: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
+#: The theorem (a key of `THEOREMS`) that a phrase appeals to.
 RESTS_ON: dict[str, str] = _table("RESTS_ON")
+
+#: The theorems that phrases may appeal to: each with its short name, and where it is proved.
+THEOREMS: dict[str, tuple[str, str]] = _collected("THEOREMS")
+
+#: The block diagrams of pages, as `figures.block_diagram` reads them: grid, routes, signals, letters, optional boxes.
+FIGURES: dict[str, dict[str, Any]] = _collected("FIGURES")
 
 #: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
 NAMING: frozenset[str] = _listing("NAMING").union(QUESTIONS)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.phrases import PHRASES
+from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.phrases.english import question_phrases
 from symobs.result import Task, tasks
 from tests.support.paths import ROOT
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FILES = sorted((ROOT / "symobs").rglob("*_phrases.py"))
-TABLES = {"PHRASES", "QUESTIONS", "ASSERTS", "DEMANDS", "RESTS_ON"}
+TABLES = {"PHRASES", "QUESTIONS", "ASSERTS", "DEMANDS", "RESTS_ON", "THEOREMS", "FIGURES"}
 LISTS = {"NAMING", "OPENS", "EXPLAINS", "BESIDE", "SPELLS_OUT", "UNSAID"}
 TASKS = sorted(tasks().values(), key=lambda task: task.name)
 
@@ -88,6 +88,10 @@ def keys_of(path: Path) -> list[str]:
         for key in (part.value for part in node.value.keys if isinstance(part, ast.Constant))
         if isinstance(key, str)
     ]
+
+
+def test_every_theorem_is_appealed_to_and_none_is_missing() -> None:
+    assert set(RESTS_ON.values()) == THEOREMS.keys()
 
 
 def test_the_phrases_bring_no_code_with_them() -> None:

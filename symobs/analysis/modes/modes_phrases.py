@@ -106,6 +106,12 @@ RESTS_ON: dict[str, str] = {
     "means_lyapunov": "lyapunov",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "pbh": ("test of Popov, Belevitch and Hautus", "S0, chapter 4"),
+    "detectability": ("detectability", "S0, section 4.4"),
+    "lyapunov": ("detectability in the sense of Lyapunov", "S3, footnote 1"),
+}
+
 EXPLAINS = (
     "asks_detectability_continuous",
     "asks_stabilizability_continuous",

@@ -71,6 +71,11 @@ RESTS_ON: dict[str, str] = {
     "generic_low_controllability": "controllability_rank",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "observability_rank": ("rank test for observability", "S0, Theorem 4.2"),
+    "controllability_rank": ("rank test for controllability", "S0, Theorem 2.2, dual to Theorem 4.2"),
+}
+
 NAMING = (
     "undecided_case",
     "undecided_together",

@@ -41,6 +41,10 @@ RESTS_ON: dict[str, str] = {
     "reached_and_hidden": "decomposition",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "decomposition": ("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
+}
+
 EXPLAINS = (
     "last_column_observable",
     "zero_pattern",

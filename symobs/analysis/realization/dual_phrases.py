@@ -27,3 +27,7 @@ RESTS_ON: dict[str, str] = {
     "dual_ranks_controlling": "duality",
     "dual_negative": "duality_reversed",
 }
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "duality_reversed": ("duality through −Aᵀ", "S4"),
+}

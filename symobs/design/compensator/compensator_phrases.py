@@ -96,6 +96,13 @@ RESTS_ON: dict[str, str] = {
     "gain_state_feedback": "ackermann",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "similarity": ("from estimate to error", "S1, slide at 28:08"),
+    "compensator": ("compensator in transfer form", "S0, (4.25)"),
+    "hurwitz": ("Hurwitz's criterion", "A. Hurwitz, Math. Ann. 46 (1895), 273-284"),
+    "closed_loop": ("closed loop in state and error", "S0, (4.26)-(4.29)"),
+}
+
 #: A new thought begins here.
 OPENS = ()
 
@@ -108,3 +115,66 @@ SPELLS_OUT = (
     "named_entries",
     "with_coefficients",
 )
+
+FIGURES: dict[str, dict[str, object]] = {
+    "loop": {
+        "grid": """
+        r  u  P  y'  y
+        .  .  F  .   .
+        """,
+        "routes": (
+            "r > u > P > y' > y",
+            "y' |- F -| u",
+        ),
+        "signals": {"r": "r_in", "u": "u", "y": "y"},
+        "letters": {"P": "P", "F": "F"},
+        "response": True,
+    },
+    "unity_loop": {
+        "grid": """
+        r  e  F  u  P  y'  y
+        .  .  .  c  .  .   .
+        """,
+        "routes": (
+            "r > e > F > u > P > y' > y",
+            "y' |- c -|[U] e",
+        ),
+        "signals": {"r": "r_in", "u": "u", "y": "y"},
+        "letters": {"P": "P", "F": "F"},
+        "response": True,
+    },
+    "observer_compensator": {
+        "grid": """
+        .  .   .   A   .   .  .   .  .
+        .  B   j   ∫x  a   .  C   y'  y
+        .  .   .   L   .   .  .   e   .
+        u  B'  j'  ∫w  a'  k  C'  v   .
+        .  .   .   A'  .   .  .   .   .
+        c  .   .   K   .   .  .   .   .
+        """,
+        "routes": (
+            "u |- B > j > ∫x > a > C > y' > y",
+            "a |- A -| j",
+            "u > B' > j' > ∫w > a' > k > C' > v >[U] e",
+            "a' |- A' -| j'",
+            "y' > e > L -| j'",
+            "k |- K > c > u",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x", "w": "x_hat", "v": "y_hat"},
+    },
+    "observer_controller": {
+        "grid": """
+        .  .  .  Plant  .  .  y'  y
+        .  .  .  A      .  .  .   .
+        u  K  a  ∫x     j  L  .   .
+        .  .  .  B      .  .  .   .
+        """,
+        "routes": (
+            "u |- Plant > y' > y",
+            "y' |- L > j > ∫x > a > K > u",
+            "a |- A -| j",
+            "u |- B -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat"},
+    },
+}

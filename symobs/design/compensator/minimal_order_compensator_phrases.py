@@ -42,6 +42,10 @@ RESTS_ON: dict[str, str] = {
     "minimal_transfer": "minimal_order",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "minimal_order": ("compensator with a minimal-order observer", "S0, section 4.6"),
+}
+
 #: A new thought begins here.
 OPENS = (
     "minimal_control",

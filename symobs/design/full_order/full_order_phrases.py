@@ -46,7 +46,48 @@ RESTS_ON: dict[str, str] = {
     "error_equation": "error",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "observer": ("full-order observer", "S0, (4.18)-(4.20)"),
+    "error": ("error equation", "S0, (4.19)"),
+    "existence": ("existence of an asymptotic observer", "S4"),
+}
+
 OPENS = (
     "observer_equation",
     "existence_observer",
 )
+
+FIGURES: dict[str, dict[str, object]] = {
+    "observer_copy": {
+        "grid": """
+        .  .  .  w  C   .  .  .
+        y  e  L  .  .   .  .  .
+        .  D  .  .  .   .  .  .
+        u  b  B  j  ∫x  a  c  x
+        .  .  .  .  A   .  .  .
+        """,
+        "routes": (
+            "u > b > B > j > ∫x > a > c > x",
+            "y > e > L -| j",
+            "c |- C > w -|[U] e",
+            "a |- A -| j",
+            "b > D > e",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat", "w": "y_hat"},
+        "optional": ("B", "D"),
+    },
+    "observer_closed": {
+        "grid": """
+        y  L  .  .   .  .
+        u  B  j  ∫x  a  x
+        .  .  .  A   .  .
+        """,
+        "routes": (
+            "u > B > j > ∫x > a > x",
+            "y > L -| j",
+            "a |- A -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat"},
+        "optional": ("B",),
+    },
+}

@@ -55,4 +55,11 @@ RESTS_ON: dict[str, str] = {
     "sylvester_state_feedback": "sylvester",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "sylvester": (
+        "pole assignment by Sylvester's equation",
+        "S. P. Bhattacharyya and E. de Souza, Systems & Control Letters 1 (1982), 261-263",
+    ),
+}
+
 NAMING = ("impossible_zero_unless",)

@@ -119,6 +119,12 @@ RESTS_ON: dict[str, str] = {
     "last_row": "ackermann",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "observer_poles": ("pole assignment for observers", "S0, Theorem 4.4"),
+    "row_reduction": ("row-reduced echelon method", "S3, (7)-(10)"),
+    "companion_form": ("placement through companion form", "S1, slide at 16:01"),
+}
+
 EXPLAINS = (
     "open_eigenvalues_observer",
     "open_eigenvalues_state_feedback",

@@ -71,6 +71,13 @@ RESTS_ON: dict[str, str] = {
     "undetermined_ansatz": "undetermined",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "reduced_order": ("reduced-order observer", "S0, (4.37)-(4.41)"),
+    "reduced_pair": ("observability of the unmeasured part", "S0, Lemma 4.1"),
+    "first_attempt": ("the reduced observer that no gain corrects", "S2"),
+    "undetermined": ("conditions on the observer matrices", "S2"),
+}
+
 OPENS = (
     "reduced_observer",
     "undetermined_ansatz",
@@ -96,3 +103,38 @@ SPELLS_OUT = (
     "parts_with_feedthrough",
     "parts_with_feedthrough_blocks",
 )
+
+FIGURES: dict[str, dict[str, object]] = {
+    "minimal_order_observer": {
+        "grid": """
+        y  b  .  .  .   .  .  .
+        .  .  H  .  .   .  .  .
+        u  .  G  j  ∫z  a  M  x
+        .  .  .  .  F   .  .  .
+        """,
+        "routes": (
+            "y > b -| M",
+            "u > G > j > ∫z > a > M > x",
+            "b |- H -| j",
+            "a |- F -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+        "optional": ("G",),
+    },
+    "minimal_order_feedthrough": {
+        "grid": """
+        y  e  b  .  .  .   .  .  .
+        .  D  .  H  .  .   .  .  .
+        u  c  .  G  j  ∫z  a  M  x
+        .  .  .  .  .  F   .  .  .
+        """,
+        "routes": (
+            "y > e > b -| M",
+            "u > c > G > j > ∫z > a > M > x",
+            "c > D > e",
+            "b |- H -| j",
+            "a |- F -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+    },
+}

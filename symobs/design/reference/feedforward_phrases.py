@@ -37,4 +37,26 @@ RESTS_ON: dict[str, str] = {
     "feedforward_smallest": "feedforward",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "feedforward": ("feedforward for unit gain at rest", "S3, section G and (12)"),
+}
+
 OPENS = ("feedforward_law",)
+
+FIGURES: dict[str, dict[str, object]] = {
+    "estimated_state_feedback": {
+        "grid": """
+        v  F  u  b  Plant     y'  y
+        .  .  .  .  Observer  .   .
+        .  .  .  K  x         .   .
+        """,
+        "routes": (
+            "v > F > u > b > Plant > y' > y",
+            "b |- Observer",
+            "y' |- Observer",
+            "Observer > x > K -| u",
+        ),
+        "signals": {"v": "v_r", "u": "u", "y": "y", "x": "x_hat"},
+        "optional": ("F",),
+    },
+}

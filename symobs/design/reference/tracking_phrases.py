@@ -29,8 +29,32 @@ RESTS_ON: dict[str, str] = {
     "tracking_law": "tracking",
 }
 
+THEOREMS: dict[str, tuple[str, str]] = {
+    "tracking": ("tracking of a reference", "S2"),
+}
+
 OPENS = (
     "tracking_law",
     "tracking_errors",
     "tracking_errors_one",
 )
+
+FIGURES: dict[str, dict[str, object]] = {
+    "tracking_loop": {
+        "grid": """
+        .   .  .  Kd .  .  .         .   .
+        ∫r  a  e  K  u  b  Plant     y'  y
+        Ad  .  .  .  .  .  Observer  .   .
+        .   .  .  c  .  .  x         .   .
+        """,
+        "routes": (
+            "∫r > a > e > K > u > b > Plant > y' > y",
+            "a |- Ad > ∫r",
+            "a |- Kd -| u",
+            "b |- Observer",
+            "y' |- Observer",
+            "Observer > x > c -|[U] e",
+        ),
+        "signals": {"r": "x_d", "u": "u", "y": "y", "x": "x_hat"},
+    },
+}
