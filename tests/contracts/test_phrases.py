@@ -6,12 +6,14 @@ import ast
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from typing import TYPE_CHECKING
 
 import pytest
 
 from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.phrases.english import question_phrases
+from symobs.problem import read
 from symobs.result import Task, tasks
 from tests.support.paths import ROOT
 
@@ -116,8 +118,20 @@ def test_a_task_owns_its_phrases_and_its_question(task: Task) -> None:
     assert any(key.split()[0] not in {"ask", "also"} for path in folder.glob("*_phrases.py") for key in keys_of(path))
 
 
+@cache
+def examples() -> dict[str, Path]:
+    """The shortest worked example of every task."""
+    found: dict[str, Path] = {}
+    for path in sorted(ROOT.glob("worked_examples/*.toml"), key=lambda path: path.stat().st_size):
+        problem = tomllib.loads(path.read_text(encoding="utf-8"))
+        for name in (problem.get("task"), *problem.get("tasks", ())):
+            found.setdefault(name, path)
+    return found
+
+
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-def test_a_task_has_a_worked_example(task: Task) -> None:
-    problems = (tomllib.loads(path.read_text(encoding="utf-8")) for path in ROOT.glob("worked_examples/*.toml"))
-    asked = {name for problem in problems for name in (problem.get("task"), *problem.get("tasks", ()))}
-    assert task.name in asked, f"{task.name} has no example: write worked_examples/{task.name}.toml"
+def test_a_task_has_a_worked_example_with_a_page(task: Task) -> None:
+    assert task.name in examples(), f"{task.name} has no example: write worked_examples/{task.name}.toml"
+    path = examples()[task.name]
+    problem = read(path.read_text(encoding="utf-8"), path.name)
+    assert problem.document(problem.solve()).derivations
