@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import os
 import string
+import sys
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -28,15 +28,16 @@ def _listed(folder: str, package: str) -> Iterator[str]:
     for entry in found:
         if entry.name.endswith(_SUFFIX):
             yield f"{package}.{entry.name.removesuffix('.py')}"
-        elif "." not in entry.name and entry.name != "__pycache__":
+        elif "." not in entry.name and entry.name != "__pycache__" and entry.is_dir():
             yield from _listed(entry.path, f"{package}.{entry.name}")
 
 
-_MODULES = [import_module(name) for name in _listed(str(Path(__file__).parents[1]), _PACKAGE)]
+_FOLDERS: list[str] = sys.modules[_PACKAGE].__path__  # type: ignore[assignment]
+_MODULES = [import_module(name) for folder in _FOLDERS for name in _listed(folder, _PACKAGE)]
 
 
 def _collected(name: str) -> dict[str, Any]:
-    """Return what the modules call `name`, joined; raises ValueError for the same key twice and for no phrase's key."""
+    """Return what the modules call `name`, joined; raises ValueError for the same key twice."""
     joined: dict[str, Any] = {}
     for module in _MODULES:
         for key, value in dict(getattr(module, name, {})).items():

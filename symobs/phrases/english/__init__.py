@@ -1,1 +1,1 @@
-"""TODO symobs/phrases/english."""
+"""The tables of phrases that no single task owns, and numbers in words."""
