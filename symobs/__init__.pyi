@@ -517,7 +517,9 @@ class _StabilityRegionResult(_StabilityRegion):
     def intervals_decimal(self) -> tuple[Any, ...]: ...
 
 def stability_region(
-    plant: StateSpace | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
+    plant: StateSpace | object = None,
+    symbols: Mapping[str, Any] | None = None,
+    dt: object = 0,
     *,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,

@@ -9,7 +9,7 @@ from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
 from symobs.formula import Literal, Relation, SymbolList
-from symobs.phrases.english.stability.regions import counted, in_words, root_in_words
+from symobs.phrases.english.counting import counted, in_words, root_in_words
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.solved_bounds import box

@@ -9,7 +9,7 @@ from symobs.derivation.steps import Sentence
 from symobs.exact import Ideal, Scalar, remainder
 from symobs.exact import from_coefficients as polynomial_from
 from symobs.formula import Literal, Relation
-from symobs.phrases.english.stability.routh import changes_sign, roots_lie
+from symobs.phrases.english.counting import changes_sign, roots_lie
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import is_routh_table, sign_changes
 from symobs.stability.criteria.stability import hurwitz_matrix

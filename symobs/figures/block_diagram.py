@@ -1,6 +1,6 @@
-"""Block diagrams as data: the grid positions of nodes, and the wires between them.
+"""Signal-flow figures: where every node of a block diagram stands and how the signals run between them.
 
-A figure is written as it looks.  Its grid places the nodes:
+A figure is written as it looks, in the table `FIGURES` beside its task.  Its grid places the nodes:
 
     a name with a capital     a box; the label of that name is its gain (primes are left out: A' has the label A)
     ∫name                     an integrator, in discrete time a delay; the label `name` is its output
@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, TypeAlias, overload
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.formula import Conjunction, Formula, Letter, Literal, Negative
+from symobs.phrases import FIGURES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -126,8 +127,9 @@ def without_sign(label: Label) -> tuple[bool, Label]:
 
 
 def _figure(
+    *,
     grid: str,
-    *routes: str,
+    routes: tuple[str, ...],
     signals: Mapping[str, str],
     letters: Mapping[str, str] | None = None,
     optional: tuple[str, ...] = (),
@@ -145,153 +147,10 @@ def _figure(
     return Figure(places, tuple(wires), *named, optional, response)
 
 
-_LOOP_SIGNALS = {"r": "r_in", "u": "u", "y": "y"}
-_LOOP_LETTERS = {"P": "P", "F": "F"}
-
-_FIGURES = {
-    "loop": lambda: _figure(
-        """
-        r  u  P  y'  y
-        .  .  F  .   .
-        """,
-        "r > u > P > y' > y",
-        "y' |- F -| u",
-        signals=_LOOP_SIGNALS,
-        letters=_LOOP_LETTERS,
-        response=True,
-    ),
-    "unity_loop": lambda: _figure(
-        """
-        r  e  F  u  P  y'  y
-        .  .  .  c  .  .   .
-        """,
-        "r > e > F > u > P > y' > y",
-        "y' |- c -|[U] e",
-        signals=_LOOP_SIGNALS,
-        letters=_LOOP_LETTERS,
-        response=True,
-    ),
-    "observer_copy": lambda: _figure(
-        """
-        .  .  .  w  C   .  .  .
-        y  e  L  .  .   .  .  .
-        .  D  .  .  .   .  .  .
-        u  b  B  j  ∫x  a  c  x
-        .  .  .  .  A   .  .  .
-        """,
-        "u > b > B > j > ∫x > a > c > x",
-        "y > e > L -| j",
-        "c |- C > w -|[U] e",
-        "a |- A -| j",
-        "b > D > e",
-        signals={"u": "u", "y": "y", "x": "x_hat", "w": "y_hat"},
-        optional=("B", "D"),
-    ),
-    "observer_closed": lambda: _figure(
-        """
-        y  L  .  .   .  .
-        u  B  j  ∫x  a  x
-        .  .  .  A   .  .
-        """,
-        "u > B > j > ∫x > a > x",
-        "y > L -| j",
-        "a |- A -| j",
-        signals={"u": "u", "y": "y", "x": "x_hat"},
-        optional=("B",),
-    ),
-    "observer_compensator": lambda: _figure(
-        """
-        .  .   .   A   .   .  .   .  .
-        .  B   j   ∫x  a   .  C   y'  y
-        .  .   .   L   .   .  .   e   .
-        u  B'  j'  ∫w  a'  k  C'  v   .
-        .  .   .   A'  .   .  .   .   .
-        c  .   .   K   .   .  .   .   .
-        """,
-        "u |- B > j > ∫x > a > C > y' > y",
-        "a |- A -| j",
-        "u > B' > j' > ∫w > a' > k > C' > v >[U] e",
-        "a' |- A' -| j'",
-        "y' > e > L -| j'",
-        "k |- K > c > u",
-        signals={"u": "u", "y": "y", "x": "x", "w": "x_hat", "v": "y_hat"},
-    ),
-    "observer_controller": lambda: _figure(
-        """
-        .  .  .  Plant  .  .  y'  y
-        .  .  .  A      .  .  .   .
-        u  K  a  ∫x     j  L  .   .
-        .  .  .  B      .  .  .   .
-        """,
-        "u |- Plant > y' > y",
-        "y' |- L > j > ∫x > a > K > u",
-        "a |- A -| j",
-        "u |- B -| j",
-        signals={"u": "u", "y": "y", "x": "x_hat"},
-    ),
-    "estimated_state_feedback": lambda: _figure(
-        """
-        v  F  u  b  Plant     y'  y
-        .  .  .  .  Observer  .   .
-        .  .  .  K  x         .   .
-        """,
-        "v > F > u > b > Plant > y' > y",
-        "b |- Observer",
-        "y' |- Observer",
-        "Observer > x > K -| u",
-        signals={"v": "v_r", "u": "u", "y": "y", "x": "x_hat"},
-        optional=("F",),
-    ),
-    "tracking_loop": lambda: _figure(
-        """
-        .   .  .  Kd .  .  .         .   .
-        ∫r  a  e  K  u  b  Plant     y'  y
-        Ad  .  .  .  .  .  Observer  .   .
-        .   .  .  c  .  .  x         .   .
-        """,
-        "∫r > a > e > K > u > b > Plant > y' > y",
-        "a |- Ad > ∫r",
-        "a |- Kd -| u",
-        "b |- Observer",
-        "y' |- Observer",
-        "Observer > x > c -|[U] e",
-        signals={"r": "x_d", "u": "u", "y": "y", "x": "x_hat"},
-    ),
-    "minimal_order_observer": lambda: _figure(
-        """
-        y  b  .  .  .   .  .  .
-        .  .  H  .  .   .  .  .
-        u  .  G  j  ∫z  a  M  x
-        .  .  .  .  F   .  .  .
-        """,
-        "y > b -| M",
-        "u > G > j > ∫z > a > M > x",
-        "b |- H -| j",
-        "a |- F -| j",
-        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
-        optional=("G",),
-    ),
-    "minimal_order_feedthrough": lambda: _figure(
-        """
-        y  e  b  .  .  .   .  .  .
-        .  D  .  H  .  .   .  .  .
-        u  c  .  G  j  ∫z  a  M  x
-        .  .  .  .  .  F   .  .  .
-        """,
-        "y > e > b -| M",
-        "u > c > G > j > ∫z > a > M > x",
-        "c > D > e",
-        "b |- H -| j",
-        "a |- F -| j",
-        signals={"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
-    ),
-}
-
-
 @lru_cache(maxsize=32)
 def figure_of(name: str) -> Figure:
     """Return a figure by its name."""
-    return _FIGURES[name]()
+    return _figure(**FIGURES[name])
 
 
 def with_signals(name: str, labels: Mapping[str, Label]) -> dict[str, Label]:

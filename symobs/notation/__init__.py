@@ -1,4 +1,4 @@
-"""The vocabulary: every letter with its LaTeX and plain form, the names of functions; theorems stand in `theorems`."""
+"""The vocabulary: every letter with its LaTeX and plain form, and the names of functions."""
 
 from symobs.notation.letters import (
     FUNCTIONS,

@@ -1,4 +1,4 @@
-"""The vocabulary: every letter with its LaTeX and plain form, the names of functions; theorems stand in `theorems`.
+"""The vocabulary: every letter with its LaTeX and plain form, and the names of functions.
 
 Letters: n, m, p states, inputs, outputs; K feedback, L observer, always; 𝒪, 𝒞; χ characteristic, φ desired
 polynomial; x̂ estimate, e = x − x̂ error.  A polynomial's letter carries its variable, `s` or `z`.

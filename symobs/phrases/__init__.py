@@ -5,11 +5,14 @@ from symobs.phrases.catalogue import (
     BESIDE,
     DEMANDS,
     EXPLAINS,
+    FIGURES,
     NAMING,
     OPENS,
     PHRASES,
+    QUESTIONS,
     RESTS_ON,
     SPELLS_OUT,
+    THEOREMS,
     slots_of,
 )
 
@@ -18,10 +21,13 @@ __all__ = [
     "BESIDE",
     "DEMANDS",
     "EXPLAINS",
+    "FIGURES",
     "NAMING",
     "OPENS",
     "PHRASES",
+    "QUESTIONS",
     "RESTS_ON",
     "SPELLS_OUT",
+    "THEOREMS",
     "slots_of",
 ]

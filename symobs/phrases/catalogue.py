@@ -1,101 +1,111 @@
-"""Every sentence a derivation can say, in one place: the language of the prose lives here and nowhere else.
+"""Every sentence a derivation can say, collected from the tables that lie beside the tasks: all prose stands in these.
 
 A phrase is plain text with slots in braces, filled by a formula or fact (set as mathematics) or by a word; between dollar
 signs stand formulas in the letters of `notation` that only name things.  Steps name a phrase by its key; a step whose
-slots do not match its phrase cannot be made.  Each module of the folder holds the sentences of one subject, with what
-they assert and rest on.
+slots do not match its phrase cannot be made.  A task's sentences, what they owe and rest on, and how its question is put,
+stand in modules `…_phrases.py` of its folder that contain nothing but tables; those of all pages stand in `english`.
 """
 
 from __future__ import annotations
 
+import os
 import string
-from typing import Any
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from symobs.phrases.english.analysis import coordinates, duality, modes, polynomials, rank, time, time_varying
-from symobs.phrases.english.design import (
-    compensators,
-    feedforward,
-    gain_families,
-    gains,
-    minimal_order,
-    pole_advice,
-    pole_cautions,
-    reduced_order,
-    side_by_side,
-    tracking,
-)
-from symobs.phrases.english.page import captions, figures, questions, titles
-from symobs.phrases.english.stability import regions, routh
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
 
-_MODULES = (
-    titles,
-    pole_advice,
-    pole_cautions,
-    polynomials,
-    rank,
-    modes,
-    duality,
-    coordinates,
-    time,
-    gains,
-    side_by_side,
-    gain_families,
-    compensators,
-    minimal_order,
-    feedforward,
-    tracking,
-    reduced_order,
-    time_varying,
-    routh,
-    regions,
-    captions,
-    figures,
-    questions,
-)
+_PACKAGE = __name__.partition(".")[0]
+_SUFFIX = "_phrases.py"
+
+
+def _listed(folder: str, package: str) -> Iterator[str]:
+    """Yield the dotted names of the modules of phrases in a folder and in those below it."""
+    with os.scandir(folder) as entries:
+        found = sorted(entries, key=lambda entry: entry.name)
+    for entry in found:
+        if entry.name.endswith(_SUFFIX):
+            yield f"{package}.{entry.name.removesuffix('.py')}"
+        elif "." not in entry.name and entry.name != "__pycache__" and entry.is_dir():
+            yield from _listed(entry.path, f"{package}.{entry.name}")
+
+
+_FOLDERS: list[str] = sys.modules[_PACKAGE].__path__  # type: ignore[assignment]
+_MODULES = [import_module(name) for folder in _FOLDERS for name in _listed(folder, _PACKAGE)]
 
 
 def _collected(name: str) -> dict[str, Any]:
-    """Return what the modules call `name`, joined; raises ValueError for the same key twice and for no phrase's key."""
+    """Return what the modules call `name`, joined; raises ValueError for the same key twice."""
     joined: dict[str, Any] = {}
     for module in _MODULES:
         for key, value in dict(getattr(module, name, {})).items():
             if key in joined:
                 message = f"the phrase {key!r} is written twice"
                 raise ValueError(message)
-            if name != "PHRASES" and key not in PHRASES:
-                message = f"{name} speaks of {key!r}, which is no phrase"
-                raise ValueError(message)
             joined[key] = value
     return joined
 
 
-PHRASES: dict[str, str] = _collected("PHRASES")
+#: How tasks are asked for on a sheet: their keys say when a sentence is said, as `english.question_phrases` explains.
+QUESTIONS: dict[str, str] = _collected("QUESTIONS")
+
+PHRASES: dict[str, str] = {**_collected("PHRASES"), **QUESTIONS}
+
+
+def _table(name: str) -> dict[str, Any]:
+    """Return what the modules say of phrases under `name`; raises ValueError where there is no such phrase."""
+    table = _collected(name)
+    _require_phrases(name, table)
+    return table
+
+
+def _listing(name: str) -> frozenset[str]:
+    """Return the phrases that the modules list under `name`; raises ValueError where there is no such phrase."""
+    listing = frozenset(key for module in _MODULES for key in getattr(module, name, ()))
+    _require_phrases(name, listing)
+    return listing
+
+
+def _require_phrases(name: str, keys: Iterable[str]) -> None:
+    for key in keys:
+        if key not in PHRASES:
+            message = f"{name} speaks of {key!r}, which is no phrase"
+            raise ValueError(message)
+
 
 #: The properties that a phrase asserts: a step that says it must have them among its facts, and so have been checked.
-ASSERTS: dict[str, tuple[str, ...]] = _collected("ASSERTS")
+ASSERTS: dict[str, tuple[str, ...]] = _table("ASSERTS")
 
 #: The obligation that the words of a phrase carry, by its name in `derivation.wording_check`: a step that says it is
 #: rejected where its relation, its facts or its definition do not meet it.
-DEMANDS: dict[str, str] = _collected("DEMANDS")
+DEMANDS: dict[str, str] = _table("DEMANDS")
 
-#: The theorem (a key of `notation.THEOREMS`) that a phrase appeals to.
-RESTS_ON: dict[str, str] = _collected("RESTS_ON")
+#: The theorem (a key of `THEOREMS`) that a phrase appeals to.
+RESTS_ON: dict[str, str] = _table("RESTS_ON")
+
+#: The theorems that phrases may appeal to: each with its short name, and where it is proved.
+THEOREMS: dict[str, tuple[str, str]] = _collected("THEOREMS")
+
+#: The block diagrams of pages, as `figures.block_diagram` reads them: grid, routes, signals, letters, optional boxes.
+FIGURES: dict[str, dict[str, Any]] = _collected("FIGURES")
 
 #: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
-NAMING = frozenset(key for module in _MODULES for key in getattr(module, "NAMING", ()))
+NAMING: frozenset[str] = _listing("NAMING").union(QUESTIONS)
 
 #: Phrases that begin a new paragraph wherever they stand.
-OPENS = frozenset(key for module in _MODULES for key in getattr(module, "OPENS", ()))
+OPENS = _listing("OPENS")
 
 
 #: Phrases that only explain, and refer to nothing but what was just shown: a shorter page leaves them out.
-EXPLAINS = frozenset(key for module in _MODULES for key in getattr(module, "EXPLAINS", ()))
+EXPLAINS = _listing("EXPLAINS")
 
 #: Titles of sections whose own sections stand side by side on the page, row by row.
-BESIDE = frozenset(key for module in _MODULES for key in getattr(module, "BESIDE", ()))
+BESIDE = _listing("BESIDE")
 
 #: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
-SPELLS_OUT = frozenset(key for module in _MODULES for key in getattr(module, "SPELLS_OUT", ()))
+SPELLS_OUT = _listing("SPELLS_OUT")
 
 
 def slots_of(key: str) -> frozenset[str]:

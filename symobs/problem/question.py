@@ -1,7 +1,7 @@
 """What a problem asks, as a page of its own: its data, and a sentence or two for every task.
 
-The sentences stand in `phrases.questions`; which of them are said follows from what the specification contains.  The page
-is a derivation like any other: what it states is checked, and it is told by the same narrator.
+The sentences stand beside each task, among its phrases; which of them are said follows from what the specification
+contains.  The page is a derivation like any other: what it states is checked, and it is told by the same narrator.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from symobs.derivation.builder import Page, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
 from symobs.formula import Roots, SymbolList
-from symobs.phrases.english.page.questions import PHRASES, UNSAID
+from symobs.phrases import QUESTIONS
+from symobs.phrases.english.question_phrases import UNSAID
 from symobs.problem.schema import keys_of
 from symobs.result import Document
 from symobs.specification import (
@@ -132,7 +133,7 @@ def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozen
 def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     """Return the keys of the sentences that together say all of this: the one that says most, then the others."""
     asks = [
-        words for words in map(str.split, PHRASES) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
+        words for words in map(str.split, QUESTIONS) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
     ]
     if not asks:
         return ["asked"]
@@ -140,8 +141,8 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     left = {name: word for word in sorted(tokens - set(best[2:])) for name in [word.partition("=")[0]]}
     said = {word.partition("=")[0] for word in best[2:]}
     further = [left[name] for name in task.keywords if name in left and name not in said]
-    also = [key for word in further for key in (f"also {task.name} {word}", f"also {word}") if key in PHRASES]
-    return [" ".join(best), *dict.fromkeys(key for key in also if PHRASES[key])]
+    also = [key for word in further for key in (f"also {task.name} {word}", f"also {word}") if key in QUESTIONS]
+    return [" ".join(best), *dict.fromkeys(key for key in also if QUESTIONS[key])]
 
 
 def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
@@ -149,7 +150,7 @@ def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sent
     if key == "asked":
         return sentence(key, {"summary": task.summary})
     slots: dict[str, Slot] = {}
-    for _, name, _, _ in string.Formatter().parse(PHRASES[key]):
+    for _, name, _, _ in string.Formatter().parse(QUESTIONS[key]):
         if name is None:
             continue
         if name in {"start", "end"}:

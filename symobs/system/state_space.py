@@ -18,7 +18,7 @@ from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_ti
 from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFunction, read_transfer_function, realise
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25
@@ -300,7 +300,7 @@ class StateSpace:
         plant.is_stratum, plant.findings = self.is_stratum, self.findings
         return plant
 
-    def once(self, question: Hashable, find: Callable[[], Any]) -> Any:
+    def once(self, question: tuple[Any, ...], find: Callable[[], Any]) -> Any:
         """Return the answer of a question about this plant; on a stratum what was found there once."""
         if not self.is_stratum:
             return find()

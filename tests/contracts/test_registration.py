@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.support.paths import ROOT
-from tests.support.tools.command_line import Run, fresh
+from tests.support.tools.command_line import Run, environment, fresh
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,6 +82,119 @@ class Dummy:
         return "".join(f"{result.task} {result.method} {result.verdict}\\n" for result in document.results)
 '''
 
+#: A task in a folder of its own: what the result is, its page, its phrases with question, theorem and figure, an example.
+FOLDER = "symobs/analysis/trace"
+
+TRACE = '''
+"""The trace of A."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs._dataclass import dataclass
+from symobs.certificate.claims import Claim
+from symobs.derivation.builder import relation
+from symobs.exact import Matrix
+from symobs.formula import Environment
+from symobs.formula.term import letter
+from symobs.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.specification import Name
+    from symobs.system import StateSpace
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trace(Result):
+    """A matrix M with M = A."""
+
+    task: ClassVar[str] = "trace"
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield M = A."""
+        e = Environment(values={"A": self.plant.matrices.A, "M": self.answer["M"]})
+        yield Claim(relation(letter("M", e), letter("A", e)), e)
+
+
+@method("trace/direct", source="nobody, Theorem 2")
+def direct(plant: StateSpace) -> Trace:
+    """Look at it."""
+    return Trace(plant, "direct", {"M": plant.matrices.A})
+
+
+@task
+def trace(plant: StateSpace, *, method: Name = "auto") -> Trace:
+    """Find what is on the diagonal."""
+    return choose("trace", method, "direct").solve(plant)
+'''
+
+TRACE_PAGE = '''
+"""The page of the trace."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.analysis.page_parts import given
+from symobs.analysis.trace.trace import Trace
+from symobs.result import page_of
+
+if TYPE_CHECKING:
+    from symobs.derivation.builder import Page
+
+
+@page_of(Trace)
+def write_trace(page: Page, result: Trace) -> None:
+    """Draw the plant and say what stands on its diagonal."""
+    given(page)
+    with page.section("trace"):
+        page.diagram("free_motion", say="trace_drawn", A=page["A"])
+        page.define("M", page["A"], say="trace_is", answer=True)
+'''
+
+TRACE_PHRASES = '''
+"""The trace of a matrix."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "trace": "The diagonal.",
+    "trace_drawn": "The plant left alone moves as follows.",
+    "trace_is": "Its diagonal is that of",
+}
+
+QUESTIONS: dict[str, str] = {"ask trace": "What stands on the diagonal of $A$?"}
+
+RESTS_ON: dict[str, str] = {"trace_is": "trace_theorem"}
+
+THEOREMS: dict[str, tuple[str, str]] = {"trace_theorem": ("traces", "nobody, Theorem 2")}
+
+FIGURES: dict[str, dict[str, object]] = {
+    "free_motion": {
+        "grid": """
+        j  ∫x  a  x
+        .  A   .  .
+        """,
+        "routes": ("j > ∫x > a > x", "a |- A -| j"),
+        "signals": {"x": "x"},
+    },
+}
+'''
+
+TRACE_EXAMPLE = """
+title = "A diagonal"
+source = "nobody, Exercise 1"
+task = "trace"
+[plant]
+A = "[0 1; 0 -1]"
+C = "[1 0]"
+[expect]
+M = "[0 1; 0 -1]"
+"""
+
 PROBLEM = """
 task = "observer"
 [plant]
@@ -96,15 +211,33 @@ class Copy:
     def __init__(self, folder: Path) -> None:
         self.checkout, self.folder = folder / "checkout", folder / "elsewhere"
         self.folder.mkdir(parents=True)
-        for part in ("symobs", "latex_templates"):
+        for part in ("symobs", "latex_templates", "worked_examples", "tests", "pyproject.toml"):
+            if (ROOT / part).is_file():
+                shutil.copy(ROOT / part, self.checkout / part)
+                continue
             shutil.copytree(ROOT / part, self.checkout / part, ignore=shutil.ignore_patterns("__pycache__"))
 
     def add(self, path: str, text: str) -> None:
         assert not (self.checkout / path).exists()
+        (self.checkout / path).parent.mkdir(exist_ok=True)
         (self.checkout / path).write_text(text.lstrip(), encoding="utf-8")
 
     def run(self, *arguments: str, stdin: str = "") -> Run:
         return fresh(*arguments, folder=self.folder, checkout=self.checkout, stdin=stdin.encode())
+
+    def kept(self, task: str) -> str:
+        """Run the contract tests of a task in the copy; return what they print."""
+        files = [f"tests/contracts/{name}.py" for name in ("test_phrases", "test_floors")]
+        arguments = [*files, "-k", task, "-q", "-p", "no:cacheprovider"]
+        run = subprocess.run(
+            [sys.executable, "-m", "pytest", *arguments],
+            cwd=self.checkout,
+            env=environment(self.checkout),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return run.stdout
 
 
 @pytest.fixture(name="copy")
@@ -176,6 +309,28 @@ def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
     assert "Is the pair (C, A) observable?" in sheet.out
     unknown = copy.run("solve", "-", stdin=f"{file}[specification]\ndummy_pole = 1\n")
     assert unknown.err == "specification.dummy_pole: unknown key; did you mean dummy_poles?\n"
+
+
+def test_a_task_is_one_new_folder_and_an_example(copy: Copy) -> None:
+    copy.add(f"{FOLDER}/__init__.py", '"""The trace."""\n')
+    copy.add(f"{FOLDER}/trace.py", TRACE)
+    missing = copy.kept("trace")
+    assert f"write {FOLDER}/trace_phrases.py with QUESTIONS" in missing
+    assert "write worked_examples/trace.toml" in missing
+    copy.add(f"{FOLDER}/trace_phrases.py", TRACE_PHRASES)
+    copy.add("worked_examples/trace.toml", TRACE_EXAMPLE)
+    assert f"write {FOLDER}/trace_page.py" in copy.kept("trace")
+    copy.add(f"{FOLDER}/trace_page.py", TRACE_PAGE)
+    told = copy.kept("trace")
+    assert " failed" not in told
+    assert " passed" in told
+    example = str(copy.checkout / "worked_examples" / "trace.toml")
+    page = copy.run("solve", example)
+    assert (page.code, page.err) == (0, "")
+    for words in ("Its diagonal is that of", "moves as follows", r"\begin{tikzpicture}", "traces: nobody, Theorem 2"):
+        assert words in page.out
+    sheet = copy.run("sheet", example, "--questions", "--format", "text")
+    assert "What stands on the diagonal of A?" in sheet.out
 
 
 def test_a_format_is_one_new_file(copy: Copy) -> None:

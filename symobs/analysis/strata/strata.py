@@ -6,6 +6,7 @@ elsewhere for the plant restricted to the stratum, whose claims hold modulo the 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from symobs.analysis.strata.loci import Region, loci
@@ -139,8 +140,8 @@ def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Cas
             _ = case.result.case_tree
         return case.result
 
-    found = [(place, case) for place in asked for case in _case(place, plant, lambda place=place: answer(place))]
-    return tuple(each for place, case in found for each in _case(place, plant, lambda case=case: with_strata(case)))
+    found = [(place, case) for place in asked for case in _case(place, plant, partial(answer, place))]
+    return tuple(each for place, case in found for each in _case(place, plant, partial(with_strata, case)))
 
 
 def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) -> Iterator[Case]:

@@ -20,7 +20,7 @@ from symobs.result import Case, Result
 from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
     from symobs.conditions import Condition
@@ -206,7 +206,7 @@ class OutputFeedback(Result):
         return found
 
     @property
-    def asked_for(self) -> tuple[Hashable, ...]:
+    def asked_for(self) -> tuple[Any, ...]:
         """What a compensator of a plant is asked for by."""
         return type(self), self.method, self.feedback.desired, self.estimator.desired
 

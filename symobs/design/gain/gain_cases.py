@@ -9,7 +9,8 @@ from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
 
 if TYPE_CHECKING:
     from symobs.analysis.strata.strata import Place
-    from symobs.design.gain.gain_design import GainDesign, Places
+    from symobs.design.gain.gain_design import GainDesign
+    from symobs.design.gain.gain_kind import Places
     from symobs.exact import Scalar
     from symobs.result import Case
     from symobs.specification import DesiredPolynomial

@@ -110,7 +110,7 @@ class ReducedOrderObserver(Result):
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, T: Matrix, method_name: str) -> Self:
         """Return the observer in the coordinates T, or the negative result."""
 
-        def find() -> Self:
+        def find() -> ReducedOrderObserver:
             inner = design_of(ObserverDesign, _unmeasured(plant, partition(plant, T)), desired)
             return cls.assembled(plant, inner, desired, T, method_name)
 

@@ -1,1 +1,1 @@
-"""The English sentences of the pages, by key."""
+"""The tables of phrases that no single task owns, and numbers in words."""

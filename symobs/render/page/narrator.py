@@ -28,8 +28,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import Conjunction
-from symobs.notation.theorems import THEOREMS
-from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
+from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON, THEOREMS
 from symobs.render.page.blocks import (
     Block,
     CaseBlock,
@@ -112,7 +111,7 @@ def _sources(numbers: Mapping[str, int]) -> list[Block]:
     """Return the closing paragraph: each theorem under its number, with its source."""
     if not numbers:
         return []
-    listed = "; ".join(f"[{number}] {THEOREMS[key].name}: {THEOREMS[key].source}" for key, number in numbers.items())
+    listed = "; ".join(f"[{number}] {': '.join(THEOREMS[key])}" for key, number in numbers.items())
     return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
 
 

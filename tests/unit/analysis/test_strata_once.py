@@ -18,10 +18,12 @@ from symobs.system import findings
 if TYPE_CHECKING:
     import pytest
 
+    from symobs.result import Result
+
 a, b = Scalar.symbol("a"), Scalar.symbol("b")
 
 
-def asked() -> symobs.Result:
+def asked() -> Result:
     plant = symobs.StateSpace("[0 1 0; a 0 1; 0 b 0]", "[0; b; 1]", "[1 a 0]")
     return symobs.feedforward(plant, control_poles=[-1, -2, -3], observer_poles=[-4, -5, -6])
 

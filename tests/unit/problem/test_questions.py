@@ -7,7 +7,8 @@ import string
 import pytest
 
 from symobs.errors import InputError
-from symobs.phrases.english.page.questions import PHRASES, UNSAID
+from symobs.phrases import QUESTIONS
+from symobs.phrases.english.question_phrases import UNSAID
 from symobs.problem import read
 from symobs.problem.question import question_of, sentences_for
 from symobs.result import Task, methods, render, tasks
@@ -50,7 +51,7 @@ def test_a_question_says_all_that_is_specified(task: Task) -> None:
             assert {token, keyword} & words or (task.name, token) in DEFAULTS, f"{task.name} is silent about {token}"
 
 
-@pytest.mark.parametrize("key", PHRASES)
+@pytest.mark.parametrize("key", QUESTIONS)
 def test_a_sentence_names_what_exists_and_speaks_english(key: str) -> None:
     kind, *words = key.split()
     if kind not in {"ask", "also"}:
@@ -58,10 +59,10 @@ def test_a_sentence_names_what_exists_and_speaks_english(key: str) -> None:
     named = [words.pop(0)] if words[0] in tasks() else []
     keywords = {name for task in tasks().values() for name in task.keywords if named in ([], [task.name])}
     assert {word.partition("=")[0] for word in words} <= keywords
-    slots = {name for _, name, _, _ in string.Formatter().parse(PHRASES[key]) if name}
+    slots = {name for _, name, _, _ in string.Formatter().parse(QUESTIONS[key]) if name}
     assert slots <= {*(word.partition("=")[0] for word in words), "horizon", "start", "end"}
-    assert PHRASES[key][0].isupper()
-    assert PHRASES[key][-1] in ".?" or PHRASES[key].endswith("}.")
+    assert QUESTIONS[key][0].isupper()
+    assert QUESTIONS[key][-1] in ".?" or QUESTIONS[key].endswith("}.")
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

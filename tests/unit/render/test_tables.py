@@ -12,7 +12,7 @@ from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.routh_check import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Exact, Letter, Literal, evaluate
-from symobs.phrases.english.stability.routh import changes_sign, roots_lie
+from symobs.phrases.english.counting import changes_sign, roots_lie
 from symobs.render.formats.latex import LatexArticle, LatexFragment
 from symobs.render.formats.text import Text
 from symobs.render.page.blocks import Paragraph, TableBlock

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import random
+from typing import Any
 
 import pytest
 import sympy
@@ -96,7 +97,7 @@ def test_json_is_written_as_the_plain_encoder_would(value: dict[str, object]) ->
 
 def test_json_says_what_was_asked() -> None:
     plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", dt=sympy.Rational(1, 10), symbols={"b": "positive"})
-    asked = {"poles": [sympy.Rational(1, 2), "1/4"], "method": "auto"}
+    asked: dict[str, Any] = {"poles": [sympy.Rational(1, 2), "1/4"], "method": "auto"}
     (found,) = json.loads(symobs.observer(plant, **asked).to_json())["results"]
     assert found["plant"] == {
         "A": [["0", "1"], ["0", "-b"]],

@@ -22,8 +22,7 @@ from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Relation, Sum
 from symobs.formula.plain_text import plain_relation
-from symobs.notation.theorems import THEOREMS
-from symobs.phrases import PHRASES, RESTS_ON
+from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import RouthRow, RouthTable, is_routh_table, routh_table, sign_changes
 from symobs.stability.criteria.stability import hurwitz_matrix
@@ -604,5 +603,5 @@ def test_a_page_in_discrete_time_names_the_variable() -> None:
 
 def test_the_theorems_have_their_sources() -> None:
     for name in ("routh", "hurwitz", "lienard_chipart"):
-        assert any(year in THEOREMS[name].source for year in ("1877", "1895", "1914"))
+        assert any(year in THEOREMS[name][1] for year in ("1877", "1895", "1914"))
     assert {key for key in RESTS_ON if key.startswith("routh")} <= PHRASES.keys()

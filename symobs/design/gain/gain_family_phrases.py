@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-_SIDES = (("observer", "o"), ("state_feedback", "c"))
-
 PHRASES: dict[str, str] = {
     "companion_of_wish": "The companion matrix of this polynomial is",
     "spectra_meet": "It has roots in common with the characteristic polynomial of the plant. A fixed gain is therefore taken out first,",
@@ -11,11 +9,8 @@ PHRASES: dict[str, str] = {
     "sylvester_state_feedback": "For a matrix $G_c$ let $X_c$ be the solution of Sylvester's equation",
     "similar_observer": "Where $X_o$ is regular, the gain that follows makes the transpose of $A - L C$ similar to $F_o$:",
     "similar_state_feedback": "Where $X_c$ is regular, the gain that follows makes $A - B K$ similar to $F_c$:",
-    **{
-        f"one_row_held_{kind}": f"A polynomial in $F_{side}$ may be multiplied to $G_{side}$ from the right without changing the gain, so in general one "
-        "row of it, or one combination of rows, can be held:"
-        for kind, side in _SIDES
-    },
+    "one_row_held_observer": "A polynomial in $F_o$ may be multiplied to $G_o$ from the right without changing the gain, so in general one row of it, or one combination of rows, can be held:",
+    "one_row_held_state_feedback": "A polynomial in $F_c$ may be multiplied to $G_c$ from the right without changing the gain, so in general one row of it, or one combination of rows, can be held:",
     "solution_is": "The solution of the equation is then",
     "determinant_free": "where the free entries must not make the determinant vanish,",
     "spectra_provided": "There is one, whatever stands on the right, where the two square matrices beside the unknown one have no eigenvalue in common. For this way to the gain we assume {condition}.",
@@ -24,20 +19,13 @@ PHRASES: dict[str, str] = {
     "solution_of_member": "for which the solution is",
     "one_gain_only": "For one output (input) nothing is left free. The solution of the equation is",
     "general_gain": "All the others are",
-    **{
-        f"dimension_{kind}": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of "
-        f"$G_{side}$. Left out are gains whose closed-loop matrix is not cyclic, and special ones for which that row cannot be held."
-        for kind, side in _SIDES
-    },
+    "dimension_observer": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of $G_o$. Left out are gains whose closed-loop matrix is not cyclic, and special ones for which that row cannot be held.",
+    "dimension_state_feedback": "The gains that place these poles form a family of dimension {count}: the gain determines every free entry of $G_c$. Left out are gains whose closed-loop matrix is not cyclic, and special ones for which that row cannot be held.",
     "member_several": "A gain with short entries belongs to",
-    **{
-        f"{where}_decoupled_{kind}": f"{what}{end}"
-        for kind, what in (
-            ("observer", "The output errors are decoupled, each obeying an equation of its own, by the gain"),
-            ("state_feedback", "The inputs are decoupled, each driving a part of its own, by the gain"),
-        )
-        for where, end in (("member", " that belongs to"), ("alone", ""))
-    },
+    "member_decoupled_observer": "The output errors are decoupled, each obeying an equation of its own, by the gain that belongs to",
+    "alone_decoupled_observer": "The output errors are decoupled, each obeying an equation of its own, by the gain",
+    "member_decoupled_state_feedback": "The inputs are decoupled, each driving a part of its own, by the gain that belongs to",
+    "alone_decoupled_state_feedback": "The inputs are decoupled, each driving a part of its own, by the gain",
     "member_zero": "The entries asked for are zero in the gain that belongs to",
     "impossible_zero": "With zeros in the places {places} of the gain these poles cannot be placed: the coefficients of the closed-loop polynomial, "
     "equated to those asked for, are equations for the other entries that have no common solution.",
@@ -62,9 +50,16 @@ PHRASES: dict[str, str] = {
     "freedom of Sylvester's equation, and along the directions that it never moves the gain is free.",
 }
 
-NAMING = ("impossible_zero_unless",)
-
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",
     "sylvester_state_feedback": "sylvester",
 }
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "sylvester": (
+        "pole assignment by Sylvester's equation",
+        "S. P. Bhattacharyya and E. de Souza, Systems & Control Letters 1 (1982), 261-263",
+    ),
+}
+
+NAMING = ("impossible_zero_unless",)

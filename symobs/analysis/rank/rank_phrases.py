@@ -38,6 +38,11 @@ PHRASES: dict[str, str] = {
     "modes_controllability": "The uncontrollable <mode is|modes are> {modes}.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask observability": "Is the pair ($C$, $A$) observable?",
+    "ask controllability": "Is the pair ($A$, $B$) controllable?",
+}
+
 DEMANDS: dict[str, str] = {
     "yes_observability": "needs_rank_full",
     "yes_controllability": "needs_rank_full",
@@ -50,8 +55,6 @@ DEMANDS: dict[str, str] = {
     "generic_low_observability": "says_rank_low",
     "generic_low_controllability": "says_rank_low",
 }
-
-NAMING = ("undecided_case", "undecided_together", "undecided_many")
 
 RESTS_ON: dict[str, str] = {
     "yes_observability": "observability_rank",
@@ -67,3 +70,14 @@ RESTS_ON: dict[str, str] = {
     "generic_low_observability": "observability_rank",
     "generic_low_controllability": "controllability_rank",
 }
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "observability_rank": ("rank test for observability", "S0, Theorem 4.2"),
+    "controllability_rank": ("rank test for controllability", "S0, Theorem 2.2, dual to Theorem 4.2"),
+}
+
+NAMING = (
+    "undecided_case",
+    "undecided_together",
+    "undecided_many",
+)

@@ -50,10 +50,32 @@ PHRASES: dict[str, str] = {
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask reduced_order_observer": "Design an observer of minimal order.",
+    "ask reduced_order_observer poles": "Design an observer of minimal order with the poles {poles}.",
+    "ask reduced_order_observer poles=1": "Design an observer of minimal order with the pole {poles}.",
+    "ask reduced_order_observer polynomial": "Design an observer of minimal order with the characteristic polynomial {polynomial}.",
+    "also reduced_order_observer T": "Use the coordinates $T x$.",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {
     "reduced_impossible": ("not_polynomial",),
     "reduced_not_unique": ("polynomial",),
     "reduced_all_fixed": ("polynomial",),
+}
+
+RESTS_ON: dict[str, str] = {
+    "mere_copy": "first_attempt",
+    "first_part_measures": "reduced_pair",
+    "reduced_observer": "reduced_order",
+    "undetermined_ansatz": "undetermined",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "reduced_order": ("reduced-order observer", "S0, (4.37)-(4.41)"),
+    "reduced_pair": ("observability of the unmeasured part", "S0, Lemma 4.1"),
+    "first_attempt": ("the reduced observer that no gain corrects", "S2"),
+    "undetermined": ("conditions on the observer matrices", "S2"),
 }
 
 OPENS = (
@@ -65,14 +87,12 @@ OPENS = (
     "parts_with_feedthrough",
 )
 
-RESTS_ON: dict[str, str] = {
-    "mere_copy": "first_attempt",
-    "first_part_measures": "reduced_pair",
-    "reduced_observer": "reduced_order",
-    "undetermined_ansatz": "undetermined",
-}
-
-EXPLAINS = ("first_part_measures", "mere_copy", "mere_copy_fails", "mere_copy_grows")
+EXPLAINS = (
+    "first_part_measures",
+    "mere_copy",
+    "mere_copy_fails",
+    "mere_copy_grows",
+)
 
 SPELLS_OUT = (
     "coordinates",
@@ -83,3 +103,38 @@ SPELLS_OUT = (
     "parts_with_feedthrough",
     "parts_with_feedthrough_blocks",
 )
+
+FIGURES: dict[str, dict[str, object]] = {
+    "minimal_order_observer": {
+        "grid": """
+        y  b  .  .  .   .  .  .
+        .  .  H  .  .   .  .  .
+        u  .  G  j  ∫z  a  M  x
+        .  .  .  .  F   .  .  .
+        """,
+        "routes": (
+            "y > b -| M",
+            "u > G > j > ∫z > a > M > x",
+            "b |- H -| j",
+            "a |- F -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+        "optional": ("G",),
+    },
+    "minimal_order_feedthrough": {
+        "grid": """
+        y  e  b  .  .  .   .  .  .
+        .  D  .  H  .  .   .  .  .
+        u  c  .  G  j  ∫z  a  M  x
+        .  .  .  .  .  F   .  .  .
+        """,
+        "routes": (
+            "y > e > b -| M",
+            "u > c > G > j > ∫z > a > M > x",
+            "c > D > e",
+            "b |- H -| j",
+            "a |- F -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
+    },
+}

@@ -73,6 +73,13 @@ PHRASES: dict[str, str] = {
     "x0_not_unique": "The initial state cannot be found from it, since the hidden states add nothing to an output.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask time_varying_observability": "Is the plant observable?",
+    "ask time_varying_observability interval": "Is the plant observable on the interval from {start} to {end}?",
+    "also time_varying_observability output": "Find the initial state that explains the output {output}.",
+    "also time_varying_observability input": "The input is {input}.",
+}
+
 DEMANDS: dict[str, str] = {
     "stack_yes": "says_rank_full",
     "case_stack_yes": "says_rank_full",
@@ -88,6 +95,15 @@ RESTS_ON: dict[str, str] = {
     "stack_no": "time_varying_rank",
     "gramian": "time_varying_gramian",
     "peano_baker": "peano_baker",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "time_varying_rank": (
+        "rank test for time-varying plants",
+        "L. M. Silverman and H. E. Meadows, SIAM J. Control 5 (1967), 64-73",
+    ),
+    "time_varying_gramian": ("initial state through the Gramian", "S4, time-varying plants"),
+    "peano_baker": ("Peano-Baker series", "W. J. Rugh, Linear System Theory, 2nd ed. (1996), chapter 3"),
 }
 
 NAMING = ("transition_open_integral",)

@@ -27,10 +27,22 @@ PHRASES: dict[str, str] = {
     "structure_provided": "The parts have these dimensions in general. From here on we assume {condition}.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask canonical_form": "Transform the plant to canonical form.",
+    "ask canonical_form kind=controllable": "Transform the plant to controllable canonical form.",
+    "ask canonical_form kind=observable": "Transform the plant to observable canonical form.",
+    "ask canonical_form kind=modal": "Transform the plant to real modal form.",
+    "ask decomposition": "Split the plant into its four parts, controllable or not and observable or not. Find the minimal part and its transfer function.",
+}
+
 RESTS_ON: dict[str, str] = {
     "last_row_controllable": "canonical_form",
     "last_column_observable": "canonical_form",
     "reached_and_hidden": "decomposition",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "decomposition": ("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
 }
 
 EXPLAINS = (

@@ -23,38 +23,23 @@ PHRASES: dict[str, str] = {
     "open right half plane, and {axis} on the imaginary axis.",
 }
 
-RESTS_ON: dict[str, str] = dict.fromkeys(
-    (
-        "routh_positive",
-        "routh_negative",
-        "routh_criterion_positive",
-        "routh_criterion_negative",
-        "routh_criterion_where",
-        "routh_not_stable",
-        "routh_changes",
-        "routh_changes_axis",
+RESTS_ON: dict[str, str] = {
+    "routh_positive": "routh",
+    "routh_negative": "routh",
+    "routh_criterion_positive": "routh",
+    "routh_criterion_negative": "routh",
+    "routh_criterion_where": "routh",
+    "routh_not_stable": "routh",
+    "routh_changes": "routh",
+    "routh_changes_axis": "routh",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "routh": (
+        "Routh's criterion",
+        "E. J. Routh, A Treatise on the Stability of a Given State of Motion (Macmillan, 1877)",
     ),
-    "routh",
-)
-
-_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-
-
-def _number(count: int) -> str:
-    return _NUMBERS[count] if count < len(_NUMBERS) else str(count)
-
-
-def roots_lie(count: int) -> str:
-    """Return `no root lies`, `one root lies`, `two roots lie`, …."""
-    return f"{_number(count)} root lies" if count < 2 else f"{_number(count)} roots lie"
-
-
-def changes_sign(count: int) -> str:
-    """Return `does not change sign`, `changes sign once`, `changes sign twice`, `changes sign three times`, …."""
-    if count == 0:
-        return "does not change sign"
-    return f"changes sign {('once', 'twice')[count - 1] if count < 3 else f'{_number(count)} times'}"
-
+}
 
 EXPLAINS = (
     "routh_criterion_positive",

@@ -55,14 +55,31 @@ PHRASES: dict[str, str] = {
     "modes_missed": "The roots of {polynomial} are modes that no observer gain moves, and they are not all among these poles: no gain places them.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask pole_advice": "Where should the poles of the observer lie?",
+    "also pole_advice radius": "Those that do not lie at zeros of the plant are to lie on a circle of radius {radius}.",
+    "also pole_advice settling_time": "The estimate is to settle to 2 % within the time {settling_time}.",
+    "also pole_advice overshoot": "A step response is to overshoot by at most the fraction {overshoot} of the step.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "always_unstable": ("no_stable_compensator",),
+}
+
 DEMANDS: dict[str, str] = {
     "decayed": "says_decay",
     "overshoot_held": "says_overshoot",
     "overshoot_close": "says_overshoot_above",
 }
 
-ASSERTS: dict[str, tuple[str, ...]] = {"always_unstable": ("no_stable_compensator",)}
+RESTS_ON: dict[str, str] = {
+    "zeros_taken": "zeros_first",
+    "some_on_circle": "butterworth",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "zeros_first": ("observer eigenvalues at the plant's zeros", "S3, section F"),
+    "butterworth": ("Butterworth configuration", "W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532-533"),
+}
 
 NAMING = ("radius_is_positive",)
-
-RESTS_ON: dict[str, str] = {"zeros_taken": "zeros_first", "some_on_circle": "butterworth"}

@@ -61,6 +61,26 @@ PHRASES: dict[str, str] = {
     "boundary_undecided": "What is true on the boundary of this region is not decided here.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask pbh": "Test the observability of the pair ($C$, $A$) eigenvalue by eigenvalue.",
+    "ask pbh of=observability": "Test the observability of the pair ($C$, $A$) eigenvalue by eigenvalue.",
+    "ask pbh of=controllability": "Test the controllability of the pair ($A$, $B$) eigenvalue by eigenvalue.",
+    "ask detectability": "Is the pair ($C$, $A$) detectable?",
+    "ask detectability meaning=asymptotic": "Is the pair ($C$, $A$) detectable, the hidden modes being asymptotically stable?",
+    "ask detectability meaning=lyapunov": "Is the pair ($C$, $A$) detectable, the hidden modes being stable in the sense of Lyapunov?",
+    "ask stabilizability": "Is the pair ($A$, $B$) stabilizable?",
+    "ask stabilizability meaning=asymptotic": "Is the pair ($A$, $B$) stabilizable, the modes that are not reached being asymptotically stable?",
+    "ask stabilizability meaning=lyapunov": "Is the pair ($A$, $B$) stabilizable, the modes that are not reached being stable in the sense of Lyapunov?",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "only_stable": ("stable",),
+    "marginal_continuous": ("marginal",),
+    "marginal_discrete": ("marginal",),
+    "beyond_continuous": ("beyond",),
+    "beyond_discrete": ("beyond",),
+}
+
 DEMANDS: dict[str, str] = {
     "pbh_yes_observability": "needs_rank_full",
     "pbh_yes_controllability": "needs_rank_full",
@@ -74,14 +94,6 @@ DEMANDS: dict[str, str] = {
     "no_stabilizability": "needs_modes_unstable",
 }
 
-ASSERTS: dict[str, tuple[str, ...]] = {
-    "only_stable": ("stable",),
-    "marginal_continuous": ("marginal",),
-    "marginal_discrete": ("marginal",),
-    "beyond_continuous": ("beyond",),
-    "beyond_discrete": ("beyond",),
-}
-
 RESTS_ON: dict[str, str] = {
     "pbh_asks_observability": "pbh",
     "pbh_asks_controllability": "pbh",
@@ -92,6 +104,12 @@ RESTS_ON: dict[str, str] = {
     "means_detectability": "detectability",
     "means_stabilizability": "detectability",
     "means_lyapunov": "lyapunov",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "pbh": ("test of Popov, Belevitch and Hautus", "S0, chapter 4"),
+    "detectability": ("detectability", "S0, section 4.4"),
+    "lyapunov": ("detectability in the sense of Lyapunov", "S3, footnote 1"),
 }
 
 EXPLAINS = (

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-_DIRECT = "Its direct term, with which the measured states act at once, is {direct}."
-
 PHRASES: dict[str, str] = {
     "partitioned_gain": "Measured and estimated states are fed back by",
     "minimal_control": "By the separation principle§ the control law uses the measured states as they are and the estimate of the others:",
@@ -19,20 +17,13 @@ PHRASES: dict[str, str] = {
     "gains there is no compensator.",
     "minimal_closed": "Put into the observer, it leaves, with {state} and {input}, a system that is driven by $y$ alone:",
     "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
-    "minimal_stable": _DIRECT + " By itself it is stable.",
-    "minimal_unstable": _DIRECT + " By itself it is not stable.",
-    "minimal_unstable_alone": _DIRECT + " By itself it is not stable, although the loop is.",
-    "minimal_proper": _DIRECT,
-    "minimal_stable_if": _DIRECT + " By itself it is stable exactly where {where}.",
+    "minimal_stable": "Its direct term, with which the measured states act at once, is {direct}. By itself it is stable.",
+    "minimal_unstable": "Its direct term, with which the measured states act at once, is {direct}. By itself it is not stable.",
+    "minimal_unstable_alone": "Its direct term, with which the measured states act at once, is {direct}. By itself it is not stable, although the loop is.",
+    "minimal_proper": "Its direct term, with which the measured states act at once, is {direct}.",
+    "minimal_stable_if": "Its direct term, with which the measured states act at once, is {direct}. By itself it is stable exactly where {where}.",
     "reduced_coordinates": "In state and observer state the same loop reads",
 }
-
-DEMANDS: dict[str, str] = {
-    "minimal_unstable_alone": "needs_loop_stable",
-}
-
-#: A new thought begins here.
-OPENS = ("minimal_control", "partitioned_gain")
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "minimal_stable": ("strictly_proper", "stable"),
@@ -42,7 +33,21 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "minimal_stable_if": ("strictly_proper",),
 }
 
+DEMANDS: dict[str, str] = {
+    "minimal_unstable_alone": "needs_loop_stable",
+}
+
 RESTS_ON: dict[str, str] = {
     "minimal_control": "separation",
     "minimal_transfer": "minimal_order",
 }
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "minimal_order": ("compensator with a minimal-order observer", "S0, section 4.6"),
+}
+
+#: A new thought begins here.
+OPENS = (
+    "minimal_control",
+    "partitioned_gain",
+)

@@ -16,8 +16,18 @@ PHRASES: dict[str, str] = {
     "dual_ranks_controlling": "So {ranks}, and the pair ($A$, $B$) is controllable exactly if the pair ($C_dual$, $A_dual$) is observable.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask dual": "Form the dual plant. Which ranks are equal by duality?",
+    "ask dual sign=1": "Form the dual plant with the state matrix $Aᵀ$. Which ranks are equal by duality?",
+    "ask dual sign=-1": "Form the dual plant with the state matrix $- Aᵀ$. Which ranks are equal by duality?",
+}
+
 RESTS_ON: dict[str, str] = {
     "dual_ranks_observing": "duality",
     "dual_ranks_controlling": "duality",
     "dual_negative": "duality_reversed",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "duality_reversed": ("duality through −Aᵀ", "S4"),
 }

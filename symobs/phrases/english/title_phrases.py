@@ -37,9 +37,9 @@ PHRASES: dict[str, str] = {
     "observer_polynomial": "The observer polynomial is to be {polynomial}.",
 }
 
-NAMING = ("without_serifs",)
-
 ASSERTS: dict[str, tuple[str, ...]] = {
     "lowest_terms_unstable_continuous": ("unstable",),
     "lowest_terms_unstable_discrete": ("unstable",),
 }
+
+NAMING = ("without_serifs",)

@@ -91,6 +91,26 @@ PHRASES: dict[str, str] = {
     "equation.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask matrix_exponential": "Find the matrix exponential $exp_At$, in real terms.",
+    "ask gramian": "Find the observability Gramian over the horizon {horizon}, with its determinant. Is every initial state seen at the output?",
+    "ask gramian horizon=inf": "Find the observability Gramian over all time, with its determinant. Is every initial state seen at the output?",
+    "ask gramian of=observability": "Find the observability Gramian over the horizon {horizon}, with its determinant.",
+    "ask gramian of=observability horizon=inf": "Find the observability Gramian over all time, with its determinant.",
+    "ask gramian of=controllability": "Find the controllability Gramian over the horizon {horizon}, with its determinant.",
+    "ask gramian of=controllability horizon=inf": "Find the controllability Gramian over all time, with its determinant.",
+    "ask initial_state": "Find the initial state from the output.",
+    "ask initial_state output": "Up to the time {horizon} the output was measured as {output}, and there was no input. Find the initial state.",
+    "ask initial_state output input": "Up to the time {horizon} the output was measured as {output} under the input {input}. Find the initial state.",
+    "also initial_state input": "The input is {input}.",
+    "also initial_state_covariance Q": "White noise {Q} is added to the known input.",
+    "ask initial_state_covariance": "Find the covariance of the initial state that the Gramian reconstructs from a noisy output.",
+    "ask initial_state_covariance R": "The output is measured with white noise {R} up to the time {horizon}. Find the covariance of the initial state "
+    "that the Gramian reconstructs, and the best horizon for each component.",
+    "ask initial_state_covariance Q R": "White noise {Q} is added to the known input and white noise {R} to the output, up to the time {horizon}. Find "
+    "the covariance of the initial state that the Gramian reconstructs, and the best horizon for each component.",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {
     "gramian_infinite_observability": ("stable",),
     "gramian_infinite_controllability": ("stable",),
@@ -106,6 +126,14 @@ RESTS_ON: dict[str, str] = {
     "moments": "reconstruction",
     "estimate_is": "noise",
     "estimate_of_output": "noise",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "reconstruction": ("initial state from measurements", "S0, (4.6)-(4.11)"),
+    "noise": ("uncertainty of the initial state", "S4, Exercise 3"),
+    "gramian": ("Gramian criterion", "S0, Proposition 4.1 and (4.8)"),
+    "finite_sum": ("equality of the kernels", "S0, Theorem 4.3"),
+    "exponential": ("matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"),
 }
 
 NAMING = ("no_closed_form",)

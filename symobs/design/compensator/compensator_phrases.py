@@ -2,25 +2,9 @@
 
 from __future__ import annotations
 
-_DEFECTIVE = (
-    "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are "
-    "not bounded by a multiple of the exponential alone."
-)
-
 PHRASES: dict[str, str] = {
-    "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
-    "error_equation": "Whatever the input, the error {error} then obeys",
-    "feedthrough_cancels": "The output error does not contain the input, since the feedthrough cancels in it:",
-    "deadbeat_error": "All poles lie at the origin, so the error is gone after finitely many steps, whatever it was: {gone}.",
-    "observer_collected": "Collected, the observer reads",
-    "observer_collected_with_feedthrough": "Collected, with $B - L D$ in place of $B$ so that the feedthrough does cancel, the observer reads",
     "in_components": "Component by component these are the equations",
     "right_estimate_stays": "An estimate that is right stays right: {consistent}.",
-    "existence_ansatz": "Let a linear system be driven by what is known, with matrices still to be determined:",
-    "existence_error": "Then {error} obeys",
-    "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",
-    "existence_left": "and of the error there remains",
-    "existence_observer": "With $H_x = L$ the observer is",
     "separation": "By the separation principle§ the control law uses the estimate in place of the state:",
     "observer_closed": "Put into the observer, it leaves a system of the order of the plant that is driven by $y$ alone,",
     "compensator_matrix": "with the matrix",
@@ -56,19 +40,26 @@ PHRASES: dict[str, str] = {
     "loop_no_poles": "It has no poles: those of the state feedback and of the observer, {lost}, all cancel.",
     "loop_polynomial_divides": "The denominator divides the product of the two polynomials asked for, as it must.",
     "loop_polynomial": "The denominator is the product of the two polynomials asked for, as it must be.",
-    "defective": _DEFECTIVE,
-    "defective_instead": _DEFECTIVE + " With distinct poles they are, for example with {instead}.",
+    "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are not bounded by a multiple of the exponential alone.",
+    "defective_instead": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are not bounded by a multiple of the exponential alone. With distinct poles they are, for example with {instead}.",
+    "side_by_side": "Placing the poles of observer and state feedback.",
+    "left_observer": "Observer",
+    "right_state_feedback": "State feedback",
+    "test_observer": "The dual pair ($Aᵀ$, $Cᵀ$)§ has the controllability matrix",
+    "test_state_feedback": "The pair ($A$, $B$) has the controllability matrix",
+    "any_observer": "So the eigenvalues of $Aᵀ - Cᵀ Lᵀ$ can be placed at will§.",
+    "any_state_feedback": "So the eigenvalues of $A - B K$ can be placed at will§.",
+    "gain_observer": "Ackermann's formula§ for the dual pair gives",
+    "gain_state_feedback": "Ackermann's formula§ gives",
+    "transposed_back": "Transposition changes no determinant, so what holds on the left for $Aᵀ - Cᵀ Lᵀ$ holds for $A - L C$,",
+    "gain_transposed": "and the observer gain is",
 }
 
-DEMANDS: dict[str, str] = {
-    "compensator_unstable_alone": "needs_loop_stable",
-    "compensator_unstable_low_alone": "needs_loop_stable",
-    "defective": "needs_pole_defective",
-    "defective_instead": "needs_pole_defective",
+QUESTIONS: dict[str, str] = {
+    "ask compensator": "Design a compensator of state feedback and an observer of full order, and close the loop with it.",
+    "ask compensator observer=full": "Design a compensator of state feedback and an observer of full order, and close the loop with it.",
+    "ask compensator observer=minimal": "Design a compensator of state feedback and an observer of minimal order, and close the loop with it.",
 }
-
-#: A new thought begins here.
-OPENS = ("observer_equation", "existence_observer")
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_stable": ("strictly_proper", "stable"),
@@ -83,10 +74,14 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "no_stable_compensator": ("no_stable_compensator",),
 }
 
+DEMANDS: dict[str, str] = {
+    "compensator_unstable_alone": "needs_loop_stable",
+    "compensator_unstable_low_alone": "needs_loop_stable",
+    "defective": "needs_pole_defective",
+    "defective_instead": "needs_pole_defective",
+}
+
 RESTS_ON: dict[str, str] = {
-    "observer_equation": "observer",
-    "existence_left": "existence",
-    "error_equation": "error",
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
@@ -94,8 +89,92 @@ RESTS_ON: dict[str, str] = {
     "compensator_stable_low": "hurwitz",
     "compensator_unstable_low": "hurwitz",
     "compensator_unstable_low_alone": "hurwitz",
+    "test_observer": "duality",
+    "any_observer": "state_feedback_poles",
+    "any_state_feedback": "state_feedback_poles",
+    "gain_observer": "ackermann",
+    "gain_state_feedback": "ackermann",
 }
 
-SPELLS_OUT = ("named_entries", "with_coefficients")
+THEOREMS: dict[str, tuple[str, str]] = {
+    "similarity": ("from estimate to error", "S1, slide at 28:08"),
+    "compensator": ("compensator in transfer form", "S0, (4.25)"),
+    "hurwitz": ("Hurwitz's criterion", "A. Hurwitz, Math. Ann. 46 (1895), 273-284"),
+    "closed_loop": ("closed loop in state and error", "S0, (4.26)-(4.29)"),
+}
+
+#: A new thought begins here.
+OPENS = ()
 
 EXPLAINS = ("similar_loops",)
+
+#: Titles of sections whose sections stand side by side, a step with a sentence beginning a row.
+BESIDE = ("side_by_side",)
+
+SPELLS_OUT = (
+    "named_entries",
+    "with_coefficients",
+)
+
+FIGURES: dict[str, dict[str, object]] = {
+    "loop": {
+        "grid": """
+        r  u  P  y'  y
+        .  .  F  .   .
+        """,
+        "routes": (
+            "r > u > P > y' > y",
+            "y' |- F -| u",
+        ),
+        "signals": {"r": "r_in", "u": "u", "y": "y"},
+        "letters": {"P": "P", "F": "F"},
+        "response": True,
+    },
+    "unity_loop": {
+        "grid": """
+        r  e  F  u  P  y'  y
+        .  .  .  c  .  .   .
+        """,
+        "routes": (
+            "r > e > F > u > P > y' > y",
+            "y' |- c -|[U] e",
+        ),
+        "signals": {"r": "r_in", "u": "u", "y": "y"},
+        "letters": {"P": "P", "F": "F"},
+        "response": True,
+    },
+    "observer_compensator": {
+        "grid": """
+        .  .   .   A   .   .  .   .  .
+        .  B   j   ∫x  a   .  C   y'  y
+        .  .   .   L   .   .  .   e   .
+        u  B'  j'  ∫w  a'  k  C'  v   .
+        .  .   .   A'  .   .  .   .   .
+        c  .   .   K   .   .  .   .   .
+        """,
+        "routes": (
+            "u |- B > j > ∫x > a > C > y' > y",
+            "a |- A -| j",
+            "u > B' > j' > ∫w > a' > k > C' > v >[U] e",
+            "a' |- A' -| j'",
+            "y' > e > L -| j'",
+            "k |- K > c > u",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x", "w": "x_hat", "v": "y_hat"},
+    },
+    "observer_controller": {
+        "grid": """
+        .  .  .  Plant  .  .  y'  y
+        .  .  .  A      .  .  .   .
+        u  K  a  ∫x     j  L  .   .
+        .  .  .  B      .  .  .   .
+        """,
+        "routes": (
+            "u |- Plant > y' > y",
+            "y' |- L > j > ∫x > a > K > u",
+            "a |- A -| j",
+            "u |- B -| j",
+        ),
+        "signals": {"u": "u", "y": "y", "x": "x_hat"},
+    },
+}

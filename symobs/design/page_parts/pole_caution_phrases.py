@@ -24,13 +24,23 @@ PHRASES: dict[str, str] = {
     "some_hidden": "$F$ does not show the whole compensator: the <mode that cancels|modes that cancel> in it, {modes}, <is|are> stable exactly where {where}.",
 }
 
-_TELL: dict[str, tuple[str, ...]] = {
-    "grows": ("unstable", "beyond"),
-    "stays": ("unstable", "marginal"),
-    "drifts": ("unstable", "marginal", "stable"),
-    "lasts": ("unstable",),
-    "law": ("unstable",),
-    "hides": ("unstable",),
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "grows_observer_continuous": ("unstable", "beyond"),
+    "lasts_observer_continuous": ("unstable",),
+    "stays_observer_continuous": ("unstable", "marginal"),
+    "grows_observer_discrete": ("unstable", "beyond"),
+    "lasts_observer_discrete": ("unstable",),
+    "stays_observer_discrete": ("unstable", "marginal"),
+    "grows_state_feedback_continuous": ("unstable", "beyond"),
+    "lasts_state_feedback_continuous": ("unstable",),
+    "stays_state_feedback_continuous": ("unstable", "marginal"),
+    "drifts_state_feedback_continuous": ("unstable", "marginal", "stable"),
+    "drifts_state_feedback_discrete": ("unstable", "marginal", "stable"),
+    "grows_state_feedback_discrete": ("unstable", "beyond"),
+    "lasts_state_feedback_discrete": ("unstable",),
+    "stays_state_feedback_discrete": ("unstable", "marginal"),
+    "law_unstable_continuous": ("unstable",),
+    "law_unstable_discrete": ("unstable",),
+    "hides_continuous": ("unstable",),
+    "hides_discrete": ("unstable",),
 }
-
-ASSERTS: dict[str, tuple[str, ...]] = {key: _TELL[kind] for key in PHRASES if (kind := key.partition("_")[0]) in _TELL}

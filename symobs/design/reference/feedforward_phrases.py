@@ -20,10 +20,43 @@ PHRASES: dict[str, str] = {
     "no_feedforward_none": "The transfer function of the plant is zero, so no input moves the output, at rest or not. There is no such $F_v$.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask feedforward": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new input.",
+    "ask feedforward observer=full": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new "
+    "input.",
+    "ask feedforward observer=minimal": "Design state feedback, an observer of minimal order, and a feedforward gain for which the output at rest equals the "
+    "new input.",
+}
+
 DEMANDS: dict[str, str] = {
     "no_feedforward_zero": "needs_rank_full",
 }
 
+RESTS_ON: dict[str, str] = {
+    "feedforward_gain": "feedforward",
+    "feedforward_smallest": "feedforward",
+}
+
+THEOREMS: dict[str, tuple[str, str]] = {
+    "feedforward": ("feedforward for unit gain at rest", "S3, section G and (12)"),
+}
+
 OPENS = ("feedforward_law",)
 
-RESTS_ON: dict[str, str] = {"feedforward_gain": "feedforward", "feedforward_smallest": "feedforward"}
+FIGURES: dict[str, dict[str, object]] = {
+    "estimated_state_feedback": {
+        "grid": """
+        v  F  u  b  Plant     y'  y
+        .  .  .  .  Observer  .   .
+        .  .  .  K  x         .   .
+        """,
+        "routes": (
+            "v > F > u > b > Plant > y' > y",
+            "b |- Observer",
+            "y' |- Observer",
+            "Observer > x > K -| u",
+        ),
+        "signals": {"v": "v_r", "u": "u", "y": "y", "x": "x_hat"},
+        "optional": ("F",),
+    },
+}

@@ -23,6 +23,11 @@ PHRASES: dict[str, str] = {
     "stable_if_discrete": "All roots of this polynomial lie inside the unit circle exactly where {where}.",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask characteristic_polynomial": "Find the characteristic polynomial of $A$ and its roots.",
+    "ask transfer_function": "Find the transfer function of the plant in lowest terms, its poles and its zeros.",
+}
+
 ASSERTS: dict[str, tuple[str, ...]] = {
     "no_zero": ("polynomial",),
     "stable_continuous": ("stable",),

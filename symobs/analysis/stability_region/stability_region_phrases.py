@@ -57,6 +57,25 @@ PHRASES: dict[str, str] = {
     "parts_are": "Solved for the parameters:",
 }
 
+QUESTIONS: dict[str, str] = {
+    "ask stability_region": "Is the polynomial $chi_p$ stable?",
+    "ask stability_region K": "Is the loop with the feedback gain $K$ stable?",
+    "ask stability_region L": "Is the observer with the gain $L$ stable?",
+    "ask stability_region K L": "Is the loop with the feedback gain $K$ and the observer gain $L$ stable?",
+    "ask stability_region parameters": "For which {parameters} is the polynomial $chi_p$ stable?",
+    "ask stability_region K parameters": "For which {parameters} is the loop with the feedback gain $K$ stable?",
+    "ask stability_region L parameters": "For which {parameters} is the observer with the gain $L$ stable?",
+    "ask stability_region K L parameters": "For which {parameters} is the loop with the feedback gain $K$ and the observer gain $L$ stable?",
+    "also stability_region polynomial": "The polynomial is {polynomial}.",
+    "also stability_region margin": "Every root is to lie to the left of the imaginary axis by more than {margin}.",
+    "also stability_region radius": "Every root is to have an absolute value below {radius}.",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "case_everywhere": ("stable",),
+    "case_nowhere": ("unstable",),
+}
+
 DEMANDS: dict[str, str] = {
     "sought_margin": "sets_margin",
     "sought_radius": "sets_radius",
@@ -77,36 +96,24 @@ RESTS_ON: dict[str, str] = {
     "criterion_long": "lienard_chipart",
 }
 
-ASSERTS: dict[str, tuple[str, ...]] = {"case_everywhere": ("stable",), "case_nowhere": ("unstable",)}
+THEOREMS: dict[str, tuple[str, str]] = {
+    "sturm": ("Sturm's theorem", "C. Sturm, 1829"),
+    "orlando": ("Orlando's formula", "L. Orlando, Math. Ann. 71 (1911), 233-245"),
+    "collins": ("cylindrical decomposition", "G. E. Collins, 1975"),
+    "lienard_chipart": (
+        "criterion of Liénard and Chipart",
+        "A. Liénard and M. H. Chipart, J. Math. Pures Appl. 10 (1914), 291-346",
+    ),
+}
 
-NAMING = ("moved_right", "enlarged", "sought_margin", "sought_radius", "mapped", "mapped_from_v")
-
-_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
-
-
-def counted(count: int, thing: str) -> str:
-    """Return `one interval`, `two intervals`, …."""
-    number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
-    return f"{number} {thing}{'' if count == 1 else 's'}"
-
-
-def in_words(count: int, among: int) -> str:
-    """Return `none of them is`, `one of them is`, `three of them are`, `all of them are`."""
-    if count == 0:
-        return "none of them is"
-    if count == among:
-        return "all of them are"
-    number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
-    return f"{number} of them {'is' if count == 1 else 'are'}"
-
-
-def root_in_words(index: int, count: int) -> str:
-    """Return which of the real roots is meant, counted from the left."""
-    if count == 1:
-        return "the only real root"
-    return f"the {_ORDINALS[index] if index < len(_ORDINALS) else f'{index + 1}th'} real root from the left"
-
+NAMING = (
+    "moved_right",
+    "enlarged",
+    "sought_margin",
+    "sought_radius",
+    "mapped",
+    "mapped_from_v",
+)
 
 EXPLAINS = (
     "left_half_plane",

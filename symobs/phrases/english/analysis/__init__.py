@@ -1,1 +1,0 @@
-"""Sentences of the analysis tasks: rank tests, modes, realisations, time response and time-varying plants."""

@@ -1,1 +1,0 @@
-"""Sentences of the design tasks: gains, compensators, reduced-order observers, tracking and feedforward."""

@@ -1,1 +1,0 @@
-"""Sentences of every page: titles, questions of problem sheets, and captions."""

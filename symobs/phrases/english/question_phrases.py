@@ -1,0 +1,86 @@
+"""What a problem asks for, as the question sheet puts it.
+
+The key of a sentence says when it is said: `ask` and a task, then what the specification must contain, a keyword, or
+`keyword=value` where it is a word; `poles=1` is a single pole.  Of several that fit, the one that says most is said.
+What it leaves unsaid is said by sentences that begin with `also`, for one task or for all.  Slots are keywords.
+"""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "sheet_questions": "Questions",
+    "sheet_solutions": "Solutions",
+    "sheet_solution": "solution",
+    "sheet_contents": "Contents",
+    "sheet_problem": "Problem",
+    "sheet_failed": "This problem could not be worked out.",
+    "sheet_undecided": "This problem was not worked out in the time or memory it was given.",
+    "task": "Task.",
+    "tasks": "Tasks.",
+    "part": "({letter})",
+    # What is said of a task without a sentence of its own: the first line of its description.
+    "asked": "{summary}",
+}
+
+QUESTIONS: dict[str, str] = {
+    "also reference_start": "The reference starts at the initial state given.",
+    "also control_poles": "The control poles are to be {control_poles}.",
+    "also control_poles=1": "The control pole is to be {control_poles}.",
+    "also control_polynomial": "The control polynomial is to be {control_polynomial}.",
+    "also observer_poles": "The observer poles are to be {observer_poles}.",
+    "also observer_poles=1": "The observer pole is to be {observer_poles}.",
+    "also observer_polynomial": "The observer polynomial is to be {observer_polynomial}.",
+    "also zero": "These entries (row, column) of the gain are to be zero: {zero}.",
+    "also member=simple": "Several gains do that; choose one with short entries.",
+    "also method=canonical_form": "Use the canonical form.",
+    "also method=ackermann": "Use Ackermann's formula.",
+    "also method=sylvester": "Use Sylvester's equation.",
+    "also method=coefficient_matching": "Match the coefficients of the characteristic polynomial.",
+    "also method=row_reduced_echelon": "Use row reduction, pole by pole.",
+    "also method=companion_form": "Use the companion form.",
+    "also method=duality": "Set observer and state feedback side by side.",
+    "also method=undetermined": "Leave $F$, $G$ and $H$ open until the error asks for them.",
+    "also method=butterworth": "Use a Butterworth configuration.",
+    "also method=dominant_pair": "Use a dominant pair.",
+}
+
+#: A question claims nothing of the values it names.
+NAMING = (
+    "sheet_questions",
+    "sheet_solutions",
+    "sheet_solution",
+    "sheet_contents",
+    "sheet_problem",
+    "sheet_failed",
+    "sheet_undecided",
+    "task",
+    "tasks",
+    "part",
+    "asked",
+)
+
+OPENS = ("part",)
+
+#: Methods that are the only one of their task, or follow from what is asked for: a question need not name them.
+UNSAID = (
+    "auto",
+    "basis",
+    "derivatives",
+    "determinant",
+    "eigenvalues",
+    "fixed_modes",
+    "gramian",
+    "integral",
+    "minimal_order",
+    "moments",
+    "partition",
+    "rank",
+    "reference_model",
+    "resolvent",
+    "routh",
+    "separation",
+    "stack",
+    "static",
+    "subspaces",
+    "transpose",
+)

@@ -1,1 +1,0 @@
-"""Sentences on stability regions and the Routh array."""
