@@ -1,8 +1,14 @@
-"""The four exact matrices of a plant."""
+"""The four exact matrices of a plant, and what is wrong with their shapes."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import InputError, ShapeMismatch, SymobsError
 from symobs.exact import Matrix
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 
 class Matrices:
@@ -31,3 +37,48 @@ class Matrices:
     @property
     def _value(self) -> tuple[object, ...]:
         return self.A, self.B, self.C, self.D, self.has_input, self.has_output
+
+
+def as_rows(name: str, value: Any) -> Any:
+    """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix."""
+    if (
+        name == "A"
+        or value is None
+        or isinstance(value, (str, Matrix))
+        or (hasattr(value, "shape") and len(value.shape) == 2)
+    ):
+        return value
+    listed = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(listed, (list, tuple)):
+        return [[value]]
+    if any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
+        return value
+    return [[entry] for entry in listed] if name == "B" else [list(listed)]
+
+
+def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
+    """Return what is wrong with the shapes of A, B, C and D; None for a matrix that is not given."""
+    A, B, C, D = parts["A"], parts["B"], parts["C"], parts["D"]
+    errors: list[SymobsError] = []
+
+    def expect(name: str, wanted: str, came: Matrix) -> None:
+        message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
+        errors.append(
+            ShapeMismatch(message, where=f"plant.{name}", repair=f"write {name} as {wanted.split(',', maxsplit=1)[0]}")
+        )
+
+    if A is None:
+        return [InputError("A is missing", where="plant.A", repair='give the state matrix, for example "[0 1; 0 -1]"')]
+    order = A.shape[0]
+    if order == 0 or A.shape[1] != order:
+        expect("A", "a square matrix", A)
+        return errors
+    if B is not None and (B.shape[0] != order or B.shape[1] == 0):
+        expect("B", f"a matrix of {order} rows, one for each state", B)
+    if C is not None and (C.shape[1] != order or C.shape[0] == 0):
+        expect("C", f"a matrix of {order} columns, one for each state", C)
+    if D is not None and not errors:
+        rows, columns = (C.shape[0] if C is not None else 0), (B.shape[1] if B is not None else 0)
+        if D.shape != (rows, columns):
+            expect("D", f"a {rows}×{columns} matrix, outputs by inputs", D)
+    return errors

@@ -6,12 +6,12 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import BudgetExceeded, InputError, ProblemErrors, ShapeMismatch, SymobsError
+from symobs.errors import BudgetExceeded, InputError, ProblemErrors, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
 from symobs.system.control_system import read_control_system
 from symobs.system.findings import Findings
-from symobs.system.matrices import Matrices
+from symobs.system.matrices import Matrices, as_rows, shape_errors
 from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
@@ -51,7 +51,7 @@ class StateSpace:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         known = known.seen([A, B, C, D])
-        A, B, C, D = (_as_rows(name, value) for name, value in zip("ABCD", (A, B, C, D), strict=True))
+        A, B, C, D = (as_rows(name, value) for name, value in zip("ABCD", (A, B, C, D), strict=True))
         named, texts = known.with_time(), [value for value in (A, B, C, D) if isinstance(value, str)]
         errors: list[SymobsError] = []
         parts: dict[str, Matrix | None] = {}
@@ -63,7 +63,7 @@ class StateSpace:
         if parts.get("D") == Matrix.zeros(1, 1):
             parts["D"] = None
         if "A" in parts:
-            errors += _shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
+            errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         if errors:
             _raise_all(errors)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
@@ -374,50 +374,6 @@ class StateSpace:
         m = self.matrices
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
         return f"StateSpace({', '.join(shown)}, dt={self.dt})"
-
-
-def _as_rows(name: str, value: Any) -> Any:
-    """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix."""
-    if (
-        name == "A"
-        or value is None
-        or isinstance(value, (str, Matrix))
-        or (hasattr(value, "shape") and len(value.shape) == 2)
-    ):
-        return value
-    listed = value.tolist() if hasattr(value, "tolist") else value
-    if not isinstance(listed, (list, tuple)):
-        return [[value]]
-    if any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
-        return value
-    return [[entry] for entry in listed] if name == "B" else [list(listed)]
-
-
-def _shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
-    A, B, C, D = parts["A"], parts["B"], parts["C"], parts["D"]
-    errors: list[SymobsError] = []
-
-    def expect(name: str, wanted: str, came: Matrix) -> None:
-        message = f"{name} is {came.shape[0]}×{came.shape[1]}, expected {wanted}"
-        errors.append(
-            ShapeMismatch(message, where=f"plant.{name}", repair=f"write {name} as {wanted.split(',', maxsplit=1)[0]}")
-        )
-
-    if A is None:
-        return [InputError("A is missing", where="plant.A", repair='give the state matrix, for example "[0 1; 0 -1]"')]
-    order = A.shape[0]
-    if order == 0 or A.shape[1] != order:
-        expect("A", "a square matrix", A)
-        return errors
-    if B is not None and (B.shape[0] != order or B.shape[1] == 0):
-        expect("B", f"a matrix of {order} rows, one for each state", B)
-    if C is not None and (C.shape[1] != order or C.shape[0] == 0):
-        expect("C", f"a matrix of {order} columns, one for each state", C)
-    if D is not None and not errors:
-        rows, columns = (C.shape[0] if C is not None else 0), (B.shape[1] if B is not None else 0)
-        if D.shape != (rows, columns):
-            expect("D", f"a {rows}×{columns} matrix, outputs by inputs", D)
-    return errors
 
 
 def _raise_all(errors: Sequence[SymobsError]) -> None:
