@@ -155,7 +155,11 @@ def test_a_stratum_of_several_points_does_not_end_the_search_for_meetings() -> N
         }
     )
     assert found["fixed_polynomial"] == "1"
-    assert "undecided" in json.dumps(found["cases"])
+    # On the line a = 3b - 2 the vector (1, -2, 0) belongs to the eigenvalue b > 0, and C annuls it.
+    line = next(case for case in found["cases"] if case["when"][0] == "a - 3*b + 2 == 0")
+    assert line["verdict"] == "no"
+    assert line["fixed_polynomial"] == "s - b"
+    assert len(found["cases"]) > 2
 
 
 def test_a_stratum_whose_own_cases_cannot_be_claimed_is_undecided() -> None:

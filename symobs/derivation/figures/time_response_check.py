@@ -56,7 +56,7 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
     if picture.discrete:
         yield from _faults_of_samples(picture, matrix, beginning)
         return
-    if not _is_slow(matrix, end / (2 * steps)):
+    if not is_slow(matrix, end / (2 * steps)):
         yield "modes that do not turn unseen between two instants"
         return
     values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
@@ -119,7 +119,7 @@ def _faults_of_component(
         yield f"{response.signal}, which leaves the window,"
 
 
-def _is_slow(matrix: Matrix, step: Fraction) -> bool:
+def is_slow(matrix: Matrix, step: Fraction) -> bool:
     """Whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
     power = matrix * Scalar.of(step / _TURN)
     for _ in range(_SQUARINGS):

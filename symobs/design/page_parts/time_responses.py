@@ -53,12 +53,15 @@ def _plot(
     if page.plant.is_discrete:
         _plot_samples(page, states, matrix, signals, say)
         return
-    from symobs.exact.time_functions.state_response import spectral_abscissae, state_response  # noqa: PLC0415 - only pages with responses pay for it
+    from symobs.derivation.figures.time_response_check import is_slow  # noqa: PLC0415 - only pages with responses pay for it
+    from symobs.exact.time_functions.state_response import spectral_abscissae, state_response  # noqa: PLC0415
 
     slowest, fastest = spectral_abscissae(value)
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = _rounded(_TIMES / -slowest)
+    if not is_slow(value, end / (2 * _STEPS)):  # a mode would turn unseen between two instants
+        return
     try:
         states_there = state_response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
     except ArithmeticError:

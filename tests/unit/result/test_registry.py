@@ -112,6 +112,18 @@ def imported() -> set[str]:
     return sys.modules.keys() & MODULES.keys()
 
 
+class Answer:
+    """What a task made for a test returns: the arguments it was called with."""
+
+    def __init__(self, *given: Any) -> None:
+        self.given = given
+        self.asked: dict[str, Any] = {}
+
+    def specified(self, asked: dict[str, Any]) -> Answer:
+        self.asked = asked
+        return self
+
+
 ONE, TWO = {"tasks_of_one.first", "tasks_of_one.more"}, {"tasks_of_two.second"}
 THREE = {"formats_of_three.plain", "formats_of_three.others"}
 
@@ -140,9 +152,10 @@ def test_any_other_task_is_found_among_all() -> None:
 def test_a_task_that_is_known_is_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     @task
     def known(plant: Any) -> Any:
-        return plant
+        return Answer(plant)
 
-    assert known(None) is None
+    plant = StateSpace("[0]")
+    assert known(plant).given == (plant,)
     monkeypatch.setattr(writers, "_modules", pytest.fail)
     found = task_named("known")
     assert found is not None
@@ -192,18 +205,20 @@ def test_tasks_in_time_are_named_where_another_refuses_a_plant() -> None:
 
     @task
     def constant(plant: Any, *more: Any, last: Any = 0) -> Any:
-        return plant, *more, last
+        return Answer(plant, *more, last)
 
-    assert constant(constant_plant, 1, 2, last=3) == (constant_plant, 1, 2, 3)
+    found = constant(constant_plant, 1, 2, last=3)
+    assert found.given == (constant_plant, 1, 2, 3)
+    assert found.asked == {"last": 3}
     with pytest.raises(InputError) as caught:
         constant(varying_plant)
     assert caught.value.repair == "use fourth, or give a constant that is called t another name"
 
     @task_in_time
     def varying(plant: Any) -> Any:
-        return plant
+        return Answer(plant)
 
-    assert varying(varying_plant) is varying_plant
+    assert varying(varying_plant).given == (varying_plant,)
     with pytest.raises(InputError, match="use fourth or varying, or"):
         constant(varying_plant)
 

@@ -320,6 +320,18 @@ def empty(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(owner, name, copy(getattr(owner, name)))
 
 
+class Answer:
+    """What a task made for a test returns: the arguments it was called with."""
+
+    def __init__(self, *given: Any) -> None:
+        self.given = given
+        self.asked: dict[str, Any] = {}
+
+    def specified(self, asked: dict[str, Any]) -> Answer:
+        self.asked = asked
+        return self
+
+
 @pytest.mark.usefixtures("empty")
 def test_a_task_is_its_signature() -> None:
 
@@ -328,14 +340,15 @@ def test_a_task_is_its_signature() -> None:
 
         More of it.
         """
-        return plant, poles, of
+        return Answer(plant, poles, of)
 
     def alone(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
-        return plant, first, number
+        return Answer(plant, first, number)
 
     weigh.__annotations__ |= {"poles": "Poles | None", "of": Annotated[str, "Of"]}
     alone.__annotations__["number"] = Annotated[int, "Number"] | None
-    assert task(weigh)(SERVO, of="x") == (SERVO, None, "x")
+    weighed = task(weigh)(SERVO, of="x")
+    assert (weighed.given, weighed.asked) == ((SERVO, None, "x"), {"of": "x"})
     found = tasks()["weigh"]
     assert (found.name, dict(found.keywords), found.summary) == (
         "weigh",
@@ -343,7 +356,7 @@ def test_a_task_is_its_signature() -> None:
         "Weigh a plant.",
     )
     assert found.alone is False
-    assert task_in_time(alone) is alone
+    assert task_in_time(alone).__wrapped__ is alone
     found = tasks()["alone"]
     assert (found.alone, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
     with pytest.raises(FrozenInstanceError):
@@ -363,8 +376,9 @@ def test_plants_in_time_are_refused_where_matrices_are_constant() -> None:
         return plant
 
     refusing = task(constant)
-    assert refusing("a text") == "a text"
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match="a plant is expected, but a value of type str came"):
+        refusing("a text")
+    with pytest.raises(InputError, match="constant is for plants with constant matrices"):
         refusing(varying)
     assert refusing.__name__ == "constant"
 
@@ -427,11 +441,8 @@ def test_only_what_is_asked_for_is_imported(monkeypatch: pytest.MonkeyPatch) -> 
     imported: list[str] = []
     monkeypatch.setattr("importlib.import_module", imported.append)
     monkeypatch.setattr(writers, "_DISCOVERED", set())
-
-    class Info:
-        name = "observer"
-
-    monkeypatch.setattr(writers, "_modules", lambda package: [Info()] if package.endswith("design") else [])
+    modules = ("symobs.design.full_order.observer",)
+    monkeypatch.setattr(writers, "_modules", lambda package: modules if package.endswith("design") else ())
     monkeypatch.setattr(registry, "_TASKS", {})
     assert task_named("observer") is None
     assert imported[0] == "symobs.design.full_order.observer"

@@ -582,8 +582,8 @@ def test_modes_are_slow_by_their_eigenvalues_and_not_by_the_entries() -> None:
         largest = Fraction(radius)
         for rows in ((largest, 1000, 0, -1), (-1, 0, 1000, -largest), (0, largest, -largest, 0)):
             table = Matrix.of([rows[:2], rows[2:]])
-            assert time_response_check._is_slow(table, Fraction(1)) is is_slow
-            assert time_response_check._is_slow(table * Scalar.of(1000), Fraction(1, 1000)) is is_slow
+            assert time_response_check.is_slow(table, Fraction(1)) is is_slow
+            assert time_response_check.is_slow(table * Scalar.of(1000), Fraction(1, 1000)) is is_slow
 
 
 def test_the_error_of_an_exponential_and_of_its_powers_is_counted() -> None:
