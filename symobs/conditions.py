@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.kernel.generators import PI, function_named
+from symobs.exact.core.generators import PI, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -21,8 +21,8 @@ from symobs.certificate.pointwise import Pointwise, never_together_zero
 from symobs.conditions import sign_where, vanishing_factors
 from symobs.errors import CertificateRejected, NotShown, WrongKind
 from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
-from symobs.exact.kernel.generators import symbols_named
-from symobs.exact.kernel.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
+from symobs.exact.core.generators import symbols_named
+from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     At,

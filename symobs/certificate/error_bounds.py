@@ -6,7 +6,7 @@ from math import log2
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.modular import POINT_BITS
+from symobs.exact.core.modular import POINT_BITS
 
 if TYPE_CHECKING:
     from symobs.formula import Environment, Modular

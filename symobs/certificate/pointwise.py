@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
-from symobs.exact.kernel.generators import all_roots
+from symobs.exact.core.generators import all_roots
 from symobs.formula import Restricted
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from symobs.derivation.steps import (
 )
 from symobs.errors import SymobsWarning
 from symobs.exact import Matrix, Scalar, rounded
-from symobs.exact.kernel.generators import function_named, identities, roots_in
+from symobs.exact.core.generators import function_named, identities, roots_in
 from symobs.formula import (
     Conjunction,
     Decimals,

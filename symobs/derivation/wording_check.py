@@ -15,7 +15,7 @@ from symobs.certificate.claims import as_scalar
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.facts.rejection import reject
 from symobs.exact import Scalar, rank
-from symobs.exact.kernel.generators import PI, function
+from symobs.exact.core.generators import PI, function
 from symobs.formula import (
     Apply,
     Exact,

@@ -8,11 +8,10 @@ from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_r
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
-from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero
-from symobs.exact.kernel.field import EIGENVALUE, RATIONALS, VARIABLES, Field
-from symobs.exact.kernel.generators import derivative
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.polynomial import (
+from symobs.exact.core.field import EIGENVALUE, RATIONALS, VARIABLES, Field
+from symobs.exact.core.generators import derivative
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.polynomial import (
     apply_polynomial,
     companion,
     from_coefficients,
@@ -21,8 +20,9 @@ from symobs.exact.kernel.polynomial import (
     remainder,
     resultant,
 )
-from symobs.exact.kernel.rational_matrix import matrix_of_numbers
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.rational_matrix import matrix_of_numbers
+from symobs.exact.core.scalar import Scalar
+from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero
 from symobs.exact.linear_algebra.elimination import (
     echelon,
     independent_rows,

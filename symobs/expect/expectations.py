@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
-from symobs.exact.kernel.generators import roots_in, symbols_in
+from symobs.exact.core.generators import roots_in, symbols_in
 from symobs.expect.conditions import conditions_agree
 from symobs.expect.roots import (
     COUNTED,

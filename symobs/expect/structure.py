@@ -9,7 +9,7 @@ from typing import Any
 from symobs.errors import InputError, SymobsError
 from symobs.exact import Factored, Matrix, Scalar, product_of
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
-from symobs.exact.kernel.generators import symbols_in
+from symobs.exact.core.generators import symbols_in
 from symobs.expect.time_functions import agrees, functions_agree
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.source import shown

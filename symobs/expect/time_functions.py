@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.certificate.claims import verify
 from symobs.exact import Matrix
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to
-from symobs.exact.kernel.generators import identities
+from symobs.exact.core.generators import identities
 from symobs.formula import Environment, Literal, Relation
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Scalar
-from symobs.exact.kernel import generators
+from symobs.exact.core import generators
 from symobs.expression.fast_path import plain_rows
 from symobs.expression.size_limits import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
 from symobs.expression.source import Source, shown

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator
-from symobs.exact.kernel.generators import PI
+from symobs.exact.core.generators import PI
 from symobs.expression.ambiguous_products import OPERAND_ENDS, division_before, two_readings
 from symobs.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
 from symobs.expression.source import Source, Token, shown

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import WrongKind
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative, substitute, symbols_in
+from symobs.exact.core.generators import derivative, substitute, symbols_in
 from symobs.formula.nodes import Integral
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.errors import WrongKind
 from symobs.exact import Matrix, Scalar, rank
-from symobs.exact.kernel.modular import block, scaled
+from symobs.exact.core.modular import block, scaled
 from symobs.formula import calculus
 from symobs.formula.arithmetic import Arithmetic, Signal, add, scalar, times
 from symobs.formula.nodes import (
@@ -38,7 +38,7 @@ from symobs.formula.nodes import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.exact.kernel.modular import Point
+    from symobs.exact.core.modular import Point
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs._dataclass import dataclass
-from symobs.exact.kernel.generators import all_roots
+from symobs.exact.core.generators import all_roots
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symobs.exact import Matrix, Root, Scalar
-    from symobs.exact.kernel.generators import Function
+    from symobs.exact.core.generators import Function
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import Condition
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
-from symobs.exact.kernel.generators import PI, symbols_named
+from symobs.exact.core.generators import PI, symbols_named
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

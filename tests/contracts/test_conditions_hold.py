@@ -18,7 +18,7 @@ import pytest
 import symobs
 from symobs.conditions import never_zero
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import function_named, symbols_in
+from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
 from tests.support.independent_algebra.plain import (

@@ -16,8 +16,8 @@ from flint import ctx
 
 import symobs
 from symobs.exact import Field, Matrix, Scalar
-from symobs.exact.kernel.generators import function
-from symobs.exact.kernel.precision import Precision
+from symobs.exact.core.generators import function
+from symobs.exact.core.precision import Precision
 from symobs.result import tasks
 from tests.programs.benchmarks.fresh_symbols import design
 from tests.support.claims.asking import specification
@@ -122,7 +122,7 @@ def test_fresh_symbols_leave_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> 
     caches = [each for each in caches if each.__module__.startswith("symobs")]
     unbounded = {each.__qualname__ for each in caches if each.cache_parameters()["maxsize"] is None}
     assert unbounded <= {"of_file", "_made_of", "_of_built_in", "GainDesign.assignment"}
-    monkeypatch.setattr("symobs.exact.kernel.field._ROUTES", 8)
+    monkeypatch.setattr("symobs.exact.core.field._ROUTES", 8)
     for number in range(30):
         design(number)
         fresh = Scalar.symbol(f"p{number}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.exact.kernel.generators import function_named, symbols_in
+from symobs.exact.core.generators import function_named, symbols_in
 from symobs.expression import parse_scalar
 from symobs.formula import Literal
 from symobs.problem import read

@@ -12,7 +12,7 @@ from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.exact import Matrix, Scalar, independent_rows, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
-from symobs.exact.kernel.generators import NotWritten
+from symobs.exact.core.generators import NotWritten
 from symobs.formula import Environment, Literal, Quotient, Roots, Shown
 from symobs.formula.term import Term, block, identity, letter
 from symobs.result import Case, Result, choose, method, task

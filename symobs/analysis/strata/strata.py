@@ -15,7 +15,7 @@ from symobs.analysis.strata.rank_stratification import Node
 from symobs.conditions import Condition, never_zero, vanishing_factors
 from symobs.errors import CertificateRejected
 from symobs.exact import TooLarge
-from symobs.exact.kernel.generators import NotWritten
+from symobs.exact.core.generators import NotWritten
 from symobs.result import Case
 
 if TYPE_CHECKING:

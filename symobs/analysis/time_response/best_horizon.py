@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.conditions import never_zero
-from symobs.exact.kernel.generators import derivative, function_named
+from symobs.exact.core.generators import derivative, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -18,7 +18,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
-from symobs.exact.kernel.generators import all_roots, function_named, identities, substitute, symbols_in
+from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
 from symobs.formula import Conjunction, Environment, Literal
 from symobs.formula.term import Term, letter

@@ -27,7 +27,7 @@ from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, product_of
-from symobs.exact.kernel.generators import symbols_in
+from symobs.exact.core.generators import symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -250,7 +250,7 @@ def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
     """Return the functions of time at the horizon, so that their generators are known as well."""
     if not isinstance(horizon, Scalar):
         return {}
-    from symobs.exact.kernel.generators import substitute  # noqa: PLC0415
+    from symobs.exact.core.generators import substitute  # noqa: PLC0415
 
     moving = {name: value for name, value in values.items() if "t" in symbols_in(value)}
     return {f"{name} at T": substitute(value, {"t": horizon}) for name, value in moving.items()}

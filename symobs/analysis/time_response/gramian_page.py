@@ -18,7 +18,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.formula import Conjunction, HoldsExactlyWhere, Literal, Quotient
 from symobs.formula.calculus import since_start
 from symobs.result import page_of

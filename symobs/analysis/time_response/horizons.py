@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.conditions import sign_of
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, remainder
-from symobs.exact.kernel.generators import NotWritten, function_named
+from symobs.exact.core.generators import NotWritten, function_named
 from symobs.expression import parse_scalar
 from symobs.stability.criteria.stability import stability
 from symobs.system import read_scalar

@@ -24,7 +24,7 @@ from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.kernel.generators import normal_form, substitute
+from symobs.exact.core.generators import normal_form, substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, integral, matrix_at, product, table_of, transposed
 from symobs.formula import Environment, Literal

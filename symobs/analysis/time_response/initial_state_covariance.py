@@ -25,7 +25,7 @@ from symobs.conditions import Condition, sign_of, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import identities, roots_in, substitute
+from symobs.exact.core.generators import identities, roots_in, substitute
 from symobs.exact.time_functions.matrix_exponential import Exponential, NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Quasipolynomial,

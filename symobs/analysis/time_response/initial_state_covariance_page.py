@@ -14,7 +14,7 @@ from symobs.analysis.time_response.matrix_exponential import (
 from symobs.conditions import never_zero
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative, substitute
+from symobs.exact.core.generators import derivative, substitute
 from symobs.formula import Literal, Power
 from symobs.formula.calculus import since_start
 from symobs.result import page_of

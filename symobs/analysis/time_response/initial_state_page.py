@@ -17,7 +17,7 @@ from symobs.analysis.time_response.matrix_exponential import (
 from symobs.conditions import never_zero
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.quasipolynomial import determinant, table_of
 from symobs.formula import Literal, Shown
 from symobs.formula.calculus import since_start

@@ -14,7 +14,7 @@ from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, factored
-from symobs.exact.kernel.generators import function_named
+from symobs.exact.core.generators import function_named
 from symobs.exact.time_functions.matrix_exponential import (
     MOST_STATES_WITH_PARAMETERS,
     Exponential,
@@ -212,7 +212,7 @@ def _sum_of_modes(found: Exponential) -> Formula:
 
 def found_rate(rate: Scalar) -> Formula | None:
     """Return e^{σt}, None where it is 1."""
-    from symobs.exact.kernel.generators import function  # noqa: PLC0415
+    from symobs.exact.core.generators import function  # noqa: PLC0415
 
     return None if rate.is_zero else Literal(function("exp", rate * TIME))
 

@@ -22,7 +22,7 @@ from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.trigonometric_sums import collected
 from symobs.formula import Environment, Integral, Literal
 from symobs.formula.term import Term, block, identity, letter

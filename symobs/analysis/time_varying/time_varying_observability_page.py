@@ -20,7 +20,7 @@ from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal
 from symobs.derivation.builder import relation, sentence
 from symobs.exact import Matrix, Scalar, antiderivative, rank
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.formula import Integral, Literal, Shown
 from symobs.formula.term import Term, block
 from symobs.result import page_of

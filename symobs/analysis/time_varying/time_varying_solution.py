@@ -16,7 +16,7 @@ from symobs.analysis.time_varying.transition_matrix import (
     transition,
 )
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, rank
-from symobs.exact.kernel.generators import derivative, function_named, identities, substitute
+from symobs.exact.core.generators import derivative, function_named, identities, substitute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral, roots_of
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm, OpenBranch, exponential
 from symobs.exact.time_functions.trigonometric_sums import collected
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.exact import Factored, Matrix, Scalar, rank
-from symobs.exact.kernel.generators import substitute
-from symobs.exact.kernel.polynomial import hankel_of
+from symobs.exact.core.generators import substitute
+from symobs.exact.core.polynomial import hankel_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from symobs.audit.equations.letter_values import BEGIN, END, krylov
 from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, rank
-from symobs.exact.kernel.generators import derivative, function, square_root, substitute
-from symobs.exact.kernel.polynomial import product_of
+from symobs.exact.core.generators import derivative, function, square_root, substitute
+from symobs.exact.core.polynomial import product_of
 from symobs.exact.linear_algebra.elimination import reduced_echelon
 from symobs.exact.time_functions.antiderivative import antiderivative
 

@@ -11,8 +11,8 @@ from symobs.certificate.pointwise import never_together_zero
 from symobs.conditions import sign_of, vanishing_factors
 from symobs.errors import InputError
 from symobs.exact import Ideal, Scalar, TooLarge
-from symobs.exact.kernel.generators import roots_in
-from symobs.exact.kernel.polynomial import coefficients_over, product_of
+from symobs.exact.core.generators import roots_in
+from symobs.exact.core.polynomial import coefficients_over, product_of
 from symobs.expression import parse_scalar
 from symobs.expression.source import shown
 

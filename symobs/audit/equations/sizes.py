@@ -8,7 +8,7 @@ from symobs._dataclass import dataclass
 from symobs.audit.equations.matrix_functions import no_fit, sized
 from symobs.certificate.claims import verify
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import identities
+from symobs.exact.core.generators import identities
 from symobs.formula import Environment, Literal, Relation, Signal
 from symobs.formula.term import Term
 

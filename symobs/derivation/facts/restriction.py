@@ -11,7 +11,7 @@ from symobs.certificate.pointwise import never_together_zero
 from symobs.conditions import never_zero, vanishing_factors
 from symobs.derivation.facts.rejection import reject
 from symobs.exact import Ideal, Scalar, apart_from_zero
-from symobs.exact.kernel.generators import substitute
+from symobs.exact.core.generators import substitute
 from symobs.formula import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.plain_text import plain_relation
 

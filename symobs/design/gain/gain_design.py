@@ -42,7 +42,7 @@ from symobs.design.pole_placement.zero_pattern import (
 )
 from symobs.errors import CertificateRejected
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar, roots_of
-from symobs.exact.kernel.generators import identities
+from symobs.exact.core.generators import identities
 from symobs.formula import Environment, Relation
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Result

@@ -26,7 +26,7 @@ from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
-from symobs.exact.kernel.generators import all_roots
+from symobs.exact.core.generators import all_roots
 from symobs.formula import Literal, Roots, Shown
 from symobs.formula.term import Term, block
 from symobs.result import choose

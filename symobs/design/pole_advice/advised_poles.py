@@ -24,7 +24,7 @@ from symobs.design.pole_advice.pole_warnings import warnings_of
 from symobs.design.pole_placement.single_output import Pair
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of
-from symobs.exact.kernel.generators import NotWritten, function, identities
+from symobs.exact.core.generators import NotWritten, function, identities
 from symobs.exact.time_functions.butterworth import butterworth
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, identity, letter

@@ -12,7 +12,7 @@ from symobs.analysis.strata.strata import carried, region_of, strata
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.pole_advice.pole_candidates import OPEN, needed_of
 from symobs.errors import InputError
-from symobs.exact.kernel.generators import NotWritten, function_named
+from symobs.exact.core.generators import NotWritten, function_named
 from symobs.result import Case
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
 from symobs.design.pole_advice.pole_advice import PoleAdvice
 from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
 from symobs.exact import Factored, Scalar, roots_of
-from symobs.exact.kernel.generators import function
+from symobs.exact.core.generators import function
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
 from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Complex, Root, Scalar, factored, from_coefficients, product_of, transfer
-from symobs.exact.kernel.generators import PI, function, square_root
+from symobs.exact.core.generators import PI, function, square_root
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
 from symobs.stability.criteria.stability import is_beyond, on_boundary, stability
 

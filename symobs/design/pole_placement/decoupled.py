@@ -14,7 +14,7 @@ from symobs.derivation.builder import relation
 from symobs.design.pole_placement.brunovsky_chains import Chains, cost, shares
 from symobs.errors import InputError
 from symobs.exact import Matrix, rank
-from symobs.exact.kernel.generators import NotWritten
+from symobs.exact.core.generators import NotWritten
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term
 

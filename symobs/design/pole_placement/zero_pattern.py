@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, TooLarge, modulo
-from symobs.exact.kernel.generators import identities
+from symobs.exact.core.generators import identities
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

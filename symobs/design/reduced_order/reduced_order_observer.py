@@ -18,7 +18,7 @@ from symobs.design.gain.gain_cases import chosen, design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, unit_rows
-from symobs.exact.kernel.generators import NotWritten
+from symobs.exact.core.generators import NotWritten
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.result import Case, Result, choose, method, task

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.enclosure import near, sign_of_number
-from symobs.exact.kernel.generators import function_named
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.generators import function_named
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

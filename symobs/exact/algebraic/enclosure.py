@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel.generators import PI, function_named, symbols_in
-from symobs.exact.kernel.precision import Precision
+from symobs.exact.core.generators import PI, function_named, symbols_in
+from symobs.exact.core.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.scalar import Scalar
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact.algebraic.complex import Complex
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

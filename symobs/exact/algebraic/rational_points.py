@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_poly
 
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.scalar import Scalar
 
 _ONE, _ZERO = Fraction(1), fmpq(0)
 

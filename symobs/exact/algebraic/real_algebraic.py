@@ -15,10 +15,10 @@ from flint import arb, fmpq, fmpz_poly
 
 from symobs._dataclass import dataclass
 from symobs.exact.algebraic.polynomial_roots import rational_sqrt
-from symobs.exact.kernel.field import Field
-from symobs.exact.kernel.generators import Function, square_root
-from symobs.exact.kernel.precision import Precision
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.field import Field
+from symobs.exact.core.generators import Function, square_root
+from symobs.exact.core.precision import Precision
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

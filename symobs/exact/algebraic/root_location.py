@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpz_mat, fmpz_poly
 
 from symobs.exact.algebraic.real_algebraic import RealNumber, real_roots
-from symobs.exact.kernel.precision import Precision
+from symobs.exact.core.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

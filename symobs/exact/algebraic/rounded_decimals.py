@@ -17,15 +17,15 @@ from symobs._dataclass import dataclass
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.enclosure import is_number, polynomial_ball, sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
-from symobs.exact.kernel.generators import partial
-from symobs.exact.kernel.polynomial import coefficients_over
-from symobs.exact.kernel.precision import Precision
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.generators import partial
+from symobs.exact.core.polynomial import coefficients_over
+from symobs.exact.core.precision import Precision
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symobs.exact.kernel.matrix import Matrix
+    from symobs.exact.core.matrix import Matrix
 
 _DECIMAL = re.compile(r"(?P<whole>[0-9]*)(?:\.(?P<places>[0-9]*))?(?:[eE](?P<power>[+-]?[0-9]+))?")
 #: With more decimals in one number only the printed values themselves are compared.

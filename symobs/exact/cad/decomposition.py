@@ -14,7 +14,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 
 from symobs._dataclass import dataclass
 from symobs.exact.algebraic.real_algebraic import RealNumber, irreducible_factors, rational_between, real_roots
-from symobs.exact.kernel.field import Field
+from symobs.exact.core.field import Field
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.scalar import Scalar
 
 
 class PlaneCurve:

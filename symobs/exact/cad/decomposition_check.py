@@ -16,7 +16,7 @@ from flint import fmpz_poly, nmod, nmod_mat, nmod_poly
 
 from symobs.exact.algebraic.real_algebraic import RealNumber, count_roots
 from symobs.exact.cad.decomposition import in_first
-from symobs.exact.kernel.modular import random_prime
+from symobs.exact.core.modular import random_prime
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -21,8 +21,8 @@ from symobs.exact.algebraic.real_algebraic import (
     real_roots,
     simplest_between,
 )
+from symobs.exact.core.precision import Precision
 from symobs.exact.ideals.ideal import TooLarge
-from symobs.exact.kernel.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

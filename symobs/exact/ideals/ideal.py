@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mat, fmpz_mpoly_vec
 
-from symobs.exact.kernel.field import EIGENVALUE, Field, context_of
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.field import EIGENVALUE, Field, context_of
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

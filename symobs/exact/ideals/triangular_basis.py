@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from flint import Ordering, fmpz_mpoly_vec
 
+from symobs.exact.core.field import Field, context_of
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals.ideal import TERMS, TooLarge
-from symobs.exact.kernel.field import Field, context_of
-from symobs.exact.kernel.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

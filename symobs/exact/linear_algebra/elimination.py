@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz_mat, fmpz_mpoly
 
+from symobs.exact.core import ring
+from symobs.exact.core.matrix import Matrix, build
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals.ideal import Ideal, TooLarge
-from symobs.exact.kernel import ring
-from symobs.exact.kernel.matrix import Matrix, build
-from symobs.exact.kernel.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.exact.kernel.field import Field
+    from symobs.exact.core.field import Field
 
 #: The most terms of an entry that an elimination modulo relations may meet.
 TERMS = 400

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq_mat, fmpz, fmpz_mat, nmod_mat
 
 from symobs._dataclass import dataclass
-from symobs.exact.kernel import ring
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.ring import number_of
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core import ring
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.ring import number_of
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symobs.exact.kernel.field import Field
+    from symobs.exact.core.field import Field
 
 #: A determinant that is not 0 modulo this prime is not 0.
 _PRIME = 2**64 - 59

@@ -5,12 +5,12 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.exact.kernel.matrix import Matrix
+    from symobs.exact.core.matrix import Matrix
 
 
 def minors(matrix: Matrix, order: int) -> Iterator[Scalar]:

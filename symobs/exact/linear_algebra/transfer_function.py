@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from symobs.exact.kernel import ring
-from symobs.exact.kernel.field import Field
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core import ring
+from symobs.exact.core.field import Field
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 
 
 def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple[Scalar, Scalar]:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import InexactInput, InputError
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel import generators as functions
-from symobs.exact.kernel.field import EIGENVALUE
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core import generators as functions
+from symobs.exact.core.field import EIGENVALUE
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.sympy_bridge.sympy_import import sympy
 from symobs.exact.time_functions.root_sum import RootSum
 

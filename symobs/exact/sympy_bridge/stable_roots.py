@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpq, fmpz_poly
 
-from symobs.exact.kernel.precision import Precision
+from symobs.exact.core.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flint import acb
 
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.scalar import Scalar
 
 _FIRST_BITS = 64
 

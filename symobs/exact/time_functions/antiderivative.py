@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from symobs.exact.kernel.generators import derivative, function
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.polynomial import from_coefficients
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.generators import derivative, function
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.polynomial import from_coefficients
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.linear_algebra.elimination import kernel
 from symobs.exact.time_functions.trigonometric_sums import antiderivative_of_waves, depends_on_time
 

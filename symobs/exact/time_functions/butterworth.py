@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symobs.exact.kernel.generators import NotWritten, square_root
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.generators import NotWritten, square_root
+from symobs.exact.core.scalar import Scalar
 
 
 def twice_cosine(turns: Fraction) -> Scalar:

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
-from symobs.exact.kernel.field import EIGENVALUE
-from symobs.exact.kernel.generators import ONE, ZERO, square_root
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.polynomial import companion
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.field import EIGENVALUE
+from symobs.exact.core.generators import ONE, ZERO, square_root
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.polynomial import companion
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, matrix_at
 from symobs.exact.time_functions.root_sum import RootSum
 

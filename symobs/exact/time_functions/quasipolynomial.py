@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs._dataclass import dataclass
-from symobs.exact.kernel.generators import (
+from symobs.exact.core.generators import (
     ONE,
     ZERO,
     derivative,
@@ -21,8 +21,8 @@ from symobs.exact.kernel.generators import (
     roots_in,
     with_roots,
 )
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

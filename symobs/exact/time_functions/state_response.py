@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
-from symobs.exact.kernel.precision import Precision
+from symobs.exact.core.precision import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from symobs.exact.kernel.matrix import Matrix
+    from symobs.exact.core.matrix import Matrix
 
 #: Bits that are tried in turn until all enclosures are narrow.
 _BITS = (128, 256, 512, 1024, 2048, 4096)

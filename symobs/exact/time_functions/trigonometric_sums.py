@@ -7,8 +7,8 @@ where c is a polynomial so is r: its coefficients follow from the highest down.
 
 from __future__ import annotations
 
-from symobs.exact.kernel.generators import ONE, ZERO, derivative, function, function_named, identities, symbols_in
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.generators import ONE, ZERO, derivative, function, function_named, identities, symbols_in
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial
 
 _WAVES = {"cos", "sin"}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.kernel.generators import function_named
+from symobs.exact.core.generators import function_named
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.formula import (
     Apply,
@@ -43,7 +43,7 @@ from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.exact.kernel.generators import Function
+    from symobs.exact.core.generators import Function
     from symobs.notation import LetterForm
 
 #: Letters that are functions of time; in discrete time they carry the index k.

@@ -11,7 +11,7 @@ from math import gcd
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import function_named, square_root_of
+from symobs.exact.core.generators import function_named, square_root_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:

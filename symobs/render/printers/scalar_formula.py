@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import function as function_of
-from symobs.exact.kernel.generators import function_named
+from symobs.exact.core.generators import function as function_of
+from symobs.exact.core.generators import function_named
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 from symobs.render.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact.kernel.generators import PI, function_named
+from symobs.exact.core.generators import PI, function_named
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

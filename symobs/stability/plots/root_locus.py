@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.algebraic.root_location import complex_roots
-from symobs.exact.kernel.polynomial import discriminant
+from symobs.exact.core.polynomial import discriminant
 from symobs.figures.plot import PoleMap
 from symobs.stability.plots.region_plot import range_around
 

@@ -14,7 +14,7 @@ from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor
-from symobs.exact.kernel.generators import square_part, square_root, substitute
+from symobs.exact.core.generators import square_part, square_root, substitute
 from symobs.formula import Literal, Relation
 
 if TYPE_CHECKING:

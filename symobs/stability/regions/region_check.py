@@ -18,7 +18,7 @@ from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import integer_factor
 from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
-from symobs.exact.kernel.generators import normal_form, substitute
+from symobs.exact.core.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.description import is_regular, meetings_of
 from symobs.stability.regions.plane_region import PlaneRegion

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Matrix, Scalar, factored
 from symobs.exact.algebraic.polynomial_roots import roots_of
-from symobs.exact.kernel.generators import function, square_root
+from symobs.exact.core.generators import function, square_root
 from symobs.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
 from symobs.formula import Literal
 from symobs.notation import GREEK_LETTERS, symbol_text

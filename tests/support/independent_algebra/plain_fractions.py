@@ -31,7 +31,7 @@ from symobs.derivation import (
     Where,
 )
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
-from symobs.exact.kernel.generators import PI, function_named, symbols_in
+from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.time_functions.root_sum import RootSum
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.figures.plot import TimeResponse

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from flint import fmpz_poly
 
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import function_named
+from symobs.exact.core.generators import function_named
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
 from symobs.formula import Literal, Relation
 from tests.support.independent_algebra.plain import (

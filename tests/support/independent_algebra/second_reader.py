@@ -20,7 +20,7 @@ import sympy
 
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import function_named
+from symobs.exact.core.generators import function_named
 from symobs.formula import (
     Apply,
     At,

@@ -21,7 +21,7 @@ from symobs.design.gain.gain_design import GainDesign
 from symobs.design.reference.tracking import TrackingDesign
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import symbols_in
+from symobs.exact.core.generators import symbols_in
 from symobs.figures.plot import TimeResponse
 from symobs.stability.inequalities.proof import Combined, Opposite
 from tests.support.claims.claims import HOLDS, Setting

@@ -14,7 +14,7 @@ from symobs.derivation import Derivation
 from symobs.derivation.steps import Case, Conclude, Define, Given
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import square_root
+from symobs.exact.core.generators import square_root
 from symobs.formula import Apply, Environment, Letter, Literal, Relation
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from symobs.certificate import claims
 from symobs.certificate.claims import ERROR_GOAL, Claim, check, check_all, verify
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.modular import Point, VanishingDenominator
+from symobs.exact.core.modular import Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     Block,

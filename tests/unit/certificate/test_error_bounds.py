@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from symobs.certificate.error_bounds import Bounds, SizeBound
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.modular import Point, VanishingDenominator
+from symobs.exact.core.modular import Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     Block,

@@ -25,7 +25,7 @@ from symobs.certificate.claims import (
 from symobs.certificate.error_bounds import SizeBound
 from symobs.errors import CertificateRejected, NotShown, WrongKind
 from symobs.exact import EIGENVALUE, Matrix, Scalar
-from symobs.exact.kernel.modular import Point, VanishingDenominator
+from symobs.exact.core.modular import Point, VanishingDenominator
 from symobs.formula import (
     Apply,
     At,

@@ -18,7 +18,7 @@ from symobs.derivation.region_check import (
 )
 from symobs.derivation.steps import Sentence, Survey
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import square_root
+from symobs.exact.core.generators import square_root
 from symobs.formula import Environment, Letter, Literal, Relation
 from symobs.formula.plain_text import plain_relation
 from symobs.stability.regions.interval_region import LineRegion

@@ -8,7 +8,7 @@ import pytest
 
 from symobs.derivation.wording_check import fits, rests
 from symobs.exact import Matrix, Scalar, roots_of
-from symobs.exact.kernel.generators import PI, function
+from symobs.exact.core.generators import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
 
 E = Environment(

@@ -27,7 +27,7 @@ from symobs.derivation import (
 )
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, roots_of
-from symobs.exact.kernel.generators import square_root
+from symobs.exact.core.generators import square_root
 from symobs.formula import (
     Apply,
     Conjunction,

@@ -10,7 +10,7 @@ import pytest
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.wording_check import _one_higher, fits, rests
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import PI, function
+from symobs.exact.core.generators import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
 from symobs.phrases import PHRASES
 from tests.support.problems.steps import said

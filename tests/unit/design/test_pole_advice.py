@@ -20,7 +20,7 @@ from symobs.conditions import sign_of
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Factored, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.kernel.generators import NotWritten, function, square_root
+from symobs.exact.core.generators import NotWritten, function, square_root
 from symobs.exact.time_functions.butterworth import twice_cosine
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator

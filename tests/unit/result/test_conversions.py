@@ -12,7 +12,7 @@ import sympy
 
 import symobs
 from symobs.exact import Scalar
-from symobs.exact.kernel.canonical_text import scalar_text
+from symobs.exact.core.canonical_text import scalar_text
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.render.formats.json import _written
 

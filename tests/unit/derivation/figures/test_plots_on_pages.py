@@ -11,7 +11,7 @@ import pytest
 from symobs.derivation import Derivation, Plot
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar
-from symobs.exact.kernel.generators import square_root
+from symobs.exact.core.generators import square_root
 from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
 from symobs.formula import Apply, Environment, Letter, Literal, Negative, Relation, Sum
 from tests.support.problems.steps import checked, refused

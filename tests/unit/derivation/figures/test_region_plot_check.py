@@ -15,7 +15,7 @@ from symobs.derivation.figures.plot_points import Stability
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.rational_points import vanishes_near
 from symobs.exact.cad.decomposition import PlaneCurve
-from symobs.exact.kernel.generators import square_root
+from symobs.exact.core.generators import square_root
 from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter
 from tests.support.problems.steps import said

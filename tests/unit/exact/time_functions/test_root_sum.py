@@ -10,7 +10,7 @@ import sympy
 
 import symobs
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Scalar
-from symobs.exact.kernel.generators import derivative, substitute
+from symobs.exact.core.generators import derivative, substitute
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.exact.time_functions.root_sum import RootSum
 

@@ -18,7 +18,7 @@ from symobs import problem
 from symobs.derivation import Case, Section
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
-from symobs.exact.kernel.generators import derivative, function, identities, normal_form, square_root, substitute
+from symobs.exact.core.generators import derivative, function, identities, normal_form, square_root, substitute
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.result.conversions import to_sympy
 from tests.support.paths import ROOT

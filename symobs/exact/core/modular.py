@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symobs.exact.kernel.matrix import Matrix
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.matrix import Matrix
+    from symobs.exact.core.scalar import Scalar
 
 POINT_BITS = 61
 PRIME_BITS = 64

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from flint import fmpz, fmpz_mpoly
 
-    from symobs.exact.kernel.field import Field
+    from symobs.exact.core.field import Field
 
 
 def coefficients_in(polynomial: fmpz_mpoly, index: int, source: Field, target: Field) -> list[fmpz_mpoly]:

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq_mat, fmpz_mat, fmpz_mpoly
 
-from symobs.exact.kernel import ring
-from symobs.exact.kernel.field import RATIONALS, Field
-from symobs.exact.kernel.ring import degree_bound, length_bits, polynomial_fingerprint
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core import ring
+from symobs.exact.core.field import RATIONALS, Field
+from symobs.exact.core.ring import degree_bound, length_bits, polynomial_fingerprint
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

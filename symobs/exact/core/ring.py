@@ -14,7 +14,7 @@ from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mat, fmpz_mpoly
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from symobs.exact.kernel.field import Field
+    from symobs.exact.core.field import Field
 
 Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
 

@@ -26,7 +26,7 @@ from symobs.exact import (
     transfer,
     unit_rows,
 )
-from symobs.exact.kernel.modular import Point, VanishingDenominator, random_prime
+from symobs.exact.core.modular import Point, VanishingDenominator, random_prime
 from symobs.exact.linear_algebra.krylov import Krylov
 from symobs.exact.sympy_bridge.conversion import matrix_from_sympy, matrix_to_sympy, scalar_to_sympy
 from symobs.expression import parse_matrix

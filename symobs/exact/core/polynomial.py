@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact.kernel import rational_matrix, ring
-from symobs.exact.kernel.field import Field
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core import rational_matrix, ring
+from symobs.exact.core.field import Field
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from flint import fmpz, fmpz_mpoly
 
 from symobs.errors import WrongKind
-from symobs.exact.kernel.canonical_text import scalar_text
-from symobs.exact.kernel.field import RATIONALS, Field
-from symobs.exact.kernel.ring import (
+from symobs.exact.core.canonical_text import scalar_text
+from symobs.exact.core.field import RATIONALS, Field
+from symobs.exact.core.ring import (
     common_factor,
     degree_bound,
     factors_of,
@@ -25,7 +25,7 @@ from symobs.exact.kernel.ring import (
     occurring,
     polynomial_fingerprint,
 )
-from symobs.exact.kernel.univariate import coefficients_in
+from symobs.exact.core.univariate import coefficients_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, cast, overload
 from flint import fmpz
 
 from symobs._dataclass import dataclass
-from symobs.exact.kernel.field import Generator
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.scalar import Scalar
+from symobs.exact.core.field import Generator
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

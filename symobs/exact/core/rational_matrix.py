@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mat
 
-from symobs.exact.kernel.field import RATIONALS
-from symobs.exact.kernel.matrix import Matrix
-from symobs.exact.kernel.ring import number_of
+from symobs.exact.core.field import RATIONALS
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.ring import number_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from symobs.exact.kernel.scalar import Scalar
+    from symobs.exact.core.scalar import Scalar
 
 
 def matrix_of_numbers(rows: Sequence[Sequence[int | Fraction]]) -> Matrix:

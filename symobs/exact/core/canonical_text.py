@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from flint import fmpz_mpoly
 
-    from symobs.exact.kernel.field import Field
+    from symobs.exact.core.field import Field
 
 
 class RationalFunction(Protocol):
