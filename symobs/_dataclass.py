@@ -1,8 +1,8 @@
 """The standard library's `dataclass` for classes that are made at every start: the same, in a twentieth of the time.
 
 A page needs some 140 classes of named parts.  The standard library writes and compiles six functions for each, which
-together takes as long as all the mathematics of a small page; here they are closures over the names, but for `__init__`,
-which is compiled when the first object is made.  `dataclasses.replace` and `dataclasses.fields` work on what is made here.
+together takes as long as all the mathematics of a small page; here they are closures over the names, and nothing is
+compiled.  `dataclasses.replace` and `dataclasses.fields` work on what is made here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def _dataclass(*, frozen: bool = False, eq: bool = True, repr: bool = True) -> C
         parts = _parts(cls)
         by_place = tuple(name for name, part in parts.items() if part.init and not part.kw_only)
         methods: dict[str, Any] = {"__dataclass_fields__": parts, "__match_args__": by_place}
-        methods["__init__"] = _initialiser(cls, parts)
+        methods["__init__"] = _initialiser(cls, parts, by_place)
         if eq:
             methods |= _comparison(parts, hashed=frozen)
         if repr:
@@ -64,44 +64,39 @@ def _parts(cls: Any) -> dict[str, Any]:
     return found
 
 
-def _initialiser(cls: Any, parts: dict[str, Any]) -> Callable[..., None]:
-    """Return an `__init__` that is written out and compiled when the first object is made: a run makes few kinds."""
+def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Callable[..., None]:
+    """Return `__init__`, which takes the parts by place, as `names` go, or by name."""
+    taken = (*names, *(name for name, part in parts.items() if part.init and part.kw_only))
+    defaults = {name: part.default for name, part in parts.items() if part.default is not _MISSING}
+    made = [(name, part.default_factory) for name, part in parts.items() if part.default_factory is not _MISSING]
+    most, total = len(names), len({*taken, *defaults, *(name for name, _ in made)})
+    open_to_names = [frozenset(taken) - set(names[:count]) for count in range(most + 1)]
+    whole = most if most == total else None
+    finish = getattr(cls, "__post_init__", None)
 
-    def first(self: Any, *values: Any, **named: Any) -> None:
-        compiled = _compiled(cls, parts)
-        cls.__init__ = compiled
-        compiled(self, *values, **named)
+    def initialise(self: Any, *values: Any, **named: Any) -> None:
+        own = self.__dict__  # a frozen class refuses to be written to in any other way
+        if len(values) == whole and not named:
+            own.update(zip(names, values, strict=True))
+            if finish is not None:
+                finish(self)
+            return
+        if defaults:
+            own.update(defaults)
+        for name, value in zip(names, values):  # noqa: B905 - how many there are is looked at below
+            own[name] = value
+        if named:
+            own.update(named)
+        for name, make in made:
+            if name not in own:
+                own[name] = make()
+        if len(values) > most or len(own) != total or not named.keys() <= open_to_names[len(values)]:
+            given = ", ".join((*map(repr, values), *named))
+            raise TypeError(f"{cls.__qualname__} takes {', '.join(taken)}, not {given}")
+        if finish is not None:
+            finish(self)
 
-    return first
-
-
-def _compiled(cls: Any, parts: dict[str, Any]) -> Callable[..., None]:
-    """Return `__init__`, which takes the parts by place or by name as the standard library's does."""
-    known: dict[str, Any] = {"_missing": _MISSING}
-    by_place, by_name = ["self"], list[str]()
-    lines = ["own = self.__dict__"]  # a frozen class refuses to be written to in any other way
-    for name, part in parts.items():
-        value, given = name, part.default is not _MISSING or part.default_factory is not _MISSING
-        if part.default is not _MISSING:
-            known[f"_default_{name}"] = part.default
-        elif given:
-            known[f"_make_{name}"] = part.default_factory
-            value = f"_make_{name}()" if not part.init else f"_make_{name}() if {name} is _missing else {name}"
-        if part.init:
-            default = f"=_default_{name}" if f"_default_{name}" in known else "=_missing" if given else ""
-            (by_name if part.kw_only else by_place).append(f"{name}{default}")
-        elif given and value == name:
-            value = f"_default_{name}"
-        if part.init or given:
-            lines.append(f"own[{name!r}] = {value}")
-    if hasattr(cls, "__post_init__"):
-        lines.append("self.__post_init__()")
-    taken = ", ".join([*by_place, "*", *by_name] if by_name else by_place)
-    body = "\n    ".join(lines)
-    exec(f"def __init__({taken}):\n    {body}\n", known)  # noqa: S102 - names of parts, nothing else
-    written: Callable[..., None] = known["__init__"]
-    written.__qualname__ = f"{cls.__qualname__}.__init__"
-    return written
+    return initialise
 
 
 def _comparison(parts: dict[str, Any], *, hashed: bool) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.side_by_side_page import can_stand_side_by_side, write_side_by_side
 from symobs.design.full_order.observer import write_observer
 from symobs.design.gain.gain_page import name_entries, write_gain
-from symobs.design.gain.page_style import page_style
+from symobs.design.gain.gain_request import page_style
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
 from symobs.design.page_parts import readability
 from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop, draw_unity_loop

@@ -9,7 +9,7 @@ from symobs.design.compensator.minimal_order_compensator import MinimalOrderComp
 from symobs.design.compensator.minimal_order_compensator_page import write_control_law
 from symobs.design.full_order.observer import write_observer
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.page_style import page_style
+from symobs.design.gain.gain_request import page_style
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reduced_order.reduced_order_observer_page import write_observer_of_rest

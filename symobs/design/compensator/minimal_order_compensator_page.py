@@ -20,7 +20,7 @@ from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.gain.gain_page import name_entries, write_gain
-from symobs.design.gain.page_style import page_style
+from symobs.design.gain.gain_request import page_style
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.page_parts import readability
 from symobs.design.page_parts.component_equations import combination

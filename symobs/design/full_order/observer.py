@@ -13,8 +13,7 @@ from symobs.design.full_order.observer_existence_page import write_ansatz, write
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed
-from symobs.design.gain.page_style import page_style
+from symobs.design.gain.gain_request import designed, page_style
 from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_collected, draw_copy
 from symobs.design.page_parts.component_equations import write_components

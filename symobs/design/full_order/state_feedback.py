@@ -11,8 +11,7 @@ from symobs.analysis.rank.observability import Controllability
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed
-from symobs.design.gain.page_style import page_style
+from symobs.design.gain.gain_request import designed, page_style
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.pole_placement.multiple_outputs import pair_of
 from symobs.formula.term import Term, letter

@@ -1,9 +1,10 @@
-"""What the tasks of both gains have in common: reading what is asked for, and the choice of the method."""
+"""What the tasks of both gains have in common: reading what is asked for, the choice of the method and of its page."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.design.page_parts import readability
 from symobs.errors import InputError
 from symobs.result import choose
 from symobs.specification import desired_polynomial, read_entries, read_gain, reject_both
@@ -52,3 +53,15 @@ def designed(
     if zero is not None:
         return kind.of(plant, desired, chosen.name, read_entries(zero, "zero", shape)).asked(method)
     return chosen.solve(plant, desired).asked(method)
+
+
+def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
+    """Return the method whose page is printed: canonical form for small plants unless one was asked for."""
+    if method_name != "auto":
+        return method_name
+    if several:
+        return "sylvester"
+    readable = (
+        readability.CANONICAL_FORM_ORDER if not plant.field.names else readability.PARAMETRIC_CANONICAL_FORM_ORDER
+    )
+    return "canonical_form" if plant.order <= readable else "ackermann"
