@@ -35,6 +35,8 @@ _PASSES, _STRAIGHT = 2, Fraction(1, 100)
 _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
 _FAR = 8
+#: What lies nearer than this part of the window cannot be seen apart.
+_UNSEEN = Fraction(1, 500)
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
@@ -50,7 +52,7 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
         areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
     curves += _verticals(region, window)
-    seen = [cell for cell in region.cells if cell.allowed and _inside(cell.sample, window)]
+    seen = [cell for cell in region.cells if cell.allowed and _is_seen(region, cell, window)]
     shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
     marks = [MarkedPoint(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
     marks += [MarkedPoint(hole.near, "excluded") for hole in region.holes]
@@ -142,6 +144,16 @@ def _middle(number: RealNumber) -> Fraction:
 
 def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
     return all(low <= value <= high for value, (low, high) in zip(place, window, strict=True))
+
+
+def _is_seen(region: PlaneRegion, cell: Cell, window: tuple[Interval, Interval]) -> bool:
+    """Whether the sample of a cell lies in the window and can be seen apart from the walls beside it."""
+    slab, x = region.plane.slabs[cell.slab], cell.sample[0]
+    near = (window[0][1] - window[0][0]) * _UNSEEN
+    apart = (slab.left is None or slab.left < RealNumber.of(x - near)) and (
+        slab.right is None or RealNumber.of(x + near) < slab.right
+    )
+    return apart and _inside(cell.sample, window)
 
 
 # -- branches ---------------------------------------------------------------------------------------------------------
@@ -280,7 +292,9 @@ def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:
 def _pieces(ends: Sequence[Fraction], least: Fraction) -> list[tuple[Fraction, Fraction]]:
     """Return the intervals between ends that are not closer than this."""
     kept = [ends[0]]
-    kept += [end for end in ends[1:-1] if end - kept[-1] > least and ends[-1] - end > least]
+    for end in ends[1:-1]:
+        if end - kept[-1] > least and ends[-1] - end > least:
+            kept.append(end)
     return list(pairwise([*kept, ends[-1]]))
 
 

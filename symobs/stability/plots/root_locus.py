@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 #: Nodes along the way, and how near to a double root, in parts of the way, further ones stand on both sides of it.
 NODES = 120
 _BESIDE = (Fraction(1, 3000), Fraction(1, 600), Fraction(1, 200))
+#: A root is known to about 50 bits of its modulus: in a window so much longer than wide its place cannot be drawn.
+_LONGEST = 1 << 40
 
 
 def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary) -> PoleMap | None:
-    """Return the root locus over the window of a region, None if a root goes to infinity."""
+    """Return the root locus over the window of a region, None if a root goes to infinity or the window is too long."""
     name, variable = region.name, boundary.variable
     if not polynomial.coefficients(variable)[0].is_constant or not boundary.names <= {variable}:
         return None
@@ -38,6 +40,9 @@ def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary
             path.append(root)
     places = [place for path in paths for place in path]
     window = range_around([x for x, _ in places], spread=True), range_around([y for _, y in places], spread=True)
+    sides = [end - begin for begin, end in window]
+    if max(sides) > _LONGEST * min(sides):
+        return None
     margin = None if boundary.discrete else boundary.margin.fraction()
     radius = boundary.radius.fraction() if boundary.discrete else None
     return PoleMap(

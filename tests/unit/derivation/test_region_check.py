@@ -69,7 +69,7 @@ ON_A_LINE = {
         [("points_decide", "four points", "three intervals")],
         ["h < -2", "-1 < h < 1", "h > 2"],
     ),
-    "whole": (s + h**2 + 1, [("region_everywhere", "Names(names=('h',))")], [""]),
+    "whole": (s + h**2 + 1, [("region_everywhere", "SymbolList(names=('h',))")], [""]),
     "never": (s**2 - h, [("region_empty",)], []),
     "two cuts": (
         s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
@@ -138,7 +138,7 @@ def test_only_pieces_that_the_signs_allow_are_counted() -> None:
         ("cells_decide", "two open pieces", "one of them is"),
         ("connected_unbounded",),
     ]
-    assert found(s + a + k, known) == [("region_everywhere", "Names(names=('a', 'k'))")]
+    assert found(s + a + k, known) == [("region_everywhere", "SymbolList(names=('a', 'k'))")]
     assert found(s + (a - k) ** 2, known)[-1] == ("curve_missing", "a - k = 0")
 
 
