@@ -349,11 +349,20 @@ def test_a_task_without_a_file() -> None:
 
 
 def test_a_task_and_its_file_give_the_same_page() -> None:
+    """Poles are written as text or as a list: JSON repeats what was asked for as it was given, and differs nowhere else."""
     options = ["--A", "[0 1; 0 -1]", "--B", "[0; 1]", "--C", "[1 0]", "--poles", "-10, -10"]
+    as_text = OBSERVER.replace("[-10, -10]", '"-10, -10"')
     for form in ("latex", "text", "json"):
-        assert inside("observer", *options, "--format", form) == inside(
-            "solve", "-", "--format", form, stdin=OBSERVER.encode()
-        )
+        of_command = inside("observer", *options, "--format", form)
+        assert of_command.code == 0
+        assert of_command == inside("solve", "-", "--format", form, stdin=as_text.encode())
+        of_list = inside("solve", "-", "--format", form, stdin=OBSERVER.encode())
+        if form != "json":
+            assert of_command == of_list
+            continue
+        (own,), (other,) = results(of_command.out), results(of_list.out)
+        assert own == other | {"specification": {"poles": "-10, -10"}}
+        assert other["specification"] == {"poles": [-10, -10]}
 
 
 @pytest.mark.parametrize(
