@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
-from symobs import cli
+from symobs.cli import commands
 from symobs.errors import CertificateRejected
 from symobs.result import formats, methods, tasks
 from tests.support.paths import ROOT
@@ -105,7 +105,7 @@ def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     def stumble(*_: object, **__: object) -> None:
         raise KeyError("x")
 
-    monkeypatch.setattr(cli, "_run", stumble)
+    monkeypatch.setattr(commands, "run_work", stumble)
     run = inside("solve", str(SERVO))
     assert (run.code, run.out) == (1, "")
     assert run.err == "internal error: KeyError: 'x'; please report this\n"
@@ -113,7 +113,7 @@ def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     def lie(*_: object, **__: object) -> None:
         raise CertificateRejected("does not hold", where="det(sI - A + LC) = phi")
 
-    monkeypatch.setattr(cli, "_run", lie)
+    monkeypatch.setattr(commands, "run_work", lie)
     assert inside("solve", str(SERVO)).code == 1
 
 
@@ -349,11 +349,20 @@ def test_a_task_without_a_file() -> None:
 
 
 def test_a_task_and_its_file_give_the_same_page() -> None:
+    """Poles are written as text or as a list: JSON repeats what was asked for as it was given, and differs nowhere else."""
     options = ["--A", "[0 1; 0 -1]", "--B", "[0; 1]", "--C", "[1 0]", "--poles", "-10, -10"]
+    as_text = OBSERVER.replace("[-10, -10]", '"-10, -10"')
     for form in ("latex", "text", "json"):
-        assert inside("observer", *options, "--format", form) == inside(
-            "solve", "-", "--format", form, stdin=OBSERVER.encode()
-        )
+        of_command = inside("observer", *options, "--format", form)
+        assert of_command.code == 0
+        assert of_command == inside("solve", "-", "--format", form, stdin=as_text.encode())
+        of_list = inside("solve", "-", "--format", form, stdin=OBSERVER.encode())
+        if form != "json":
+            assert of_command == of_list
+            continue
+        (own,), (other,) = results(of_command.out), results(of_list.out)
+        assert own == other | {"specification": {"poles": "-10, -10"}}
+        assert other["specification"] == {"poles": [-10, -10]}
 
 
 @pytest.mark.parametrize(

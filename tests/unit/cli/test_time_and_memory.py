@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs import cli
+from symobs.cli import commands
 from symobs.cli import time_and_memory as budget_module
 from symobs.cli.time_and_memory import Budget, within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
@@ -278,7 +278,7 @@ def test_memory_that_ends_without_a_budget_is_undecided_too(monkeypatch: pytest.
     def greedy(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(cli, "_run", greedy)
+    monkeypatch.setattr(commands, "run_work", greedy)
     run = inside("solve", str(SERVO))
     assert (run.code, run.out) == (5, "")
     assert run.err.startswith("undecided: the memory there is was not enough; ")
