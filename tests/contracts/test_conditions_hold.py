@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
     from symobs.result import Result
 
+pytestmark = pytest.mark.slow
+
 POINTS, FEW = 200, 20
 #: Points on a stratum: one parameter is solved for, the others are random.
 ON_STRATUM = 15

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     RequireTool = Callable[[str], str]
 
+pytestmark = pytest.mark.slow
+
 
 def part(folder: Path, step: int) -> list[str]:
     """Every text of the corpus that is a multiple of `step` away from the first, so that all kinds are among them."""

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
     from symobs.result import Result
 
+pytestmark = pytest.mark.slow
+
 FILES = sorted((ROOT / "worked_examples").glob("*.toml"))
 EXAMPLES = FILES
 #: Pages of nothing but ranks and modes: a rank, a product that is 0 and a property say the same when they are doubled or

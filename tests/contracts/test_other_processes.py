@@ -26,6 +26,8 @@ from tests.support.tools.another_process import Account, account_of, read_in_ano
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.slow
+
 #: Plants whose functions of time are exponentials, an oscillation with a root, and sums over roots of a cubic.
 PLANTS = {
     "decaying": ([["0", "1"], ["-2", "-3"]], ["-1", "-5"]),

@@ -16,6 +16,8 @@ from tests.support.tools.command_line import Run, environment, fresh
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 METHOD = '''
 """A second way to a gain."""
 

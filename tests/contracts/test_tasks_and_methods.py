@@ -29,6 +29,8 @@ from tests.support.tools.another_process import Account, account_of, read_in_ano
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.slow
+
 TASKS = sorted(tasks())
 #: Every method by its registered name, and every task with the method chosen by itself.
 METHODS = [*sorted(methods()), *(f"{task}/auto" for task in TASKS)]

@@ -17,6 +17,8 @@ from symobs.result import tasks
 from tests.programs import typed_face
 from tests.support.paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 USES = """
 import symobs
 import sympy

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from tests.support.tools.octave import Numbers, Reply
 
+pytestmark = pytest.mark.slow
+
 #: The plants of the sources, with poles for feedback and observer; the minimal order takes as many as it needs.
 PLANTS: dict[str, tuple[list[str], str, str]] = {
     "servo": (["[0 1; 0 -1]", "[0; 1]", "[1 0]", "[0]"], "-2, -3", "-10, -11"),

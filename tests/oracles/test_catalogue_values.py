@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from symobs.derivation import Derivation
     from symobs.formula import Environment
 
+pytestmark = pytest.mark.slow
+
 LINE = "line: "
 
 

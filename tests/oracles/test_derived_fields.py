@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from symobs.result import Result
     from tests.support.independent_algebra.plain import Point, Polynomial, Rows
 
+pytestmark = pytest.mark.slow
+
 FOLDER = ROOT / "worked_examples"
 EVERY: list[tuple[str, Result]] = [
     (f"{path.stem}: {where}", part)

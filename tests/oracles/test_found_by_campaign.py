@@ -10,6 +10,8 @@ import pytest
 from symobs.problem import read
 from symobs.render.formats.json import result_object
 
+pytestmark = pytest.mark.slow
+
 
 def solved(text: str) -> Any:
     (result,) = read(text).solve()

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from symobs.result import Result
     from tests.support.problems.problems_by_hand import Hand
 
+pytestmark = pytest.mark.slow
+
 FOLDER = ROOT / "worked_examples"
 BY_HAND: dict[str, Hand] = {**PROBLEMS, **PROBLEMS_OF_MINIMAL_ORDER, **PROBLEMS_OF_SEVERAL, **PROBLEMS_OF_TRACKING}
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from symobs.result import Result
 
+pytestmark = pytest.mark.slow
+
 #: Letters that a page in functions of time is free to choose, or that the lines which follow bind: a solution of
 #: Lyapunov's equation, a vector of the kernel, a basis of it.
 CHOSEN = {"P_l", "v", "N", "X"}

@@ -25,6 +25,8 @@ from tests.support.regions.region_translation import Translation, conjunction
 if TYPE_CHECKING:
     from tests.support.regions.region_problem import Problem
 
+pytestmark = pytest.mark.slow
+
 FULL = os.environ.get("SYMOBS_FULL") == "1"
 SLICE = PROBLEMS if FULL else PROBLEMS[::6]
 SECONDS_FOR_ROOTS = 20 if FULL else 2

@@ -14,6 +14,8 @@ from tests.programs.strata_oracle.__main__ import Found, drawn, examine
 from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
 
+pytestmark = pytest.mark.slow
+
 a, b = Scalar.symbol("a"), Scalar.symbol("b")
 
 

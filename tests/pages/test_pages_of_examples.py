@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from symobs.render.page.blocks import Block
     from symobs.result import Document
 
+pytestmark = pytest.mark.slow
+
 
 def documents() -> Iterator[tuple[str, Document]]:
     for path in FILES:

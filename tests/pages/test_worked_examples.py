@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from symobs.result import Result
     from symobs.result.in_convention import Viewed
 
+pytestmark = pytest.mark.slow
+
 FILES = sorted((ROOT / "worked_examples").glob("*.toml"))
 #: The rows of the catalogue of sources; a line may name two that share a heading.
 ROWS = [

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 NOT_OBSERVABLE = 'task = "observability"\n[plant]\nA = "[1 0; 0 1]"\nC = "[1 0]"\n'
 ORDER = 6
 NAMES = [f"a{row}{column}" for row in range(ORDER) for column in range(ORDER)]

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 needs_giac = pytest.mark.skipif(not other_systems.available("giac"), reason="giac is not installed")
 needs_maxima = pytest.mark.skipif(not other_systems.available("maxima"), reason="maxima is not installed")
 needs_gp = pytest.mark.skipif(not other_systems.available("gp"), reason="gp is not installed")

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
     from tests.programs.campaign.asked import Difference, Tables
 
+pytestmark = pytest.mark.slow
+
 ORACLES = sorted(path.stem for path in discovery.FOLDER.glob("*.py"))
 #: Problems of the slice that all oracles judge.
 SLICE = range(400, 480)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 #: Of a slice, so many inputs a target.
 SLICE = {
     "grammar": 1000,

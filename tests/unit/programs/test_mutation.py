@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     from tests.programs.mutation.mutants import Mutant
 
+pytestmark = pytest.mark.slow
+
 
 CHECK = '''
 def is_small(values: list[int], most: int = 3) -> bool:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
+
 import symobs
 from symobs.exact import Scalar
 from tests.programs.benchmarks import models, raw_design
+
+pytestmark = pytest.mark.slow
 
 
 def test_flint_alone_finds_the_compensator_of_the_cart_pole() -> None:

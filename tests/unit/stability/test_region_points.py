@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
     from tests.support.regions.region_problem import Problem
 
+pytestmark = pytest.mark.slow
+
 FULL = os.environ.get("SYMOBS_FULL") == "1"
 POINTS = 10_000 if FULL else 300
 

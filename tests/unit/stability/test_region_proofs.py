@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from fractions import Fraction
 
+pytestmark = pytest.mark.slow
+
 s, x, y, z, a, b, c = (Scalar.symbol(name) for name in ("s", "x", "y", "z", "a", "b", "c"))
 h1, h2 = Scalar.symbol("h1"), Scalar.symbol("h2")
 one, zero = Scalar.of(1), Scalar.of(0)
