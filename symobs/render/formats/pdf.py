@@ -23,7 +23,7 @@ from symobs.render.formats.latex import typeset, typeset_sheet, values_of
 from symobs.result import output_format
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from types import FrameType
 
     from symobs.render.page.sheet import Sheet
@@ -108,27 +108,58 @@ def _commands() -> tuple[tuple[str, ...], ...]:
 
 def _run(command: Sequence[str], folder: Path, time_limit: float) -> int:
     """Run a command in `folder` and return its exit code; its children are always ended with it."""
-    try:
-        process = subprocess.Popen(  # noqa: S603 - a program found on PATH, a source that is escaped, no shell
-            command,
-            cwd=folder,
-            env=_environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-    except OSError as error:
-        reason = f"this program cannot be started: {error.strerror or error}"
-        raise TypesettingError(reason, where=command[0], repair=_INSTALL) from None
-    with running(process.pid):
+    with _requests_put_off() as hear_them:
         try:
-            return _waited(process, folder, time_limit)
-        except BaseException as interruption:
-            interruption.add_note(TEX_AT_WORK)
-            raise
-        finally:
-            _end(process)
+            process = subprocess.Popen(  # noqa: S603 - a program found on PATH, a source that is escaped, no shell
+                command,
+                cwd=folder,
+                env=_environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+        except OSError as error:
+            reason = f"this program cannot be started: {error.strerror or error}"
+            raise TypesettingError(reason, where=command[0], repair=_INSTALL) from None
+        with running(process.pid):
+            try:
+                hear_them()
+                return _waited(process, folder, time_limit)
+            except BaseException as interruption:
+                interruption.add_note(TEX_AT_WORK)
+                raise
+            finally:
+                _end(process)
+
+
+@contextmanager
+def _requests_put_off() -> Iterator[Callable[[], None]]:
+    """Put off requests to end this process until the function given is called, or until the block is left.
+
+    An exception out of a half-made `Popen` would leave a program running that nobody knows.  A mask would do it too,
+    but programs inherit masks and not handlers.
+    """
+    names = ("SIGINT", "SIGTERM", "SIGHUP", "SIGALRM")
+    ours = threading.current_thread() is threading.main_thread()  # else there are no requests to this thread
+    numbers = [getattr(signal, name) for name in names if ours and hasattr(signal, name)]
+    handlers = {number: signal.getsignal(number) for number in numbers if callable(signal.getsignal(number))}
+    come: list[int] = []
+
+    def hear_them() -> None:
+        usual = dict(handlers)
+        handlers.clear()  # once only: a handler may choose to hear no second request
+        for number, handler in usual.items():
+            signal.signal(number, handler)
+        while come:
+            signal.raise_signal(come.pop(0))
+
+    try:
+        for number in handlers:
+            signal.signal(number, lambda number, _: come.append(number))
+        yield hear_them
+    finally:
+        hear_them()
 
 
 def _waited(process: subprocess.Popen[bytes], folder: Path, time_limit: float) -> int:

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -142,6 +142,28 @@ def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch,
     with pytest.raises(TypesettingError, match=r"stopped after 0\.5 seconds"):
         compiled(article("x"), time_limit=0.5)
     assert ends(int(number.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize(("number", "raised"), [(signal.SIGTERM, SystemExit), (signal.SIGINT, KeyboardInterrupt)])
+def test_an_end_that_comes_while_tex_is_being_started_ends_it(
+    number: int, raised: type[BaseException], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    begun: list[int] = []
+
+    class Popen(subprocess.Popen[bytes]):
+        def __init__(self, *arguments: Any, **options: Any) -> None:
+            super().__init__(*arguments, **options)
+            begun.append(self.pid)
+            signal.raise_signal(number)
+
+    program(tmp_path / "pdflatex", "exec sleep 1000")
+    only(monkeypatch, tmp_path / "pdflatex")
+    monkeypatch.setattr(subprocess, "Popen", Popen)
+    before = signal.getsignal(number)
+    with pytest.raises(raised):
+        pdf.compiled("")
+    assert ends(begun[0])
+    assert signal.getsignal(number) == before
 
 
 def test_tex_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
