@@ -22,9 +22,7 @@ from symobs.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.analysis.time_response.initial_state import InitialState as _InitialState
 from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
-from symobs.analysis.time_varying.time_varying_observability import (
-    TimeVaryingObservability as _TimeVaryingObservability,
-)
+from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
@@ -517,9 +515,7 @@ class _StabilityRegionResult(_StabilityRegion):
     def intervals_decimal(self) -> tuple[Any, ...]: ...
 
 def stability_region(
-    plant: StateSpace | object = None,
-    symbols: Mapping[str, Any] | None = None,
-    dt: object = 0,
+    plant: StateSpace | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
     *,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
