@@ -36,7 +36,7 @@ _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
 _FAR = 8
 #: What lies nearer than this part of the window cannot be seen apart.
-_UNSEEN = Fraction(1, 500)
+_UNSEEN = Fraction(1, 10**6)
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
