@@ -182,6 +182,10 @@ class Result(Faces):
         """Return the same result, which knows what was asked for; its claims do not speak of that either."""
         return self._copied(specification=specification)
 
+    def in_place_of(self, other: Result) -> Self:
+        """Return the same result with the page and the specification of another."""
+        return self._copied(page_method=other.page_method, specification=other.specification)
+
     def _copied(self, **changed: Any) -> Self:
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__, **changed)

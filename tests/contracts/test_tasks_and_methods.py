@@ -321,7 +321,14 @@ def test_all_methods_of_a_task_agree_and_meet_the_claim(task: str, sample: Sampl
     names = [name for name in METHODS if name.startswith(f"{task}/") and name not in OTHER_QUESTIONS]
     results = [solve(name, plant, sample.poles) for name in names]
     first = results[0]
-    names = sorted({*plant.field.names, *(n for pole in sample.poles for n in sample.names if n in pole)})
+    conditions = [c.expression for result in results for c in result.holds_where]
+    names = sorted(
+        {
+            *plant.field.names,
+            *(n for pole in sample.poles for n in sample.names if n in pole),
+            *(n for expression in conditions for n in expression.names),  # the horizon's among them
+        }
+    )
     point = {name: Fraction(seeded((sample, name)).choice([-2, -1, 0, 1, 2, 5])) for name in names}
     for result in results:
         assert result.verdict == first.verdict

@@ -157,6 +157,12 @@ def spoiled(value: Any, key: str, names: Mapping[str, str]) -> Iterator[Any]:
         yield f"{value} + 1"
 
 
+def opposite(relation: str) -> str:
+    """Return a relation that excludes the one given."""
+    left, operator, right = re.split(r"\s(!=|<|>|==)\s", relation)
+    return f"{left} { {'!=': '==', '>': '<', '<': '>', '==': '!='}[operator] } {right}"
+
+
 def spoiled_intervals(value: list[list[str]]) -> Iterator[list[list[str]]]:
     """Yield a list of pairs with one end moved or at infinity, and with a pair left out or added."""
     for i, pair in enumerate(value):
@@ -170,10 +176,12 @@ def spoiled_intervals(value: list[list[str]]) -> Iterator[list[list[str]]]:
 
 def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:
     """Yield a list of roots, relations or vectors with one entry changed, left out or added."""
-    other = {"!=": "==", ">": "<", "<": ">", "==": "!="}
     relations = key in {"conditions", "stable_if", "best_horizon"}
     if not relations:
         yield [*value, [1, 0, 0] if key == "kernel" else -1234]
+    elif key == "stable_if":  # a set: what is added has to take something away from it
+        if value != ["False"]:
+            yield [*value, opposite(value[0]) if value else f"{next(iter(names), 1)} > 0"]
     elif names:
         yield [*value, f"{next(iter(names))} != 1234"]
     for i, entry in enumerate(value):
@@ -183,8 +191,7 @@ def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterat
         if entry == "False":
             changes = [f"{next(iter(names), 1)} > 0"]
         elif relations:
-            left, operator, right = re.split(r"\s(!=|<|>|==)\s", entry)
-            changes = [f"{left} {other[operator]} {right}", f"{left} {operator} {right} + 1"]
+            changes = [opposite(entry), f"{entry} + 1"]
         for change in changes:
             yield [*value[:i], change, *value[i + 1 :]]
         yield [*value[:i], *value[i + 1 :]]

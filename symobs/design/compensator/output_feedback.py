@@ -123,7 +123,7 @@ class OutputFeedback(Result):
             return super().with_answer(name, value)
         feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
         estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
-        return type(self).of(feedback, estimator, self.method).asked(self.page_method)
+        return type(self).of(feedback, estimator, self.method).in_place_of(self)
 
     @property
     def exists(self) -> bool:

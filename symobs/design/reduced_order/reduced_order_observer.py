@@ -143,9 +143,8 @@ class ReducedOrderObserver(Result):
         if name != "L":
             return super().with_answer(name, value)
         inner = self.inner.with_answer("L", value)
-        return (
-            type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method).asked(self.page_method)
-        )
+        remade = type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
+        return remade.in_place_of(self)
 
     @property
     def has_reduced_observer(self) -> bool:
