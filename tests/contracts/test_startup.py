@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib import import_module
 
 import pytest
 
@@ -65,11 +66,12 @@ def test_no_command_imports_what_is_heavy(arguments: list[str]) -> None:
 
 
 def test_a_budget_costs_nothing_where_there_is_none() -> None:
-    machinery = {"multiprocessing", "resource", "select", "signal", "subprocess", "symobs.cli.time_and_memory"}
+    machinery = {"multiprocessing", "resource", "select", "signal", "subprocess", "symobs.cli.shared.time_and_memory"}
     assert after("solve", str(SERVO), "--format", "json") & machinery == set()
-    assert "symobs.cli.time_and_memory" in after("solve", str(SERVO), "--format", "json", "--timeout", "1000")
+    assert "symobs.cli.shared.time_and_memory" in after("solve", str(SERVO), "--format", "json", "--timeout", "1000")
 
 
+@pytest.mark.slow
 def test_no_worked_example_imports_what_is_heavy() -> None:
     several = f"""
 import sys
@@ -89,7 +91,14 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
     found = after("--version")
     assert found & (HEAVY | KERNEL) == set()
     own = {name for name in found if name.startswith("symobs")}
-    own_modules = {"symobs.cli", "symobs.cli.commands", "symobs.cli.common", "symobs.cli.options", "symobs.cli.output"}
+    own_modules = {
+        "symobs.cli",
+        "symobs.cli.command_line",
+        "symobs.cli.shared",
+        "symobs.cli.shared.common",
+        "symobs.cli.shared.options",
+        "symobs.cli.shared.output",
+    }
     assert own == {"symobs", "symobs.errors"} | own_modules
 
 
@@ -118,11 +127,16 @@ def test_only_latex_needs_its_templates() -> None:
 def test_tasks_and_formats_are_listed_without_importing_one() -> None:
     import symobs  # noqa: PLC0415 - what the list is held against
     from symobs import result  # noqa: PLC0415
-    from symobs.cli import task_index  # noqa: PLC0415
+    from symobs.cli import command_line  # noqa: PLC0415
+    from symobs.cli.shared import task_index  # noqa: PLC0415
 
     tasks = {name: task.summary for name, task in sorted(result.tasks().items())}
     assert task_index.task_summaries(symobs.TASK_PACKAGES) == tasks
     formats = {name: kind.suffix for name, kind in sorted(result.formats().items())}
     assert task_index.format_suffixes(symobs.FORMAT_PACKAGE) == formats
+    for name, summary in command_line.COMMANDS.items():
+        module = import_module(f"symobs.cli.commands.{name}")
+        assert module.command.name == name
+        assert " ".join(module.command.help.partition("\n\n")[0].split()) == summary
     found = after("--help")
     assert not {name for name in found if name.startswith(("symobs.analysis", "symobs.design", "flint"))}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.cli.sheet_command import _Progress
+from symobs.cli.commands.sheet import _Progress
 from symobs.render.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
 from symobs.render.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
 from symobs.result import formats
@@ -209,7 +209,7 @@ def test_a_bug_in_one_problem_loses_no_other(folder: Path, monkeypatch: pytest.M
         message = "of ours"
         raise ZeroDivisionError(message)
 
-    monkeypatch.setattr("symobs.cli.sheet_command.question_of", failing)
+    monkeypatch.setattr("symobs.cli.commands.sheet.question_of", failing)
     run = inside("sheet", "good.toml", "bad.toml", "--format", "text", folder=folder)
     assert run.code == 1
     assert run.lines[0] == "good.toml: internal error: ZeroDivisionError: of ours; please report this"
@@ -237,7 +237,7 @@ def test_what_can_be_said_before_work_starts_is(
     arguments: list[str], code: int, said: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "folder.tex").mkdir()
-    monkeypatch.setattr("symobs.cli.sheet_command._entry", lambda *_: pytest.fail("work has started"))
+    monkeypatch.setattr("symobs.cli.commands.sheet._entry", lambda *_: pytest.fail("work has started"))
     run = inside("sheet", *arguments, folder=folder)
     assert (run.code, run.out) == (code, "")
     assert said in run.err

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from pathlib import Path
 
-_SAFETY = 60.0  # seconds; ends a browser that hangs, measures nothing
+_SAFETY = 300.0  # seconds; ends a browser that hangs, measures nothing
 _FLAGS = (
     "--headless",
     "--no-sandbox",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = sorted((ROOT / "worked_examples").glob("*.toml"))
 SERVO = ROOT / "worked_examples" / "output_feedback_servo.toml"
-SAFETY = 60  # seconds; ends a run that hangs, measures nothing
+SAFETY = 300  # seconds; ends a run that hangs, measures nothing
 MEGABYTES = 1024  # of addresses, libraries included; the run of a worked example takes about a third of it
 _BOUNDED = f"""
 import resource, runpy, sys

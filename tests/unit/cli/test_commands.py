@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
-from symobs.cli import commands
+from symobs.cli.commands import solve
 from symobs.errors import CertificateRejected
 from symobs.result import formats, methods, tasks
 from tests.support.paths import ROOT
@@ -105,7 +105,7 @@ def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     def stumble(*_: object, **__: object) -> None:
         raise KeyError("x")
 
-    monkeypatch.setattr(commands, "run_work", stumble)
+    monkeypatch.setattr(solve, "run_work", stumble)
     run = inside("solve", str(SERVO))
     assert (run.code, run.out) == (1, "")
     assert run.err == "internal error: KeyError: 'x'; please report this\n"
@@ -113,7 +113,7 @@ def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     def lie(*_: object, **__: object) -> None:
         raise CertificateRejected("does not hold", where="det(sI - A + LC) = phi")
 
-    monkeypatch.setattr(commands, "run_work", lie)
+    monkeypatch.setattr(solve, "run_work", lie)
     assert inside("solve", str(SERVO)).code == 1
 
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.cli import commands
-from symobs.cli import time_and_memory as budget_module
-from symobs.cli.time_and_memory import Budget, within
+from symobs.cli.commands import solve
+from symobs.cli.shared import time_and_memory as budget_module
+from symobs.cli.shared.time_and_memory import Budget, within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
 from symobs.render.formats.pdf import compiled
 from symobs.result import registry
@@ -280,7 +280,7 @@ def test_memory_that_ends_without_a_budget_is_undecided_too(monkeypatch: pytest.
     def greedy(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(commands, "run_work", greedy)
+    monkeypatch.setattr(solve, "run_work", greedy)
     run = inside("solve", str(SERVO))
     assert (run.code, run.out) == (5, "")
     assert run.err.startswith("undecided: the memory there is was not enough; ")
@@ -431,7 +431,7 @@ def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:
 import os, signal, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from symobs import cli
-from symobs.cli.time_and_memory import Budget, within
+from symobs.cli.shared.time_and_memory import Budget, within
 def deaf(tell):
     signal.pthread_sigmask(signal.SIG_BLOCK, {{signal.SIGALRM, signal.SIGINT, signal.SIGTERM}})
     open({str(number)!r} + ".part", "w").write(str(os.getpid()))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from symobs._dataclass import dataclass
-from symobs.cli.common import (
+from symobs.cli.shared.common import (
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
@@ -21,9 +21,9 @@ from symobs.cli.common import (
     read_file,
     write_message,
 )
-from symobs.cli.options import LIMITS, options
-from symobs.cli.outcome import convention_of, page_of
-from symobs.cli.output import check_target, write
+from symobs.cli.shared.options import LIMITS, options
+from symobs.cli.shared.outcome import convention_of, page_of
+from symobs.cli.shared.output import check_target, write
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
 from symobs.expect import mismatches
 from symobs.expression.source import shown
@@ -36,7 +36,7 @@ from symobs.result import format_named, formats, tasks
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.cli.time_and_memory import Progress
+    from symobs.cli.shared.time_and_memory import Progress
     from symobs.result import Document
 
 _LONGEST_TITLE = 300
@@ -57,14 +57,14 @@ class _Wanted:
     memory: float | None = None
 
 
-@click.command()
+@click.command("sheet")
 @click.argument("files", nargs=-1, metavar="FILE...")
 @options("format", "target")
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
 @options("detail", "templates", "convention", *LIMITS)
-def sheet(
+def command(
     files: tuple[str, ...],
     target: str | None,
     format_name: str | None,
@@ -155,7 +155,7 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
     """Return the value of `_entry`, or the partial entry if its budget is exhausted."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, file, text, wanted, lambda _: None)
-    from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+    from symobs.cli.shared.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 
     try:
         budget = Budget(wanted.timeout, wanted.memory)

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.common import chosen_format, run_work
-from symobs.cli.options import OF_A_PAGE, options
-from symobs.cli.outcome import check_targets, convention_of, page_of, solved
+from symobs.cli.shared.common import chosen_format, run_work
+from symobs.cli.shared.options import OF_A_PAGE, options
+from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.problem import OPEN, validate
 from symobs.specification import KINDS
 
 if TYPE_CHECKING:
-    from symobs.cli.outcome import Outcome
-    from symobs.cli.time_and_memory import Progress
+    from symobs.cli.shared.outcome import Outcome
+    from symobs.cli.shared.time_and_memory import Progress
 
 PLANT_OPTIONS = {
     "A": 'state matrix, "[0 1; 0 -1]"',

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
-from symobs.cli.output import check_target
+from symobs.cli.shared.output import check_target
 from symobs.errors import OutOfBudget, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.cli.time_and_memory import Progress
+    from symobs.cli.shared.time_and_memory import Progress
 
 #: Exit codes of the contract.
 EXIT_NO, EXIT_UNDECIDED = 4, 5
@@ -125,7 +125,7 @@ def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str
 
 def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
     """Return the outcome of the work, or the partial outcome if its budget is exhausted."""
-    from symobs.cli.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+    from symobs.cli.shared.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
 
     try:
         return within(Budget(timeout, memory), work, where)

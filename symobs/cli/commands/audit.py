@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.audit import REPORTS, audit, report
-from symobs.cli.common import EXIT_NO, place_of, read_file, run_work, write_message
-from symobs.cli.options import LIMITS, options
-from symobs.cli.outcome import Outcome
-from symobs.cli.output import check_target
+from symobs.cli.shared.common import EXIT_NO, place_of, read_file, run_work, write_message
+from symobs.cli.shared.options import LIMITS, options
+from symobs.cli.shared.outcome import Outcome
+from symobs.cli.shared.output import check_target
 from symobs.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import read
 
 if TYPE_CHECKING:
     from symobs.audit import Audited
-    from symobs.cli.time_and_memory import Progress
+    from symobs.cli.shared.time_and_memory import Progress
 
 
 @click.command("audit")
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown or json.")
 @click.option("-o", "target", metavar="PATH", help="Write to PATH.")
 @options(*LIMITS)
-def audit_command(
+def command(
     files: tuple[str, ...], format_name: str, target: str | None, timeout: float | None, memory: float | None
 ) -> None:
     """Recompute what a source prints: every FILE's [[printed]] equations.

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.options import quoted
-from symobs.cli.output import binary, write_all
+from symobs.cli.shared.options import quoted
+from symobs.cli.shared.output import binary, write_all
 from symobs.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.cli.outcome import Outcome
-    from symobs.cli.time_and_memory import Progress
+    from symobs.cli.shared.outcome import Outcome
+    from symobs.cli.shared.time_and_memory import Progress
 
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
@@ -31,7 +31,7 @@ def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory:
     if timeout is None and memory is None:
         outcome = work(lambda _: None)
     else:
-        from symobs.cli.outcome import bounded  # noqa: PLC0415 - it is there already, with the work
+        from symobs.cli.shared.outcome import bounded  # noqa: PLC0415 - it is there already, with the work
 
         outcome = bounded(work, timeout, memory, where)
     write_all(outcome.outputs)
@@ -62,7 +62,7 @@ def progress_on_terminal(found: Any, report_progress: Progress) -> Progress:
 def chosen_format(format_name: str | None, target: str | None) -> str:
     """Return the output format: that of --format, else that of the suffix of the target, else LaTeX."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
-    from symobs.cli.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
+    from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
     from symobs.result import format_named  # noqa: PLC0415
 
     suffix = Path(target).suffix if target is not None else ""

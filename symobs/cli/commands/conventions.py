@@ -1,0 +1,15 @@
+"""The command `conventions`: the conventions a page can be written in."""
+
+from __future__ import annotations
+
+import click
+
+from symobs.cli.shared.output import write
+from symobs.convention.listing import file_of, listed
+
+
+@click.command("conventions")
+@click.argument("name", required=False)
+def command(name: str | None) -> None:
+    """List the conventions a page can be written in, or print the file of the one called NAME."""
+    write(listed() if name is None else file_of(name))

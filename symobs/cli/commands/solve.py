@@ -1,0 +1,53 @@
+"""The command `solve`: the derivation of a problem file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
+from symobs.cli.shared.options import OF_A_PAGE, options, quoted
+from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
+from symobs.errors import UsageError
+from symobs.problem import parse, validate
+from symobs.result import tasks
+
+if TYPE_CHECKING:
+    from symobs.cli.shared.outcome import Outcome
+    from symobs.cli.shared.time_and_memory import Progress
+
+
+@click.command("solve")
+@click.argument("file")
+@click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
+@options(*OF_A_PAGE)
+def command(
+    file: str,
+    task_name: str | None,
+    format_name: str | None,
+    target: str | None,
+    plot: str | None,
+    convention_name: str | None,
+    detail: str,
+    templates: str | None,
+    timeout: float | None,
+    memory: float | None,
+) -> None:
+    """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
+    chosen = chosen_format(format_name, target)
+    if task_name is not None and task_name not in tasks():
+        raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
+    check_targets(target, plot)
+    convention = convention_of(convention_name)
+    page = page_of(detail, templates, chosen)
+
+    def work(report_progress: Progress) -> Outcome:
+        found = validate(parse(read_file(file), file), task_name, Path(file).parent)
+        report_progress = progress_on_terminal(found, report_progress)
+        return solved(
+            found, chosen, target, plot, convention, report_progress, only_some_tasks=task_name is not None, **page
+        )
+
+    run_work(work, timeout, memory, place_of(file))
