@@ -103,6 +103,12 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
         yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
 
 
+def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return the factors of a minor of the order of the rank that the signs do not keep from 0."""
+    minor = found["matrix"].select(found["rows"], found["columns"])
+    return vanishing_factors([minor.determinant()], signs) if minor.shape[0] else ()
+
+
 def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
     """Yield the rank from below, in general: a minor of its order is not zero."""
     if found["rank"]:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
+from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment, rank_losses
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.analysis.time_response.damping_cases import (
     Branched,
@@ -23,7 +23,7 @@ from symobs.analysis.time_response.damping_cases import (
 from symobs.analysis.time_response.horizons import INFINITE, infinite_gramian, over_horizon, read_horizon, steps_gramian
 from symobs.analysis.time_response.matrix_exponential import TIME, closed_form, question_of, require_continuous
 from symobs.certificate.claims import Claim
-from symobs.conditions import Condition, vanishing_factors
+from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, product_of
@@ -145,13 +145,6 @@ class Gramian(Branched):
         beyond = [Condition("existence", value, ">") for value in exists]
         return (*super().holds_where, *beyond)
 
-    @property
-    def existence(self) -> tuple[Scalar, ...]:
-        """What vanishes where the kernel grows: a minor of the test matrix of the order of its rank."""
-        found = self.answer["rank"]
-        minor = found["matrix"].select(found["rows"], found["columns"])
-        return (minor.determinant(),) if minor.shape[0] else ()
-
     @cached_property
     def denominators(self) -> tuple[Scalar, ...]:
         """Also those of what is seen: on a curve its coefficients may have poles, where it decays or not anew."""
@@ -161,7 +154,7 @@ class Gramian(Branched):
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
         """Where the kernel may be another one, and more of what grows unseen."""
-        return vanishing_factors(self.existence, self.plant.symbols.signs)
+        return rank_losses(self.answer["rank"], self.plant.symbols.signs)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the integral, symmetry, determinant, finite sum, rank and kernel."""

@@ -10,8 +10,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
-from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
+from symobs.analysis.rank.rank_test import rank_answer
+from symobs.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.time_response.matrix_exponential import (
     TIME,
@@ -19,7 +19,7 @@ from symobs.analysis.time_response.matrix_exponential import (
     question_of,
     require_continuous,
 )
-from symobs.analysis.time_response.measurements import read_functions
+from symobs.analysis.time_response.measurements import OfTheInitialState, read_functions
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
@@ -61,7 +61,7 @@ def derivatives_at_zero(free: Table, count: int) -> list[Scalar]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class InitialState(Branched):
+class InitialState(OfTheInitialState):
     """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
 
     task: ClassVar[str] = "initial_state"
@@ -124,11 +124,6 @@ class InitialState(Branched):
             return "no"
         return super().verdict
 
-    @property
-    def is_unique(self) -> bool:
-        """Whether the pair is observable."""
-        return bool(self.answer["rank"]["rank"] == self.plant.order)
-
     def _values(self) -> dict[str, Any]:
         m, answer = self.plant.matrices, self.answer
         names = {"exp_At": "exponential", "y_t": "output", "u_t": "input", "x_f": "forced", "y_0": "free", "x_0": "x0"}
@@ -142,14 +137,11 @@ class InitialState(Branched):
     def claims(self) -> Iterator[Claim]:
         """Yield the motion from rest, the output explained, the moment equations, and what excludes others."""
         yield from super().claims()
-        test = self.answer["rank"]
         if self.answer.get("question") is None:
             e = time_environment(self.plant, self._values())
             yield from self._about_motion(e)
             yield from self._about_state(e)
-        e = rank_environment(self.plant, (self.plant.matrices.A, self.plant.matrices.C), test)
-        yield from rank_claims(test, e)
-        yield from minor_claim(test, e)
+        yield from self.observability_claims()
 
     def _about_motion(self, e: Environment) -> Iterator[Claim]:
         A, Phi, free = letter("A", e), letter("exp_At", e), letter("y_t", e)

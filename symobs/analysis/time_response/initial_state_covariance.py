@@ -10,9 +10,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment
+from symobs.analysis.rank.rank_test import rank_answer
 from symobs.analysis.time_response.best_horizon import stationary
-from symobs.analysis.time_response.damping_cases import Branched, Signs, from_zero, rate_of, time_environment
+from symobs.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
 from symobs.analysis.time_response.matrix_exponential import (
     TIME,
@@ -20,8 +20,9 @@ from symobs.analysis.time_response.matrix_exponential import (
     question_of,
     require_continuous,
 )
+from symobs.analysis.time_response.measurements import OfTheInitialState
 from symobs.certificate.claims import Claim
-from symobs.conditions import Condition, sign_of, vanishing_factors
+from symobs.conditions import Condition, sign_of
 from symobs.derivation.builder import relation
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
@@ -58,7 +59,7 @@ END = Scalar.symbol("T")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class InitialStateCovariance(Branched):
+class InitialStateCovariance(OfTheInitialState):
     """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
 
     task: ClassVar[str] = "initial_state_covariance"
@@ -98,36 +99,22 @@ class InitialStateCovariance(Branched):
     @property
     def verdict(self) -> str:
         """`no` where the pair is not observable."""
-        return "no" if self.answer["rank"]["rank"] < self.plant.order else super().verdict
+        return super().verdict if self.is_unique else "no"
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
-        """Where the pair is not observable."""
-        found = self.answer["rank"]
-        if found["rank"] < self.plant.order:
-            return ()
-        minor = found["matrix"].select(found["rows"], found["columns"]).determinant()
-        return vanishing_factors([minor], self.plant.symbols.signs)
+        """Where the pair is not observable; nothing more is said of one that never is."""
+        return super().further_zeros if self.is_unique else ()
 
     @cached_property
     def stated(self) -> tuple[Condition, ...]:
         """The horizon is positive: that it is not 0 is no further condition, and 0 no case."""
         return tuple(c for c in super().stated if c.kind == "domain" or c.expression.names != {"T"})
 
-    @cached_property
-    def holds_where(self) -> tuple[Condition, ...]:
-        """Observability is a condition."""
-        known = super().holds_where
-        beyond = [Condition("existence", f) for f in self.further_zeros if f not in {c.expression for c in known}]
-        return (*known, *beyond)
-
     def claims(self) -> Iterator[Claim]:
         """Yield the integrals, the two parts between Gramians, and their sum."""
         yield from super().claims()
-        found = self.answer["rank"]
-        e = rank_environment(self.plant, (self.plant.matrices.A, self.plant.matrices.C), found)
-        yield from rank_claims(found, e)
-        yield from minor_claim(found, e)
+        yield from self.observability_claims()
         if self.answer["covariance"] is None:
             return
         yield from self._about_parts(time_environment(self.plant, self.letters()))

@@ -1,18 +1,53 @@
-"""Reading functions of time: measured outputs and known inputs."""
+"""What is said of the initial state from measured outputs and known inputs, and the reading of these."""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from symobs.analysis.rank.rank_test import minor_claim, rank_claims, rank_environment, rank_losses
+from symobs.analysis.time_response.damping_cases import Branched
+from symobs.conditions import Condition
 from symobs.errors import InputError
 from symobs.exact.time_functions.quasipolynomial import Table, table_of
 from symobs.specification import read_signal
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix
+    from collections.abc import Iterator
+
+    from symobs.certificate.claims import Claim
+    from symobs.exact import Matrix, Scalar
     from symobs.system import StateSpace
 
 _MOST_TERMS = 60
+
+
+class OfTheInitialState(Branched):
+    """A result about x(0), which the output determines where the pair (C, A) is observable."""
+
+    @property
+    def is_unique(self) -> bool:
+        """Whether the pair is observable in general."""
+        return bool(self.answer["rank"]["rank"] == self.plant.order)
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the pair may lose rank."""
+        return rank_losses(self.answer["rank"], self.plant.symbols.signs)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """That no rank is lost is a condition."""
+        known = super().holds_where
+        beyond = [Condition("existence", f) for f in self.further_zeros if f not in {c.expression for c in known}]
+        return (*known, *beyond)
+
+    def observability_claims(self) -> Iterator[Claim]:
+        """Yield the rank of the observability matrix and its kernel."""
+        test = self.answer["rank"]
+        e = rank_environment(self.plant, (self.plant.matrices.A, self.plant.matrices.C), test)
+        yield from rank_claims(test, e)
+        yield from minor_claim(test, e)
 
 
 def read_functions(value: object, plant: StateSpace, name: str, count: int) -> tuple[Matrix, Table]:

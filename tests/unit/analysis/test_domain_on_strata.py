@@ -124,3 +124,14 @@ def _impossible(result: Any, known: tuple[Any, ...] = ()) -> Iterator[Any]:
         excluded = (c.expression.substitute(case.substitution).numerator for c in case.when if c.operator == "!=")
         if case.result is not None:
             yield from _impossible(case.result, (*known, *excluded))
+
+
+def test_an_output_that_vanishes_still_needs_observability() -> None:
+    """x₀ = 0 explains y = 0 always, and alone exactly where the pair is observable: det 𝒪 = −(a + 1)·1."""
+    plant = symobs.StateSpace("[0 0; 0 -1]", C="[a+1 -1]")
+    found = symobs.initial_state(plant, output="0")
+    assert found.verdict == "conditional"
+    assert [str(condition) for condition in found.conditions] == ["T > 0", "Ne(a + 1, 0)"]
+    (case,) = found.cases
+    assert [str(condition) for condition in case.when] == ["Eq(a + 1, 0)"]
+    assert (case.result.verdict, case.result.kernel) == ("no", ((1, 0),))
