@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "decomposition": "Kalman's decomposition.",
+    "decomposition": "Kalman decomposition.",
     "canonical_form": "Canonical form.",
-    "reached_and_hidden": "What the input reaches is spanned by the columns of $Ctr$, and what the output does not show is the kernel of $O$:",
-    "basis_blocks": "The columns of $S$ are a basis in four parts, of the dimensions {sizes}, in this order: reached and seen; reached and hidden; "
-    "seen but not reached; neither.",
+    "reached_and_hidden": "The controllable subspace is the range of $Ctr$, and the unobservable subspace is the kernel of $O$:",
+    "basis_blocks": "The columns of $S$ form a basis adapted to the decomposition, with blocks of dimensions {sizes}, in this order: controllable and observable; controllable and unobservable; uncontrollable and observable; uncontrollable and unobservable.",
     "decomposed": "In the coordinates $T x$ the plant has the matrices",
-    "zero_pattern": "Nothing leads out of the reachable states, and nothing leads from the hidden states to the others.",
-    "minimal_part": "The first part, controllable and observable, has the transfer function of the whole:",
-    "nothing_remains": "No state is both reached and seen, so the transfer function is constant:",
-    "canonical_controllable": "The coefficients of the form are those of the characteristic polynomial",
-    "canonical_observable": "The coefficients of the form are those of the characteristic polynomial",
-    "canonical_modal": "The form has a block for each elementary divisor of $A$. The characteristic polynomial is",
-    "last_row_controllable": "The columns of the controllability matrix, combined with these coefficients, are the basis of the controllable "
-    "canonical form:",
-    "last_column_observable": "The rows of the observability matrix, combined with these coefficients, are the coordinates of the observable "
-    "canonical form:",
-    "modal_basis": "The columns of $S$ are bases of the invariant subspaces that belong to the factors: eigenvectors where the roots are rational, "
-    "chains of them where they are defective, $v$ and its images under $A$ where a factor has no rational roots.",
+    "zero_pattern": "The zero blocks show that the controllable and the unobservable subspace are invariant under $A$.",
+    "minimal_part": "The controllable and observable part is a minimal realisation of the transfer function:",
+    "nothing_remains": "No part is both controllable and observable, so the transfer function is constant:",
+    "canonical_controllable": "The canonical form is determined by the coefficients of the characteristic polynomial",
+    "canonical_observable": "The canonical form is determined by the coefficients of the characteristic polynomial",
+    "canonical_modal": "The real modal form has one block for each elementary divisor of $A$. The characteristic polynomial is",
+    "last_row_controllable": "The columns of the controllability matrix, combined with these coefficients, give the basis of the controllable canonical form:",
+    "last_column_observable": "The rows of the observability matrix, combined with these coefficients, give the coordinates of the observable canonical form:",
+    "modal_basis": "The columns of $S$ are bases of the invariant subspaces belonging to the factors: eigenvectors for rational roots, chains of generalised eigenvectors for defective ones, and $v$ with its images under $A$ for a factor without rational roots.",
     "canonical_impossible_controllable": "Only a controllable pair has a controllable canonical form.",
     "canonical_impossible_observable": "Only an observable pair has an observable canonical form.",
-    "distinct_provided": "Where the blocks are those of the plant in general, these vectors are independent. From here on we assume {condition}.",
-    "structure_provided": "The parts have these dimensions in general. From here on we assume {condition}.",
+    "distinct_provided": "For generic parameter values these vectors are linearly independent. In what follows we assume {condition}.",
+    "structure_provided": "These are the dimensions for generic parameter values. In what follows we assume {condition}.",
 }
 
 QUESTIONS: dict[str, str] = {
@@ -32,7 +28,7 @@ QUESTIONS: dict[str, str] = {
     "ask canonical_form kind=controllable": "Transform the plant to controllable canonical form.",
     "ask canonical_form kind=observable": "Transform the plant to observable canonical form.",
     "ask canonical_form kind=modal": "Transform the plant to real modal form.",
-    "ask decomposition": "Split the plant into its four parts, controllable or not and observable or not. Find the minimal part and its transfer function.",
+    "ask decomposition": "Find the Kalman decomposition of the plant, its minimal part, and the transfer function of that part.",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "dual": "The dual plant.",
-    "dual_positive": "Transposed, with inputs and outputs exchanged, the plant becomes",
-    "dual_negative": "Transposed, with time reversed and with inputs and outputs exchanged, the plant becomes",
+    "dual_positive": "Transposing the matrices and interchanging inputs and outputs gives the dual plant",
+    "dual_negative": "Transposing the matrices, interchanging inputs and outputs and reversing time gives the dual plant",
     "dual_controllability": "The controllability matrix of the dual is",
     "dual_observability": "The observability matrix of the dual is",
     "plant_observability": "The observability matrix of the plant is",
     "plant_controllability": "The controllability matrix of the plant is",
     "dual_same": "Block by block it is the transpose:",
-    "dual_signs": "Its blocks are those of the transpose up to sign, which does not change the rank:",
-    "dual_ranks_observing": "So {ranks}, and the pair ($C$, $A$) is observable exactly if the pair ($A_dual$, $B_dual$) is controllable.",
-    "dual_ranks_controlling": "So {ranks}, and the pair ($A$, $B$) is controllable exactly if the pair ($C_dual$, $A_dual$) is observable.",
+    "dual_signs": "Its blocks equal those of the transpose up to sign, which leaves the rank unchanged:",
+    "dual_ranks_observing": "Hence {ranks}, and the pair ($C$, $A$) is observable if and only if the pair ($A_dual$, $B_dual$) is controllable.",
+    "dual_ranks_controlling": "Hence {ranks}, and the pair ($A$, $B$) is controllable if and only if the pair ($C_dual$, $A_dual$) is observable.",
 }
 
 QUESTIONS: dict[str, str] = {

@@ -11,72 +11,60 @@ PHRASES: dict[str, str] = {
     "output_given": "The output is",
     "input_given": "the input is",
     "transition_nilpotent": "Without input the state is $x = Phi x_0$. The matrix $A$ commutes with its integral, {commutes}, where",
-    "transition_exponential": "so that $Phi$ is the exponential of $M$. Since {power}, its series ends:",
-    "peano_baker": "Without input the state is $x = Phi x_0$. The Peano-Baker series of $Phi$ ends here: its terms after the first are",
-    "peano_baker_sum": "each the integral of $A$ times the one before, and {end}. Their sum is",
-    "transition_constant": "Without input the state is $x = Phi x_0$. Since {zero}, it stays where it is:",
-    "transition_triangular": "Without input the state is $x = Phi x_0$. The equations can be solved one after the other, by variation of "
-    "constants:",
-    "transition_direction": "Without input the state is $x = Phi x_0$. The matrix $A$ is a function of $t$ times a constant matrix, whose "
-    "eigenvectors the solutions keep:",
-    "closed_form_if": "The closed forms hold as long as {condition}, which we assume from here on; what is left out are cases of their own.",
+    "transition_exponential": "so that $Phi$ is the exponential of $M$. Since {power}, its series terminates:",
+    "peano_baker": "Without input the state is $x = Phi x_0$. The Peano–Baker series of $Phi$ terminates; its terms after the first are",
+    "peano_baker_sum": "each the integral of $A$ times the preceding one, and {end}. Their sum is",
+    "transition_constant": "Without input the state is $x = Phi x_0$. Since {zero}, the state is constant:",
+    "transition_triangular": "Without input the state is $x = Phi x_0$. The equations can be solved successively, by variation of constants:",
+    "transition_direction": "Without input the state is $x = Phi x_0$. The matrix $A$ is a function of $t$ times a constant matrix, so its eigenvectors are constant:",
+    "closed_form_if": "The closed forms hold provided that {condition}, which we assume in what follows; the exceptional values are separate cases.",
     "transition_checked": "{rate} and {start}, as required.",
-    "transition_open": "None of the known ways leads to a transition matrix in closed form, so none is given "
-    "here, and no Gramian. The rank test does without them.",
-    "transition_open_integral": "The equations can be solved one after the other, but the solution contains the integral of {integrand} over "
-    "$t$, of which no closed form is known here. So no transition matrix is given, and no Gramian. The rank test does without them.",
+    "transition_open": "No closed form of the transition matrix was found, so neither it nor the Gramian is given. The rank test does not need them.",
+    "transition_open_integral": "The equations can be solved successively, but the solution contains the integral of {integrand} over $t$, for which no closed form was found. So neither the transition matrix nor the Gramian is given. The rank test does not need them.",
     "transition_commuting": "Without input the state is $x = Phi x_0$. The matrix $A$ is a sum of functions of $t$ times constant matrices that "
     "commute, so $Phi$ is the product of the exponentials of their integrals:",
-    "gramian": "What the input forces taken away, the output is $C Phi x_0$. Multiplied by $Phiᵀ Cᵀ$ and integrated over the interval it gives "
-    "$W x_0$ with",
-    "gramian_open_integral": "What the input forces taken away, the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains "
-    "the integral of {integrand} over $t$, of which no closed form is known here, so it is not given.",
-    "gramian_regular": "Its determinant is not 0, so the kernel of $W$ is trivial, and no two initial states have the same output.",
-    "gramian_generic": "The initial state is determined exactly where this is not 0, and the rank test tells when.",
-    "gramian_singular": "It is singular, and an initial state in its kernel is never seen at the output:",
-    "never_seen_start": "An initial state in this direction is never seen at the output:",
-    "stack_rule": "The derivatives of the output $C Phi x_0$ are $N_k Phi x_0$, where each $N_k$ is the one before times $A$, and its derivative "
-    "added:",
-    "stack_matrix": "Under one another they are",
+    "gramian": "After subtraction of the forced response the output is $C Phi x_0$. Multiplying by $Phiᵀ Cᵀ$ and integrating over the interval gives $W x_0$ with",
+    "gramian_open_integral": "After subtraction of the forced response the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains the integral of {integrand} over $t$, for which no closed form was found, so it is not given.",
+    "gramian_regular": "Its determinant is nonzero, so the kernel of $W$ is trivial, and distinct initial states give distinct outputs.",
+    "gramian_generic": "The initial state is uniquely determined if and only if this is nonzero; the rank test shows when.",
+    "gramian_singular": "It is singular, and the initial states in its kernel are unobservable:",
+    "never_seen_start": "The following initial state is unobservable:",
+    "stack_rule": "The derivatives of the output $C Phi x_0$ are $N_k Phi x_0$, where each $N_k$ is the preceding one times $A$ plus its derivative:",
+    "stack_matrix": "Stacked, they are",
     "stack_yes": "Since {rank} for almost all $t$, the plant is observable on every interval of time on which $A$ and $C$ have no pole.",
     "stack_yes_at": "Full rank at one instant is enough: {instant}, so the plant is observable on every interval that contains this instant. The "
     "rank is the same for almost all $t$, hence on every other interval without a pole of $A$ and $C$ as well.",
     "stack_yes_on": "Full rank at one instant of the interval is enough: {instant}, so the plant is observable on it.",
     "stack_yes_if": "It is not identically 0 as long as {condition}, which we assume from here on. Then the plant is observable on every interval "
     "of time on which $A$ and $C$ have no pole.",
-    "stack_drops": "That {rank} at this one instant does not matter.",
+    "stack_drops": "That {rank} at this isolated instant is immaterial.",
     "stack_no": "Since {rank} wherever its entries are defined, the plant is observable on no interval. Full rank at an instant is sufficient for any "
     "smooth data. It is necessary too because the entries are rational, hence analytic; for merely smooth ones it is not.",
-    "stack_moving": "The hidden states at the time $t$ are the combinations of the columns of",
-    "stack_invariant": "They give no output, {unseen}, and what starts among them stays among them, since",
-    "case_stack": "There {rank} for all $t$: the plant is not observable.",
-    "case_stack_yes": "There {rank} for almost all $t$.",
-    "frozen_instant": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing. Here "
-    "{frozen}, and yet the plant is observable on every interval around this instant.",
-    "frozen_misled_no": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing. Here "
-    "{frozen} at almost every instant, and yet the plant is not observable.",
-    "frozen_misled_yes": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing. Here "
-    "{frozen} at almost every instant, and nowhere more, and yet the plant is observable.",
-    "frozen_example": "The rank test of constant matrices, applied at a frozen instant, leaves out the derivatives and decides nothing in general. With "
-    "{state} and {output} it is passed at every $t$, {frozen}, although {derived}: the output of that plant is constant, and from it only one number "
-    "can be found.",
-    "forced_state": "From the state 0 the input alone leads to",
-    "forced_checked": "{rate} and {start}, as required. The integral runs to the present time, not to the end of the interval.",
-    "xi_forced": "Its part of the output is taken away,",
-    "xi_same": "Without input all of the output comes from the initial state,",
+    "stack_moving": "The unobservable states at time $t$ are the linear combinations of the columns of",
+    "stack_invariant": "They produce no output, {unseen}, and trajectories starting among them remain among them, since",
+    "case_stack": "In this case {rank} for all $t$: the plant is not observable.",
+    "case_stack_yes": "In this case {rank} for almost all $t$.",
+    "frozen_instant": "The time-invariant rank test, applied at a frozen instant, ignores the derivatives and is inconclusive. Here {frozen}, and yet the plant is observable on every interval around this instant.",
+    "frozen_misled_no": "The time-invariant rank test, applied at a frozen instant, ignores the derivatives and is inconclusive. Here {frozen} at almost every instant, and yet the plant is not observable.",
+    "frozen_misled_yes": "The time-invariant rank test, applied at a frozen instant, ignores the derivatives and is inconclusive. Here {frozen} at almost every instant, and never more, and yet the plant is observable.",
+    "frozen_example": "The time-invariant rank test, applied at a frozen instant, ignores the derivatives and is inconclusive in general. With {state} and {output} it is passed at every $t$, {frozen}, although {derived}: the output of that plant is constant, and only one scalar can be determined from it.",
+    "forced_state": "The forced response of the state, from zero initial state, is",
+    "forced_checked": "{rate} and {start}, as required.",
+    "xi_forced": "Subtracting its contribution to the output gives",
+    "xi_same": "Without input the output is due to the initial state alone,",
     "x0_formula": "and the initial state is",
     "state_history": "The state at all times follows by variation of constants,",
     "x0_checked": "{output}: this is the given output.",
-    "x0_candidate": "If a state explains the output at all times, then only",
-    "x0_none": "No initial state has this output, for that one leaves {rest}.",
+    "x0_candidate": "The only initial state that can be consistent with the output is",
+    "x0_none": "No initial state produces this output: the residual is {rest}.",
     "x0_open": "An initial state in closed form is not given here.",
-    "x0_not_unique": "The initial state cannot be found from it, since the hidden states add nothing to an output.",
+    "x0_not_unique": "The initial state cannot be determined uniquely, since unobservable states do not contribute to the output.",
 }
 
 QUESTIONS: dict[str, str] = {
     "ask time_varying_observability": "Is the plant observable?",
     "ask time_varying_observability interval": "Is the plant observable on the interval from {start} to {end}?",
-    "also time_varying_observability output": "Find the initial state that explains the output {output}.",
+    "also time_varying_observability output": "Find the initial state that is consistent with the output {output}.",
     "also time_varying_observability input": "The input is {input}.",
 }
 

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "partitioned_gain": "Measured and estimated states are fed back by",
-    "minimal_control": "By the separation principle§ the control law uses the measured states as they are and the estimate of the others:",
+    "partitioned_gain": "Partitioned according to measured and estimated states, the feedback gain is",
+    "minimal_control": "By the separation principle§, the control law uses the measured states directly and estimates of the remaining ones:",
     "output_gain": "With",
-    "minimal_control_in_y": "it reads, in terms of the output and of the observer's state,",
-    "well_posed_assumed": "This determines $u$ where {condition}.",
-    "minimal_control_solved": "Solved for the input,",
-    "ill_posed": "Because of {determinant} this cannot be solved for $u$: the measured output contains the input, which the control law would need "
-    "before it is known. With these gains there is no compensator.",
-    "ill_posed_for_some": "Because of {determinant} this cannot be solved for $u$ with these gains: the measured output contains the input, which the "
-    "control law would need before it is known. Other gains with the same poles were not tried.",
-    "ill_posed_there": "There {determinant}: the output contains the input, which the control law would need before it is known. With these "
-    "gains there is no compensator.",
-    "minimal_closed": "Put into the observer, it leaves, with {state} and {input}, a system that is driven by $y$ alone:",
+    "minimal_control_in_y": "it becomes, in terms of the output and the observer state,",
+    "well_posed_assumed": "This equation determines $u$ provided that {condition}.",
+    "minimal_control_solved": "Solving for the input, we obtain",
+    "ill_posed": "Since {determinant}, this equation cannot be solved for $u$: through the feedthrough the measured output contains the input, and the algebraic loop is not well posed. No compensator exists with these gains.",
+    "ill_posed_for_some": "Since {determinant}, this equation cannot be solved for $u$ with these gains: through the feedthrough the measured output contains the input, and the algebraic loop is not well posed. Other gains with the same poles were not tried.",
+    "ill_posed_there": "In this case {determinant}: the output contains the input, and the algebraic loop is not well posed. No compensator exists with these gains.",
+    "minimal_closed": "Substitution into the observer, with {state} and {input}, gives a system driven by $y$ alone:",
     "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
-    "minimal_stable": "Its direct term, with which the measured states act at once, is {direct}. By itself it is stable.",
-    "minimal_unstable": "Its direct term, with which the measured states act at once, is {direct}. By itself it is not stable.",
-    "minimal_unstable_alone": "Its direct term, with which the measured states act at once, is {direct}. By itself it is not stable, although the loop is.",
-    "minimal_proper": "Its direct term, with which the measured states act at once, is {direct}.",
-    "minimal_stable_if": "Its direct term, with which the measured states act at once, is {direct}. By itself it is stable exactly where {where}.",
-    "reduced_coordinates": "In state and observer state the same loop reads",
+    "minimal_stable": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is stable.",
+    "minimal_unstable": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is not stable.",
+    "minimal_unstable_alone": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is not stable, although the closed loop is.",
+    "minimal_proper": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}.",
+    "minimal_stable_if": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is stable if and only if {where}.",
+    "reduced_coordinates": "In terms of state and observer state, the closed loop is",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "observer_equation": "The observer is a copy of the plant, corrected by the output error:",
-    "error_equation": "Whatever the input, the error {error} then obeys",
-    "feedthrough_cancels": "The output error does not contain the input, since the feedthrough cancels in it:",
-    "deadbeat_error": "All poles lie at the origin, so the error is gone after finitely many steps, whatever it was: {gone}.",
-    "observer_collected": "Collected, the observer reads",
-    "observer_collected_with_feedthrough": "Collected, with $B - L D$ in place of $B$ so that the feedthrough does cancel, the observer reads",
-    "existence_ansatz": "Let a linear system be driven by what is known, with matrices still to be determined:",
-    "existence_error": "Then {error} obeys",
-    "existence_choice": "It is to vanish whatever state and input are. So both must go, which leaves no choice but",
-    "existence_left": "and of the error there remains",
+    "observer_equation": "The full-order observer is a copy of the plant with a correction proportional to the output error:",
+    "error_equation": "Irrespective of the input, the estimation error {error} satisfies",
+    "feedthrough_cancels": "The feedthrough term cancels in the output error, which therefore does not depend on the input:",
+    "deadbeat_error": "All observer poles are at the origin (deadbeat observer), so any initial error vanishes after finitely many steps: {gone}.",
+    "observer_collected": "Collecting terms, we obtain the observer",
+    "observer_collected_with_feedthrough": "Collecting terms, with $B - L D$ in place of $B$ to account for the feedthrough, we obtain the observer",
+    "existence_ansatz": "Consider a linear system driven by the plant's input and output, with matrices to be determined:",
+    "existence_error": "The error {error} then satisfies",
+    "existence_choice": "For the error to be independent of state and input, the coefficients of both must vanish, which requires",
+    "existence_left": "and the error dynamics reduce to",
     "existence_observer": "With $H_x = L$ the observer is",
 }
 
@@ -28,16 +28,12 @@ QUESTIONS: dict[str, str] = {
     "ask observer poles=1": "Design an observer with the pole {poles}.",
     "ask observer polynomial": "Design an observer with the characteristic polynomial {polynomial}.",
     "ask observer L": "Find the characteristic polynomial of the observer with the gain $L$, and the observer itself.",
-    "ask observer method=existence": "Which linear systems, driven by the input and the output, estimate the state with an error that does not depend on "
-    "them?",
-    "ask observer method=existence L": "Which linear systems, driven by the input and the output, estimate the state with an error that does not depend on "
-    "them? Find the one with the gain $L$.",
-    "ask observer method=existence poles": "Which linear systems, driven by the input and the output, estimate the state with an error that does not "
-    "depend on them? Find the one with the poles {poles}.",
-    "ask observer method=existence polynomial": "Which linear systems, driven by the input and the output, estimate the state with an error that does not "
-    "depend on them? Find the one with the characteristic polynomial {polynomial}.",
-    "also observer member=decoupled": "Of the gains that do that, find one for which every output obeys an equation of its own.",
-    "also state_feedback member=decoupled": "Of the gains that do that, find one for which every input moves a part of its own.",
+    "ask observer method=existence": "Which linear systems driven by the input and the output give an estimate whose error dynamics are autonomous?",
+    "ask observer method=existence L": "Which linear systems driven by the input and the output give an estimate whose error dynamics are autonomous? Find the one with the gain $L$.",
+    "ask observer method=existence poles": "Which linear systems driven by the input and the output give an estimate whose error dynamics are autonomous? Find the one with the poles {poles}.",
+    "ask observer method=existence polynomial": "Which linear systems driven by the input and the output give an estimate whose error dynamics are autonomous? Find the one with the characteristic polynomial {polynomial}.",
+    "also observer member=decoupled": "Among these gains, find one that decouples the output errors.",
+    "also state_feedback member=decoupled": "Among these gains, find one that decouples the inputs.",
 }
 
 RESTS_ON: dict[str, str] = {

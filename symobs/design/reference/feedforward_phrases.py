@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "feedforward_law": "A new input $v_r$ is added to the control law:",
-    "feedforward_loop": "State, error and output then obey",
-    "feedforward_polynomial": "The error obeys an equation of its own, which $v_r$ does not enter, and the polynomial of the whole loop is",
-    "gain_at_rest": "With a constant input in place of $F_v v_r$ the output in the state of rest is this input times",
-    "feedforward_gain": "For the output to equal $v_r$ at rest,",
-    "feedforward_smallest": "There are more inputs than outputs. The smallest $F_v$ for which the output equals $v_r$ at rest is",
-    "feedforward_response": "From $v_r$ to $y$ the error has no part, so the modes of the observer do not appear:",
-    "no_rest": "With {state} one has {still}: the loop stays in this state as well as in 0. So where it comes to rest, if it does, depends on its start, "
-    "and nothing is asked of the output at rest.",
-    "no_feedforward_single": "At rest the output is zero whatever the input is: the plant has a zero there, which feedback does not move. There is no such $F_v$.",
-    "no_feedforward_zero": "With {row} the product {vanishes}, so the outputs at rest cannot be set one by one: the plant has a zero there, which feedback "
-    "does not move. There is no such $F_v$.",
-    "no_feedforward_low": "With {row} the product {vanishes}, so the outputs at rest cannot be set one by one: {rank}, and there are more outputs. "
-    "There is no such $F_v$.",
-    "no_feedforward_none": "The transfer function of the plant is zero, so no input moves the output, at rest or not. There is no such $F_v$.",
+    "feedforward_law": "A reference input $v_r$ is added to the control law:",
+    "feedforward_loop": "State, error and output then satisfy",
+    "feedforward_polynomial": "The error dynamics are autonomous and not driven by $v_r$, and the closed-loop characteristic polynomial is",
+    "gain_at_rest": "With a constant input in place of $F_v v_r$, the steady-state output is this input multiplied by the DC gain",
+    "feedforward_gain": "For the steady-state output to equal $v_r$,",
+    "feedforward_smallest": "There are more inputs than outputs. The $F_v$ of smallest norm for which the steady-state output equals $v_r$ is",
+    "feedforward_response": "The error is not excited by $v_r$, so the observer poles do not appear in the transfer function from $v_r$ to $y$:",
+    "no_rest": "For {state} one has {still}: this state is an equilibrium of the closed loop, as is 0. The steady state, if there is one, therefore depends on the initial state, and no DC gain is defined.",
+    "no_feedforward_single": "The steady-state output is zero for every constant input: the plant has a zero at zero frequency, which state feedback cannot move. No such $F_v$ exists.",
+    "no_feedforward_zero": "With {row}, {vanishes}, so the steady-state outputs cannot be assigned independently: the plant has a zero at zero frequency, which state feedback cannot move. No such $F_v$ exists.",
+    "no_feedforward_low": "With {row}, {vanishes}, so the steady-state outputs cannot be assigned independently: {rank}, which is less than the number of outputs. No such $F_v$ exists.",
+    "no_feedforward_none": "The transfer function of the plant is zero, so the input does not affect the output. No such $F_v$ exists.",
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask feedforward": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new input.",
-    "ask feedforward observer=full": "Design state feedback, an observer of full order, and a feedforward gain for which the output at rest equals the new "
-    "input.",
-    "ask feedforward observer=minimal": "Design state feedback, an observer of minimal order, and a feedforward gain for which the output at rest equals the "
-    "new input.",
+    "ask feedforward": "Design state feedback, a full-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward observer=full": "Design state feedback, a full-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward observer=minimal": "Design state feedback, a reduced-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
 }
 
 DEMANDS: dict[str, str] = {

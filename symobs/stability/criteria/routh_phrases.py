@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "routh_table": "Routh's table of {polynomial} is",
+    "routh_table": "The Routh array of {polynomial} is",
     "routh_row_epsilon": "{epsilon} in place of 0",
     "routh_row_auxiliary": "derivative of {auxiliary}",
     "routh_row_derivative": "derivative of the row above",
     "routh_where": "where",
-    "routh_positive": "All entries of the first column are positive, so all roots lie in the open left half plane.",
-    "routh_negative": "All entries of the first column are negative, so all roots lie in the open left half plane.",
-    "routh_criterion_positive": "All roots lie in the open left half plane exactly where all entries of the first column are positive.",
-    "routh_criterion_negative": "All roots lie in the open left half plane exactly where all entries of the first column are negative.",
-    "routh_criterion_where": "Where {leading}, all roots lie in the open left half plane exactly if all entries of the first column have the same sign.",
-    "routh_epsilon": "The first entry of a row is zero, but not the whole row: a small {epsilon} stands in its place.",
-    "routh_zero_row": "A whole row is zero: the derivative of the auxiliary polynomial, read off from the row above, stands in its place.",
-    "routh_divides": "The auxiliary polynomial {auxiliary} divides the polynomial; its roots lie symmetric to the origin.",
-    "routh_not_stable": "A zero in the first column means that not all roots lie in the open left half plane.",
-    "routh_changes": "The first column {changes}, so {right} in the open right half plane.",
-    "routh_changes_axis": "The first column {changes}, so {right} in the open right half plane; {axis} on the imaginary axis.",
-    "routh_misleads": "The signs of the first column for small {epsilon} do not tell the number of roots here: counted exactly, {right} in the "
-    "open right half plane, and {axis} on the imaginary axis.",
+    "routh_positive": "All entries of the first column are positive, so all roots lie in the open left half-plane.",
+    "routh_negative": "All entries of the first column are negative, so all roots lie in the open left half-plane.",
+    "routh_criterion_positive": "All roots lie in the open left half-plane if and only if all entries of the first column are positive.",
+    "routh_criterion_negative": "All roots lie in the open left half-plane if and only if all entries of the first column are negative.",
+    "routh_criterion_where": "If {leading}, all roots lie in the open left half-plane if and only if all entries of the first column have the same sign.",
+    "routh_epsilon": "The first entry of a row is zero, but the row is not; the entry is replaced by a small {epsilon}.",
+    "routh_zero_row": "An entire row is zero; it is replaced by the derivative of the auxiliary polynomial, whose coefficients are in the row above.",
+    "routh_divides": "The auxiliary polynomial {auxiliary} divides the polynomial; its roots are symmetric about the origin.",
+    "routh_not_stable": "A zero in the first column means that not all roots lie in the open left half-plane.",
+    "routh_changes": "The first column {changes}, so {right} in the open right half-plane.",
+    "routh_changes_axis": "The first column {changes}, so {right} in the open right half-plane; {axis} on the imaginary axis.",
+    "routh_misleads": "Here the signs of the first column for small {epsilon} do not give the number of right-half-plane roots; an exact count gives: {right} in the open right half-plane, and {axis} on the imaginary axis.",
 }
 
 RESTS_ON: dict[str, str] = {
