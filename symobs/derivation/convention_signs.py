@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from symobs.notation import LetterForm
 
 _STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
-#: What an observer is assumed to do with the output, and the gain it turns out to be: S4 calls both H.
+#: What an observer is assumed to do with the output, and the gain it turns out to be; a convention may call both H.
 _ANSATZ = {"L", "H_x"}
 _FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)
 

@@ -85,8 +85,8 @@ DEMANDS: dict[str, str] = _table("DEMANDS")
 #: The theorem (a key of `THEOREMS`) that a phrase appeals to.
 RESTS_ON: dict[str, str] = _table("RESTS_ON")
 
-#: The theorems that phrases may appeal to: each with its short name, and where it is proved.
-THEOREMS: dict[str, tuple[str, str]] = _collected("THEOREMS")
+#: The theorems that phrases may appeal to, each with the literature where it is proved: keys of `literature`.
+THEOREMS: dict[str, str] = _collected("THEOREMS")
 
 #: The block diagrams of pages, as `figures.block_diagram` reads them: grid, routes, signals, letters, optional boxes.
 FIGURES: dict[str, dict[str, Any]] = _collected("FIGURES")

@@ -1,7 +1,7 @@
 """Detectability and stabilizability: whether the modes that stay hidden are stable.
 
 (C, A) is detectable exactly when the polynomial of the fixed modes, det(sI − X) with X = A on ker 𝒪, is stable; (A, B)
-is stabilizable exactly when (Bᵀ, Aᵀ) is detectable.  Under the weaker reading of S3 (Brogan) a fixed mode may lie on the
+is stabilizable exactly when (Bᵀ, Aᵀ) is detectable.  Under Brogan's weaker reading a fixed mode may lie on the
 boundary, if it does not grow: X must be stable in the sense of Lyapunov.
 """
 
@@ -228,13 +228,13 @@ def _checked(meaning: str) -> str:
     return meaning
 
 
-@method("detectability/fixed_modes", source="S0, section 4.4; S3, footnote 1")
+@method("detectability/fixed_modes", source="wonham1968; hautus1970; brogan1991")
 def detectability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
     """Stability of the characteristic polynomial of A on ker 𝒪, without eigenvalues."""
     return solve(plant, "detectability", meaning, "fixed_modes")
 
 
-@method("stabilizability/fixed_modes", source="dual of S0, section 4.4")
+@method("stabilizability/fixed_modes", source="wonham1968; hautus1970; brogan1991")
 def stabilizability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
     """Stability of the characteristic polynomial of Aᵀ on the left kernel of 𝒞, without eigenvalues."""
     return solve(plant, "stabilizability", meaning, "fixed_modes")
@@ -245,9 +245,9 @@ def detectability(plant: StateSpace, *, meaning: Name = "asymptotic", method: Na
     """Decide whether some L makes A − LC stable: whether all unobservable modes are stable.
 
     plant    n states, p ≥ 1 outputs; B and D do not matter
-    meaning  "asymptotic", or "lyapunov": unobservable modes may lie on the boundary if they do not grow (S3, footnote 1)
+    meaning  "asymptotic", or "lyapunov": unobservable modes may lie on the boundary if they do not grow (Brogan)
     Returns modes (list of eigenvalue, stable, observable, rank, with multiplicity), fixed_polynomial; with parameters the
-    conditions and cases.  Raises `InputError` where C is missing.  Source: S0, section 4.4.
+    conditions and cases.  Raises `InputError` where C is missing.  Source: W. M. Wonham (1968); M. L. J. Hautus (1970).
     """
     plant.require("C", task="detectability")
     return choose("detectability", method, "fixed_modes").solve(plant, _checked(meaning))
@@ -260,7 +260,7 @@ def stabilizability(plant: StateSpace, *, meaning: Name = "asymptotic", method: 
     plant    n states, m ≥ 1 inputs; C and D do not matter
     meaning  "asymptotic", or "lyapunov": uncontrollable modes may lie on the boundary if they do not grow
     Returns modes (list of eigenvalue, stable, controllable, rank, with multiplicity), fixed_polynomial; with parameters
-    the conditions and cases.  Raises `InputError` where B is missing.  Source: S0, section 4.4, by duality.
+    the conditions and cases.  Raises `InputError` where B is missing.  Source: W. M. Wonham (1968); M. L. J. Hautus (1970).
     """
     plant.require("B", task="stabilizability")
     return choose("stabilizability", method, "fixed_modes").solve(plant, _checked(meaning))

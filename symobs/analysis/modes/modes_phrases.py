@@ -101,10 +101,10 @@ RESTS_ON: dict[str, str] = {
     "means_lyapunov": "lyapunov",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "pbh": ("test of Popov, Belevitch and Hautus", "S0, chapter 4"),
-    "detectability": ("detectability", "S0, section 4.4"),
-    "lyapunov": ("detectability in the sense of Lyapunov", "S3, footnote 1"),
+THEOREMS: dict[str, str] = {
+    "pbh": "popov1973; belevitch1968; hautus1969",
+    "detectability": "wonham1968; hautus1970",
+    "lyapunov": "brogan1991",
 }
 
 EXPLAINS = (

@@ -111,7 +111,7 @@ def solve(plant: StateSpace, of: str, method_name: str) -> PopovBelevitchHautus:
     return PopovBelevitchHautus(plant, method_name, ModeResult.answer_of(plant, of), of)
 
 
-@method("pbh/eigenvalues", source="Popov, Belevitch and Hautus; S0, chapter 4")
+@method("pbh/eigenvalues", source="popov1973; belevitch1968; hautus1969; kailath1980, ch. 2")
 def pbh_eigenvalues(plant: StateSpace, of: str) -> PopovBelevitchHautus:
     """Factor det(sI − A); at each factor q the rank of the pencil is computed in Q(parameters)[λ]/(q)."""
     return solve(plant, of, "eigenvalues")
@@ -124,7 +124,9 @@ def pbh(plant: StateSpace, *, of: Name = "observability", method: Name = "auto")
     plant    n states; p ≥ 1 outputs for `of` = "observability", m ≥ 1 inputs for "controllability"
     Returns modes (list of eigenvalue, stable, observable or controllable, rank, matrix, with multiplicity),
     fixed_polynomial, polynomial.  Eigenvalues without closed form are handled through their irreducible factor.
-    Raises `InputError` where a matrix is missing or `of` is another name.  Source: S0, chapter 4 (row S0-PBH).
+    Raises `InputError` where a matrix is missing or `of` is another name.
+
+    Source: M. L. J. Hautus (1969); T. Kailath, Linear Systems, ch. 2.
     """
     if of not in TESTS:
         message = f"{str(of)[:40]!r} is not what the test can be asked of"

@@ -108,13 +108,13 @@ class Controllability(RankResult):
             rank_cases(page, "Ctr", self, "controllability")
 
 
-@method("observability/rank", source="algebraic test for observability, Theorem 4.2 of S0")
+@method("observability/rank", source="kalman1960; kalman1963a")
 def observability_rank(plant: StateSpace) -> Observability:
     """Form 𝒪 = [C; CA; …; CAⁿ⁻¹] and its rank by fraction-free elimination."""
     return Observability.of(plant, "rank")
 
 
-@method("controllability/rank", source="dual of Theorem 4.2 of S0")
+@method("controllability/rank", source="kalman1960; kalman1963a")
 def controllability_rank(plant: StateSpace) -> Controllability:
     """Form 𝒞 = [B, AB, …, Aⁿ⁻¹B] and its rank by fraction-free elimination."""
     return Controllability.of(plant, "rank")
@@ -131,7 +131,7 @@ def observability(plant: StateSpace, *, method: Name = "auto") -> Result:
     in two cases of different rank.  `conditions` hold exactly where the rank is n: a factor of det 𝒪, or for a drop on
     several equations at once (a = b = 0) the sum of their squares, since parameters are real.  Raises `InputError`
     where C is missing.
-    Source: S0, Theorem 4.2 and (4.12)-(4.15).
+    Source: R. E. Kalman (1960, 1963).
     """
     plant.require("C", task="observability")
     return choose("observability", method, "rank").solve(plant)
@@ -145,7 +145,7 @@ def controllability(plant: StateSpace, *, method: Name = "auto") -> Result:
     Returns matrix (n×nm), rank, uncontrollable_modes, missing_inputs (the smallest sets of states that would have to be
     actuated); with parameters the generic rank, and cases and conditions as for `observability`.  Raises `InputError`
     where B is missing.
-    Source: S0, Theorem 4.1 (duality) with Theorem 4.2.
+    Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
     """
     plant.require("B", task="controllability")
     return choose("controllability", method, "rank").solve(plant)

@@ -71,9 +71,9 @@ RESTS_ON: dict[str, str] = {
     "generic_low_controllability": "controllability_rank",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "observability_rank": ("rank test for observability", "S0, Theorem 4.2"),
-    "controllability_rank": ("rank test for controllability", "S0, Theorem 2.2, dual to Theorem 4.2"),
+THEOREMS: dict[str, str] = {
+    "observability_rank": "kalman1963; kailath1980, ch. 2",
+    "controllability_rank": "kalman1963a",
 }
 
 NAMING = (

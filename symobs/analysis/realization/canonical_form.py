@@ -227,7 +227,7 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
     return CanonicalForm(plant, method_name, {**answer, "polynomial": chi, "blocks": blocks}, kind)
 
 
-@method("canonical_form/basis", source="S0, Example 4.1 for the controllable form")
+@method("canonical_form/basis", source="bass1965; kailath1980, ch. 2")
 def canonical_basis(plant: StateSpace, kind: str) -> CanonicalForm:
     """𝒞 H, its dual, or for the modal form cyclic bases of the invariant subspaces of χ's factors."""
     return solve(plant, kind, "basis")
@@ -241,7 +241,7 @@ def canonical_form(plant: StateSpace, *, kind: Name = "controllable", method: Na
     kind     controllable: ones above the diagonal, −aₙ … −a₁ in the last row, B̄ = eₙ; observable: its transpose, C̄ = eₙᵀ;
              modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters)
     Returns T, A, B, C, D, polynomial.  Raises `InputError` where a matrix is missing or there are several inputs (outputs).
-    Source: S0, Example 4.1.
+    Source: T. Kailath, Linear Systems, ch. 2.
     """
     if kind not in KINDS:
         message = f"{str(kind)[:40]!r} is not a canonical form"

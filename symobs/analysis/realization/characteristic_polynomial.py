@@ -83,6 +83,6 @@ def characteristic_polynomial(plant: StateSpace, *, method: Name = "auto") -> Re
 
     plant    n states; only A matters
     Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.
-    Source: S0, chapter 4.
+    Source: T. Kailath, Linear Systems.
     """
     return choose("characteristic_polynomial", method, "determinant").solve(plant)

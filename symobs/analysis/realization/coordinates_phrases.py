@@ -37,8 +37,8 @@ RESTS_ON: dict[str, str] = {
     "reached_and_hidden": "decomposition",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "decomposition": ("Kalman's decomposition", "R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600"),
+THEOREMS: dict[str, str] = {
+    "decomposition": "kalman1962; gilbert1963",
 }
 
 EXPLAINS = (

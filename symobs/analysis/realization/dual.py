@@ -182,7 +182,7 @@ def solve(plant: StateSpace, sign: int, method_name: str) -> Dual:
     return Dual(plant, method_name, answer, sign)
 
 
-@method("dual/transpose", source="S0, Theorem 4.1; with −Aᵀ: S4")
+@method("dual/transpose", source="kalman1960; brockett1970")
 def transpose(plant: StateSpace, sign: int) -> Dual:
     """Transpose the matrices and exchange input and output; the ranks are those of the plant's own tests."""
     return solve(plant, sign, "transpose")
@@ -196,7 +196,7 @@ def dual(plant: StateSpace, *, sign: Sign = 1, method: Name = "auto") -> Result:
     sign     1 for Aᵀ, −1 for −Aᵀ (time reversed)
     Returns A, B, C, D of the dual; observability_rank of the plant with dual_controllability_rank, and
     controllability_rank with dual_observability_rank.  Raises `InputError` where both B and C are missing.
-    Source: S0, Theorem 4.1; S4 for −Aᵀ.
+    Source: R. E. Kalman (1960); R. W. Brockett (1970) for −Aᵀ.
     """
     if str(sign).strip() not in {"1", "-1", "+1"}:
         message = f"{str(sign)[:40]!r} is not a sign"

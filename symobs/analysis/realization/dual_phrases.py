@@ -28,6 +28,6 @@ RESTS_ON: dict[str, str] = {
     "dual_negative": "duality_reversed",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "duality_reversed": ("duality through −Aᵀ", "S4"),
+THEOREMS: dict[str, str] = {
+    "duality_reversed": "brockett1970; rugh1996, ch. 9",
 }

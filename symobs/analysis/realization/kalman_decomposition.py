@@ -243,7 +243,7 @@ def solve(plant: StateSpace, method_name: str) -> Decomposition:
     return Decomposition(plant, method_name, answer)
 
 
-@method("decomposition/subspaces", source="R. E. Kalman, Proc. Nat. Acad. Sci. 48 (1962), 596-600")
+@method("decomposition/subspaces", source="kalman1962")
 def subspaces(plant: StateSpace) -> Decomposition:
     """Bases of im 𝒞 ∩ ker 𝒪 and of its complements, by elimination."""
     return solve(plant, "subspaces")

@@ -242,7 +242,7 @@ def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
     plant    n states, m inputs, p outputs
     Returns transfer_function (p×m where it is not 1×1), poles and zeros with multiplicity: those of Smith
     and McMillan.  Raises `InputError` where B or C is missing.
-    Source: S0, chapter 4.
+    Source: T. Kailath, Linear Systems, ch. 2.
     """
     plant.require("B", "C", task="transfer_function")
     return choose("transfer_function", method, "resolvent").solve(plant)

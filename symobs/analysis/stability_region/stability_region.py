@@ -268,7 +268,7 @@ def region_of(question: Question) -> LineRegion | PlaneRegion | None:
     return None if question.symbols else exact_region(question.critical, question.parameters)
 
 
-@method("stability_region/routh", source="E. J. Routh, 1877; the plane divided after G. E. Collins, 1975")
+@method("stability_region/routh", source="routh1877; collins1975")
 def by_routh(question: Question) -> StabilityRegion:
     """Routh's table, the conditions, and the exact region of one or two parameters."""
     return StabilityRegion.of(question, "routh")

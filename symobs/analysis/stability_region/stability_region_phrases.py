@@ -90,14 +90,11 @@ RESTS_ON: dict[str, str] = {
     "criterion_long": "lienard_chipart",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "sturm": ("Sturm's theorem", "C. Sturm, 1829"),
-    "orlando": ("Orlando's formula", "L. Orlando, Math. Ann. 71 (1911), 233-245"),
-    "collins": ("cylindrical decomposition", "G. E. Collins, 1975"),
-    "lienard_chipart": (
-        "criterion of Liénard and Chipart",
-        "A. Liénard and M. H. Chipart, J. Math. Pures Appl. 10 (1914), 291-346",
-    ),
+THEOREMS: dict[str, str] = {
+    "sturm": "sturm1829",
+    "orlando": "orlando1911",
+    "collins": "collins1975",
+    "lienard_chipart": "lienard1914",
 }
 
 NAMING = (

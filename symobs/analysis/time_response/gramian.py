@@ -256,7 +256,7 @@ def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
     return determinant(W).value_at(horizon)
 
 
-@method("gramian/integral", source="S0, (4.8)")
+@method("gramian/integral", source="kalman1963a")
 def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
     """Integrate the entries of e^{Aᵀt} Cᵀ C e^{At} as sums of tⁿ e^{αt} cos βt and sin βt; over all time by Lyapunov."""
     return Gramian.of(plant, "integral", {"of": of, "horizon": horizon}, {})
@@ -270,7 +270,7 @@ def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observabi
     horizon  T > 0, a symbol or a number ("T" if left out), or "inf"; in discrete time a number of steps (n if left out)
     Returns matrix, determinant, finite_sum (Σ (Aᵀ)ᵏ Cᵀ C Aᵏ), rank, kernel; verdict no where the integral over all time
     does not exist.  Raises `InputError` where the horizon is not one.
-    Source: S0, (4.8) and Proposition 4.1; S4, the finite sum.
+    Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963); R. W. Brockett (1970).
     """
     if of not in KINDS_OF:
         message = f"{of[:40]!r} is not a kind of Gramian"

@@ -1,4 +1,4 @@
-"""The initial state from the output, and from output and input with feedthrough: S0, (4.6)-(4.11).
+"""The initial state from the output, and from output and input with feedthrough.
 
 With ỹ = y − C x_f − D u, where x_f is the motion from rest, ỹ = C e^{At} x₀, so W x₀ = ∫ e^{Aᵀt} Cᵀ ỹ dt.  The value and
 the derivatives of ỹ at 0 give the only candidate; whether it explains the data at all times is then asked exactly.
@@ -221,7 +221,7 @@ def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Tab
     return {"x0": state}
 
 
-@method("initial_state/moments", source="S0, (4.6)-(4.11)")
+@method("initial_state/moments", source="kalman1963a")
 def moments(plant: StateSpace, asked: Mapping[str, Any]) -> InitialState:
     """Take the input's part away, take the candidate from the derivatives at 0, hold it to the data at all times."""
     return InitialState.of(plant, "moments", asked, {})
@@ -243,7 +243,7 @@ def initial_state(
     input    u(t), likewise; 0 where it is left out
     horizon  the end of the interval of measurement, "T" if left out
     Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.
-    Source: S0, (4.6)-(4.11).
+    Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
     """
     plant.require("C", task="initial_state")
     require_continuous(plant, "initial_state")

@@ -1,4 +1,4 @@
-"""The covariance of the reconstructed initial state under white noise: S4, Exercise 3.
+"""The covariance of the reconstructed initial state under white noise.
 
 x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ ỹ dt with W = W(T).  Output noise of intensity R contributes W⁻¹ ∫ e^{Aᵀt} Cᵀ R C e^{At} dt W⁻¹, input
 noise of intensity Q contributes W⁻¹ ∫ V Q Vᵀ dt W⁻¹ with V(t) = e^{Aᵀt} W(T − t) B = (W(T) − W(t)) e^{−At} B.
@@ -302,7 +302,7 @@ def read_intensity(value: object, plant: StateSpace, name: str, size: int) -> Ma
     return found
 
 
-@method("initial_state_covariance/gramian", source="S4, Exercise 3")
+@method("initial_state_covariance/gramian", source="least-squares estimate; kalman1961")
 def gramian_estimate(plant: StateSpace, asked: Mapping[str, Any]) -> InitialStateCovariance:
     """Propagate white noise through the estimate W⁻¹ ∫ e^{Aᵀt} Cᵀ ỹ dt, entry by entry in closed form."""
     return InitialStateCovariance.of(plant, "gramian", asked, {})
@@ -318,7 +318,9 @@ def initial_state_covariance(
     Q, R     intensities: symmetric m×m and p×p, or one value for a multiple of I; Q left out: no input noise
     horizon  T > 0, a symbol or a number, "T" if left out
     Returns covariance, input_part, output_part, best_horizon (for each component the equation of its least variance).
-    Verdict no where the pair (C, A) is not observable.  Source: S4, Exercise 3.
+    Verdict no where the pair (C, A) is not observable.
+
+    Source: derived on the page; R. E. Kalman and R. S. Bucy (1961) for the optimal estimate.
     """
     plant.require("C", task="initial_state_covariance")
     require_continuous(plant, "initial_state_covariance")

@@ -1,4 +1,4 @@
-"""The page of the initial state, in the order of S0: free output, forced output, moments, solution, check."""
+"""The page of the initial state: free output, forced output, moments, solution, check."""
 
 from __future__ import annotations
 

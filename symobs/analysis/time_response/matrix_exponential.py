@@ -226,7 +226,7 @@ def _shifted(rate: Scalar) -> Formula:
     return Sum((Letter("A"), Negative(amount) if negative else amount))
 
 
-@method("matrix_exponential/derivatives", source="derivatives at 0 of the functions of the characteristic roots")
+@method("matrix_exponential/derivatives", source="leonard1996")
 def derivatives(plant: StateSpace) -> MatrixExponential:
     """Solve Σᵢ fᵢ⁽ᵏ⁾(0) Mᵢ = Aᵏ for the matrices of e^{At} = Σ fᵢ(t) Mᵢ."""
     return MatrixExponential.of(plant, "derivatives", {})
@@ -240,7 +240,7 @@ def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
     Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
     branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
     Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
-    Source: S0, section 4.1; S4, pendulum.
+    Source: I. E. Leonard (1996).
     """
     require_continuous(plant, "matrix_exponential")
     return choose("matrix_exponential", method, "derivatives").solve(plant)

@@ -116,12 +116,12 @@ RESTS_ON: dict[str, str] = {
     "estimate_of_output": "noise",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "reconstruction": ("initial state from measurements", "S0, (4.6)-(4.11)"),
-    "noise": ("uncertainty of the initial state", "S4, Exercise 3"),
-    "gramian": ("Gramian criterion", "S0, Proposition 4.1 and (4.8)"),
-    "finite_sum": ("equality of the kernels", "S0, Theorem 4.3"),
-    "exponential": ("matrix exponential by its derivatives at 0", "E. J. Putzer, Amer. Math. Monthly 73 (1966), 2-7"),
+THEOREMS: dict[str, str] = {
+    "reconstruction": "kalman1960; brockett1970",
+    "noise": "kalman1961",
+    "gramian": "kalman1963a",
+    "finite_sum": "kalman1963a; brockett1970",
+    "exponential": "leonard1996",
 }
 
 NAMING = ("no_closed_form",)

@@ -329,9 +329,7 @@ def _has_value(Phi: Matrix, start: Scalar) -> bool:
     return True
 
 
-@method(
-    "time_varying_observability/stack", source="S4; L. M. Silverman and H. E. Meadows, SIAM J. Control 5 (1967), 64-73"
-)
+@method("time_varying_observability/stack", source="silverman1967")
 def stack(plant: StateSpace, asked_for: Asked) -> TimeVaryingObservability:
     """Form N₀ = C, N_{k+1} = N_k A + N_k' and their rank over the rational functions of t."""
     return TimeVaryingObservability.of(plant, asked_for, "stack")
@@ -355,7 +353,7 @@ def time_varying_observability(
     Returns stack (N₀ … N_{n−1}), rank over the functions of t, kernel (initial states never seen); where they have a
     closed form transition_matrix Φ(t, t0), gramian ∫ΦᵀCᵀCΦ dt over the interval and its determinant; x0.
     Raises `InputError` where C is missing, in discrete time, or where a pole of A or C lies in the interval.
-    Source: S4; L. M. Silverman and H. E. Meadows (1967).
+    Source: L. M. Silverman and H. E. Meadows (1967).
     """
     plant = plant.knowing(interval, output, input).in_time()
     plant.require("C", task="time_varying_observability")

@@ -85,13 +85,10 @@ RESTS_ON: dict[str, str] = {
     "peano_baker": "peano_baker",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "time_varying_rank": (
-        "rank test for time-varying plants",
-        "L. M. Silverman and H. E. Meadows, SIAM J. Control 5 (1967), 64-73",
-    ),
-    "time_varying_gramian": ("initial state through the Gramian", "S4, time-varying plants"),
-    "peano_baker": ("Peano-Baker series", "W. J. Rugh, Linear System Theory, 2nd ed. (1996), chapter 3"),
+THEOREMS: dict[str, str] = {
+    "time_varying_rank": "silverman1967",
+    "time_varying_gramian": "kalman1960; rugh1996, ch. 9",
+    "peano_baker": "peano1888; baker1905; rugh1996, ch. 3",
 }
 
 NAMING = ("transition_open_integral",)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from symobs.cli.shared.output import write
+from symobs.phrases.literature import written_out
 from symobs.result import methods as known
 from symobs.result import tasks
 
@@ -16,5 +17,5 @@ def command() -> None:
     for name, task in sorted(tasks().items()):
         lines.append(f"{name}: {task.summary}")
         for found in known(name).values():
-            lines += [f"    {found.name}: {found.summary}", f"        {found.source}"]
+            lines += [f"    {found.name}: {found.summary}", f"        {written_out(found.source)}"]
     write("\n".join(lines) + "\n")

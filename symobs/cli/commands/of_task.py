@@ -60,7 +60,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
     chosen = chosen_format(options_given["format_name"], options_given["target"])
-    check_targets(options_given["target"], options_given["plot"])
+    check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
     page = page_of(options_given["detail"], options_given["templates"], chosen)
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
@@ -71,7 +71,14 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
 
     def work(report_progress: Progress) -> Outcome:
         return solved(
-            validate(data), chosen, options_given["target"], options_given["plot"], convention, report_progress, **page
+            validate(data),
+            chosen,
+            options_given["target"],
+            options_given["plot"],
+            convention,
+            report_progress,
+            bibliography=options_given["bibliography"],
+            **page,
         )
 
     try:

@@ -29,6 +29,7 @@ def command(
     format_name: str | None,
     target: str | None,
     plot: str | None,
+    bibliography: str | None,
     convention_name: str | None,
     detail: str,
     templates: str | None,
@@ -39,7 +40,7 @@ def command(
     chosen = chosen_format(format_name, target)
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
-    check_targets(target, plot)
+    check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
     page = page_of(detail, templates, chosen)
 
@@ -47,7 +48,15 @@ def command(
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)
         report_progress = progress_on_terminal(found, report_progress)
         return solved(
-            found, chosen, target, plot, convention, report_progress, only_some_tasks=task_name is not None, **page
+            found,
+            chosen,
+            target,
+            plot,
+            convention,
+            report_progress,
+            bibliography=bibliography,
+            only_some_tasks=task_name is not None,
+            **page,
         )
 
     run_work(work, timeout, memory, place_of(file))

@@ -53,6 +53,9 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         metavar="PATH",
         help="Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex.",
     ),
+    "bibliography": click.option(
+        "--bibliography", metavar="PATH", help="Write the works that the page cites to PATH, as a BibTeX file."
+    ),
     "convention": click.option(
         "--convention",
         "convention_name",

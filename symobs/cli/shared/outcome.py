@@ -55,9 +55,10 @@ def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, A
     return {"detail": detail_named(detail), "templates": Path(templates)}
 
 
-def check_targets(target: str | None, plot: str | None) -> None:
-    """Raise an error, before any work, if the result or its plot cannot be written."""
+def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:
+    """Raise an error, before any work, if the result, its plot or its bibliography cannot be written."""
     check_target(target)
+    check_target(bibliography)
     if plot is not None:
         from symobs.render.plots.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
 
@@ -75,6 +76,7 @@ def solved(
     convention: Any,
     report_progress: Progress,
     *,
+    bibliography: str | None = None,
     only_some_tasks: bool = False,
     **page: Any,
 ) -> Outcome:
@@ -96,7 +98,12 @@ def solved(
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
     report_progress("the page")
-    outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
+    document = replace(found.document(results, convention), **page)
+    outputs = [(render(document, format_name), target)]
+    if bibliography is not None:
+        from symobs.render.page.citations import bibliography_of  # noqa: PLC0415 - only with --bibliography
+
+        outputs.append((bibliography_of(document), bibliography))
     if plot is not None:
         from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
 

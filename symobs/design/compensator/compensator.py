@@ -125,13 +125,13 @@ def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tu
     return controller(m.A, m.B, m.C, m.D[0, 0], K, L, closed, feedback.plant.variable)
 
 
-@method("compensator/separation", source="S0, section 4.3: separation principle, (4.23)-(4.29)")
+@method("compensator/separation", source="luenberger1964; luenberger1971")
 def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
     """Design K as if x were known, design the observer of order n, use x̂ for x."""
     return CompensatorDesign.designed(plant, control, observer, "separation")
 
 
-@method("compensator/duality", source="S1, pole placement for observer and state feedback side by side (before 14:53)")
+@method("compensator/duality", source="kalman1960")
 def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
     """Place the eigenvalues of Aᵀ − CᵀLᵀ and of A − BK side by side, transpose; then use x̂ for x."""
     if not plant.inputs == plant.outputs == 1:
@@ -140,7 +140,7 @@ def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPoly
     return CompensatorDesign.designed(plant, control, observer, "duality")
 
 
-@method("compensator/minimal_order", source="S0, section 4.6: compensator with a minimal-order observer")
+@method("compensator/minimal_order", source="luenberger1971; kailath1980, ch. 4")
 def minimal_order(
     plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
 ) -> MinimalOrderCompensator:
@@ -178,7 +178,7 @@ def compensator(
     Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop ((I + PF)⁻¹ P, F in the return path),
     closed_loop_matrix in (x, e) or (x, e₂) and closed_loop_matrix_estimate in (x, x̂) or (x, z).  Where I − N D is
     singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
-    Source: S0, section 4.3, (4.23)-(4.29), and section 4.6.
+    Source: D. G. Luenberger (1964, 1971); T. Kailath, Linear Systems, ch. 4.
     """
     control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
     found = observer_based(

@@ -1,4 +1,4 @@
-"""The page of the compensator: gains, F(s) through its four stages (S0, Example 4.2), and the closed loop."""
+"""The page of the compensator: gains, F(s) through its four stages, and the closed loop."""
 
 from __future__ import annotations
 

@@ -83,7 +83,6 @@ RESTS_ON: dict[str, str] = {
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
-    "similar_loops": "similarity",
     "compensator_stable_low": "hurwitz",
     "compensator_unstable_low": "hurwitz",
     "compensator_unstable_low_alone": "hurwitz",
@@ -94,11 +93,10 @@ RESTS_ON: dict[str, str] = {
     "gain_state_feedback": "ackermann",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "similarity": ("from estimate to error", "S1, slide at 28:08"),
-    "compensator": ("compensator in transfer form", "S0, (4.25)"),
-    "hurwitz": ("Hurwitz's criterion", "A. Hurwitz, Math. Ann. 46 (1895), 273-284"),
-    "closed_loop": ("closed loop in state and error", "S0, (4.26)-(4.29)"),
+THEOREMS: dict[str, str] = {
+    "compensator": "kailath1980, ch. 4",
+    "hurwitz": "hurwitz1895",
+    "closed_loop": "luenberger1971",
 }
 
 #: A new thought begins here.

@@ -1,4 +1,4 @@
-"""The page of the compensator with a minimal-order observer, in the order of S0, section 4.6 and Example 4.4."""
+"""The page of the compensator with a minimal-order observer; after Example 4.4."""
 
 from __future__ import annotations
 

@@ -39,8 +39,8 @@ RESTS_ON: dict[str, str] = {
     "minimal_transfer": "minimal_order",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "minimal_order": ("compensator with a minimal-order observer", "S0, section 4.6"),
+THEOREMS: dict[str, str] = {
+    "minimal_order": "luenberger1971; kailath1980, ch. 4",
 }
 
 #: A new thought begins here.

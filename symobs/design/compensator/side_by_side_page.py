@@ -1,4 +1,4 @@
-"""Observer and state feedback in two columns, line by line: the same placement for (Aᵀ, Cᵀ) and for (A, B) (S1)."""
+"""Observer and state feedback in two columns, line by line: the same placement for (Aᵀ, Cᵀ) and for (A, B)."""
 
 from __future__ import annotations
 

@@ -42,10 +42,10 @@ RESTS_ON: dict[str, str] = {
     "error_equation": "error",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "observer": ("full-order observer", "S0, (4.18)-(4.20)"),
-    "error": ("error equation", "S0, (4.19)"),
-    "existence": ("existence of an asymptotic observer", "S4"),
+THEOREMS: dict[str, str] = {
+    "observer": "luenberger1964",
+    "error": "luenberger1971",
+    "existence": "luenberger1971",
 }
 
 OPENS = (

@@ -166,7 +166,7 @@ def observer(
     outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
     AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot
     be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
-    Source: S0, (4.18)-(4.20) and Theorem 4.4.
+    Source: D. G. Luenberger (1964, 1971).
     """
     return designed(
         ObserverDesign, plant, poles=poles, polynomial=polynomial, given=L, zero=zero, member=member, method=method

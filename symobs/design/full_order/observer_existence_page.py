@@ -1,4 +1,4 @@
-"""S4's way to the observer: x̂' = F x̂ + G u + H y with nothing known of F, G, H but that the error is to vanish."""
+"""The observer from its task: x̂' = F x̂ + G u + H y with nothing known of F, G, H but that the error is to vanish."""
 
 from __future__ import annotations
 

@@ -80,11 +80,11 @@ PLACEMENT_METHODS = (
     PlacementMethod(
         "canonical_form",
         Formula(
-            "S0, Example 4.1 (pole placement by the canonical form of the dual pair)",
+            "bass1965; kailath1980, ch. 3",
             "Lᵀ = (differences of coefficients, constant first) · V⁻¹, V = 𝒞(Aᵀ, Cᵀ) · Hankel matrix of χ.",
         ),
         Formula(
-            "S0, Examples 4.1 and 4.2 (controllable canonical form)",
+            "bass1965; kailath1980, ch. 3",
             "K = (differences of coefficients, constant first) · V⁻¹, V = 𝒞 · Hankel matrix of χ.",
         ),
         find=canonical_gain,
@@ -93,15 +93,15 @@ PLACEMENT_METHODS = (
     ),
     PlacementMethod(
         "ackermann",
-        Formula("Ackermann 1972, Regelungstechnik 20, 297-300; dual form", "L = φ(A) 𝒪⁻¹ eₙ."),
-        Formula("Ackermann 1972, Regelungstechnik 20, 297-300", "K = eₙᵀ 𝒞⁻¹ φ(A)."),
+        Formula("ackermann1972", "L = φ(A) 𝒪⁻¹ eₙ."),
+        Formula("ackermann1972", "K = eₙᵀ 𝒞⁻¹ φ(A)."),
         page=write_ackermann,
         single=True,
     ),
     PlacementMethod(
         "existence",
         Formula(
-            "S4, existence of an asymptotic observer",
+            "luenberger1964",
             "x̂' = F x̂ + G u + H y with undetermined F, G, H: the error is free of x and u for G = B, F = A − HC alone.",
         ),
         state_feedback=None,
@@ -117,11 +117,11 @@ PLACEMENT_METHODS = (
     PlacementMethod(
         "coefficient_matching",
         Formula(
-            "S2, the exact route to its gains; S3 (other ways to the gain)",
+            "standard: equating coefficients",
             "Unknown entries of L: det(sI − A + LC) = φ(s), equal coefficients, a linear system.",
         ),
         Formula(
-            "S2, the exact route to its gains; S3 (other ways to the gain)",
+            "standard: equating coefficients",
             "Unknown entries of K: det(sI − A + BK) = φ(s), equal coefficients, a linear system.",
         ),
         find=matched_gain,
@@ -131,11 +131,11 @@ PLACEMENT_METHODS = (
     PlacementMethod(
         "row_reduced_echelon",
         Formula(
-            "S3, (7)-(10)",
+            "moore1976; brogan1991",
             "Lᵀ = f Ψ⁻¹ with null vectors [ψ; f] of [λI − Aᵀ : Cᵀ], one for each pole, read off its row-reduced form.",
         ),
         Formula(
-            "S3, (7)-(10)",
+            "moore1976; brogan1991",
             "K = f Ψ⁻¹ with null vectors [ψ; f] of [λI − A : B], one for each pole, read off its row-reduced form.",
         ),
         find=reduced_gain,
@@ -144,11 +144,11 @@ PLACEMENT_METHODS = (
     PlacementMethod(
         "companion_form",
         Formula(
-            "S1, the double integrator at 16:01",
+            "bass1965",
             "Lᵀ = (differences of coefficients, constant first) T, where T brings the pair to companion form.",
         ),
         Formula(
-            "S1, the double integrator at 16:01",
+            "bass1965",
             "K = (differences of coefficients, constant first) T, where T brings the pair to companion form.",
         ),
         find=companion_gain,

@@ -103,7 +103,7 @@ def state_feedback(
     or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
     AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be
     assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
-    Source: S0, Example 4.2 and the pole assignment theorem.
+    Source: W. M. Wonham (1967).
     """
     return designed(
         StateFeedbackDesign, plant, poles=poles, polynomial=polynomial, given=K, zero=zero, member=member, method=method

@@ -48,11 +48,8 @@ RESTS_ON: dict[str, str] = {
     "sylvester_state_feedback": "sylvester",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "sylvester": (
-        "pole assignment by Sylvester's equation",
-        "S. P. Bhattacharyya and E. de Souza, Systems & Control Letters 1 (1982), 261-263",
-    ),
+THEOREMS: dict[str, str] = {
+    "sylvester": "bhattacharyya1982",
 }
 
 NAMING = ("impossible_zero_unless",)

@@ -1,4 +1,4 @@
-"""The pages of ways to a gain: Ackermann's formula, matching coefficients, companion form (S1), row-reduced echelon (S3)."""
+"""The pages of ways to a gain: Ackermann's formula, matching coefficients, companion form, row-reduced echelon form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pages of gain design: canonical form (S0, Example 4.1) and Ackermann's formula, on either side of duality."""
+"""The pages of gain design: canonical form and Ackermann's formula, on either side of duality."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def name_entries(page: Page, gain: str) -> None:
 
 
 def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """S0, Example 4.1: difference of coefficients, constant first, carried back by V⁻¹."""
+    """Difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
     wanted = [page.value(c) for c in reversed(desired.coefficients)]

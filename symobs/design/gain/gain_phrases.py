@@ -103,10 +103,10 @@ RESTS_ON: dict[str, str] = {
     "last_row": "ackermann",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "observer_poles": ("pole assignment for observers", "S0, Theorem 4.4"),
-    "row_reduction": ("row-reduced echelon method", "S3, (7)-(10)"),
-    "companion_form": ("placement through companion form", "S1, slide at 16:01"),
+THEOREMS: dict[str, str] = {
+    "observer_poles": "luenberger1966; wonham1967",
+    "row_reduction": "moore1976; brogan1991",
+    "companion_form": "bass1965",
 }
 
 EXPLAINS = (

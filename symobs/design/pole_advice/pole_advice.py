@@ -67,7 +67,7 @@ class PoleAdvice(AdvisedPoles):
         return cases_of(self)
 
 
-@method("pole_advice/butterworth", source="S3, section F")
+@method("pole_advice/butterworth", source="doyle1979; butterworth1930; brogan1991, pp. 532–533")
 def on_a_circle(plant: StateSpace, wish: Wish) -> PoleAdvice:
     """Stable zeros, then a Butterworth circle of the radius given."""
     if wish.radius is None:
@@ -105,7 +105,7 @@ def pole_advice(
     Returns poles (with multiplicity), polynomial (factored), zeros_used, warnings.  The verdict is `no` where modes that
     no observer moves are not among the poles.  Raises `InputError` in discrete time, for several inputs or outputs, and
     where N poles on a circle are not written with square roots (N = 7, 9, 11, …).
-    Source: S3, section F; W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532-533.
+    Source: J. C. Doyle and G. Stein (1979); W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532–533.
     """
     plant.require("B", "C", task="pole_advice")
     if (plant.inputs, plant.outputs) != (1, 1):

@@ -70,9 +70,9 @@ RESTS_ON: dict[str, str] = {
     "some_on_circle": "butterworth",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "zeros_first": ("observer eigenvalues at the plant's zeros", "S3, section F"),
-    "butterworth": ("Butterworth configuration", "W. L. Brogan, Modern Control Theory, 3rd ed., pp. 532-533"),
+THEOREMS: dict[str, str] = {
+    "zeros_first": "doyle1979",
+    "butterworth": "butterworth1930; brogan1991, pp. 532–533",
 }
 
 NAMING = ("radius_is_positive",)

@@ -1,4 +1,4 @@
-"""Differences of coefficients carried back from controllable canonical form: the recipes of S0, Example 4.1, and of S1."""
+"""Differences of coefficients carried back from controllable canonical form."""
 
 from __future__ import annotations
 

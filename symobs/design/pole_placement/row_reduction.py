@@ -1,4 +1,4 @@
-"""The row-reduced echelon method of S3: null vectors of [λI − Aᵀ : Cᵀ] for each pole, put together to Lᵀ = f Ψ⁻¹.
+"""Pole placement by null vectors of [λI − Aᵀ : Cᵀ] for each pole, put together to Lᵀ = f Ψ⁻¹.
 
 A null vector ξ = [ψ; f] has (λI − Aᵀ)ψ + Cᵀf = 0, so Lᵀψ = f makes ψ an eigenvector of (A − LC)ᵀ.  A pole asked for
 again, where no further null vector is independent, takes a generalised vector: the right side is −ψ of the one before.

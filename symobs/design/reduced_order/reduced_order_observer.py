@@ -289,13 +289,13 @@ def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
     return plant.beside(seen.restricted(plant.equations, plant.nonzero))
 
 
-@method("reduced_order_observer/partition", source="S0, (4.32)-(4.41); Luenberger 1971")
+@method("reduced_order_observer/partition", source="luenberger1971; gopinath1971")
 def by_partition(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
     """L places the poles of A₂₂ − L A₁₂ in coordinates where the outputs are the first states."""
     return ReducedOrderObserver.of(plant, desired, T, "partition")
 
 
-@method("reduced_order_observer/undetermined", source="S2, conditions on F, G and H")
+@method("reduced_order_observer/undetermined", source="luenberger1971")
 def undetermined(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
     """x̂₂ = z + L x₁, ż = F z + G u + H y: the error is free of x and u for one choice of F, G, H, whatever L is."""
     return ReducedOrderObserver.of(plant, desired, T, "undetermined")
@@ -318,7 +318,7 @@ def reduced_order_observer(
     T             optional n×n coordinates x̄ = T x whose upper p rows are C
     Returns L ((n−p)×p), T, F, G, H, M; where (C, A) is not observable either the family of gains or verdict `no` with
     the fixed modes.  Raises `InputError` for wrong poles or shapes, and where nothing is left to estimate.
-    Source: S0, (4.32)-(4.41) and Lemma 4.1.
+    Source: D. G. Luenberger (1971); B. Gopinath (1971).
     """
     plant = plant.knowing(poles, polynomial, T)
     plant.require("C", task="reduced_order_observer")

@@ -1,4 +1,4 @@
-"""The page of the reduced-order observer, in the order of S0, section 4.5: partition, Lemma 4.1, observer, z, assembly."""
+"""The page of the reduced-order observer: partition, observability of the unmeasured subsystem, observer, z, assembly."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
 
 
 def _mere_copy(page: Page) -> None:
-    """S2's first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
+    """A first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
     if not any(page["A_12"].value.entries):  # then no observer does better
         return
     x_2, x_2_hat = page["x_2"], page["x_2_hat"]

@@ -13,7 +13,7 @@ PHRASES: dict[str, str] = {
     "two_parts": "and the plant equations become",
     "parts_with_feedthrough": "Since {measured} is known, only {unmeasured} has to be estimated. The plant equations separate into",
     "first_part_measures": "In the first equation everything except $x_2$ is known, so it serves as a measurement of $x_2$ through $A_12$. The pair ($A_12$, $A_22$) is observable because ($C$, $A$) is§: {rank}.",
-    "mere_copy": "A copy of the plant with output-error correction does not work here§: since $x_1$ is taken from the measurement, the output error is zero for every gain, and the error of the other component evolves uncorrected: {left}.",
+    "mere_copy": "A copy of the plant with output-error correction does not work here: since $x_1$ is taken from the measurement, the output error is zero for every gain, and the error of the other component evolves uncorrected: {left}.",
     "mere_copy_fails": "This error does not decay, since $A_22$ is not stable.",
     "mere_copy_grows": "This error does not decay, since $A_22$ has the <eigenvalue|eigenvalues> {roots}.",
     "undetermined_ansatz": "Let the estimate be {estimate}, where the observer state is driven by the known signals and the matrices are to be determined§:",
@@ -58,17 +58,15 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 RESTS_ON: dict[str, str] = {
-    "mere_copy": "first_attempt",
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",
     "undetermined_ansatz": "undetermined",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "reduced_order": ("reduced-order observer", "S0, (4.37)-(4.41)"),
-    "reduced_pair": ("observability of the unmeasured part", "S0, Lemma 4.1"),
-    "first_attempt": ("the reduced observer that no gain corrects", "S2"),
-    "undetermined": ("conditions on the observer matrices", "S2"),
+THEOREMS: dict[str, str] = {
+    "reduced_order": "luenberger1971; gopinath1971",
+    "reduced_pair": "gopinath1971",
+    "undetermined": "luenberger1971",
 }
 
 OPENS = (

@@ -1,4 +1,4 @@
-"""S2's way to the reduced-order observer: x̂₂ = z + L x₁, ż = F z + G u + H y with F, G, H free until the error is looked at."""
+"""The reduced-order observer with undetermined matrices: x̂₂ = z + L x₁, ż = F z + G u + H y with undetermined F, G, H."""
 
 from __future__ import annotations
 

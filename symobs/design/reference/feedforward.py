@@ -191,7 +191,7 @@ def response(loop: OutputFeedback, F: Matrix) -> Realisation:
     return Realisation((m.A - m.B @ K).normal(), (m.B @ F).normal(), (m.C - m.D @ K).normal(), (m.D @ F).normal())
 
 
-@method("feedforward/static", source="S3, section G and (12)")
+@method("feedforward/static", source="chen1999, ch. 8")
 def static(loop: OutputFeedback) -> FeedforwardDesign:
     """F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
     return FeedforwardDesign.of(loop, "static")
@@ -217,7 +217,7 @@ def feedforward(
     Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
     times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (in
     discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
-    Source: S3, section G and (12).
+    Source: C.-T. Chen, Linear System Theory and Design, 3rd ed., ch. 8.
     """
     loop = observer_based(
         plant,

@@ -1,4 +1,4 @@
-"""The page of the feedforward, in the order of S3, section G."""
+"""The page of the feedforward."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ RESTS_ON: dict[str, str] = {
     "feedforward_smallest": "feedforward",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "feedforward": ("feedforward for unit gain at rest", "S3, section G and (12)"),
+THEOREMS: dict[str, str] = {
+    "feedforward": "chen1999, ch. 8",
 }
 
 OPENS = ("feedforward_law",)

@@ -222,7 +222,7 @@ def placed(rows: Matrix, places: tuple[int, ...] | list[int], height: int) -> Ma
     return Matrix.of([list(found.get(i, nothing)) for i in range(height)], rows.shape[1])
 
 
-@method("tracking/reference_model", source="S2, tracking with feedforward and reduced-order estimate")
+@method("tracking/reference_model", source="francis1976")
 def reference_model(loop: OutputFeedback, reference: Matrix, start: Matrix | None) -> TrackingDesign:
     """B K_d = A − A_d, solved in independent rows and columns of B."""
     return TrackingDesign.of(loop, reference, start, "reference_model")
@@ -251,7 +251,7 @@ def tracking(
     observer                                `minimal` or `full`
     Returns K, K_d (m×n), solvable (rank [B, A − A_d] = rank B), error_matrix in (e_d, e₂) or (e_d, e), polynomial
     (control times observer) and L.  Raises `InputError` for wrong poles or shapes.
-    Source: S2, tracking.
+    Source: B. A. Francis and W. M. Wonham (1976).
     """
     plant = plant.knowing(reference_matrix, reference_start)
     order = plant.order

@@ -1,4 +1,4 @@
-"""The page of tracking, in the order of S2."""
+"""The page of tracking."""
 
 from __future__ import annotations
 

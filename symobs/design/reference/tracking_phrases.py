@@ -28,8 +28,8 @@ RESTS_ON: dict[str, str] = {
     "tracking_law": "tracking",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "tracking": ("tracking of a reference", "S2"),
+THEOREMS: dict[str, str] = {
+    "tracking": "francis1976",
 }
 
 OPENS = (

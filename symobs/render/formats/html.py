@@ -26,6 +26,7 @@ from symobs.render.page.blocks import (
     Heading,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Title,
     Verified,
@@ -174,9 +175,11 @@ class HtmlWriter:
                 return self._display(self.printer.display(relations, boxed=boxed, end=closing))
             case Verified(inlines):
                 return f'<p class="verified">{self.sentence(inlines)}</p>'
-            case Caution(label, inlines, warns):
-                kind = "caution" if warns else "note"
-                return f'<p class="{kind}"><strong>{plain(label)}</strong> {self.sentence(inlines)}</p>'
+            case Caution(label, inlines):
+                return f'<p class="caution"><strong>{plain(label)}</strong> {self.sentence(inlines)}</p>'
+            case References(label, entries):
+                listed = "\n".join(f"<li>{plain(entry)}</li>" for entry in entries)
+                return f'<section class="references">\n<h2>{plain(label)}</h2>\n<ol>\n{listed}\n</ol>\n</section>'
             case Drawing():
                 return f"<figure>\n{svg(block, self._text_printer())}\n</figure>"
             case TableBlock():

@@ -19,6 +19,7 @@ from symobs.render.page.blocks import (
     Heading,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Title,
     Verified,
@@ -147,6 +148,9 @@ class LatexWriter:
                 return rf"\verified{{{self.sentence(inlines)}}}"
             case Caution(label, inlines):
                 return rf"\caution{{{escape(label)}}}{{{self.sentence(inlines)}}}"
+            case References(label, entries):
+                listed = "\n".join(rf"\item {escape(entry)}" for entry in entries)
+                return f"\\begin{{references}}{{{escape(label)}}}\n{listed}\n\\end{{references}}"
             case Drawing():
                 return tikz(block, self.printer)
             case TableBlock():

@@ -26,6 +26,7 @@ from symobs.render.page.blocks import (
     Heading,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Title,
     Verified,
@@ -148,9 +149,11 @@ class MarkdownWriter:
                 return self.display(relations, boxed=boxed, end=closing)
             case Verified(inlines):
                 return f"✓ {self.sentence(inlines)}"
-            case Caution(label, inlines, warns):
-                words = f"**{plain(label)}** {self.sentence(inlines)}"
-                return quoted(words) if warns else words
+            case Caution(label, inlines):
+                return quoted(f"**{plain(label)}** {self.sentence(inlines)}")
+            case References(label, entries):
+                listed = (f"- \\[{number}\\] {plain(entry)}" for number, entry in enumerate(entries, 1))
+                return "\n".join([f"**{plain(label)}**", "", *listed])
             case Drawing():
                 return fenced(sketch(block, self._text_printer(), _SKETCH))
             case TableBlock():

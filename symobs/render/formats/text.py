@@ -20,6 +20,7 @@ from symobs.render.page.blocks import (
     Heading,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Title,
     Verified,
@@ -107,8 +108,11 @@ class TextWriter:
                 return indented(self.printer.display(relations, boxed=boxed))
             case Verified(inlines):
                 return wrapped(self.sentence(inlines), width, first="✓ ")
-            case Caution(label, inlines, warns):
-                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! " if warns else "")
+            case Caution(label, inlines):
+                return wrapped(f"{label} {self.sentence(inlines)}", width, first="! ")
+            case References(label, entries):
+                listed = (wrapped(printable(entry), width, first=f"[{n}] ") for n, entry in enumerate(entries, 1))
+                return "\n".join([underlined(label, "-", width), *listed])
             case Drawing():
                 return indented(sketch(block, self.printer, width - len(INDENT)))
             case TableBlock():

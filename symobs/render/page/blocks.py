@@ -66,11 +66,18 @@ class Verified:
 
 @dataclass(frozen=True)
 class Caution:
-    """A warning, or with `warns` False another note in small print, after its label."""
+    """A warning after its label."""
 
     label: str
     inlines: Inlines
-    warns: bool = True
+
+
+@dataclass(frozen=True)
+class References:
+    """The sources at the end of a page, numbered from 1."""
+
+    label: str
+    entries: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -125,6 +132,7 @@ Block: TypeAlias = (
     | Display
     | Verified
     | Caution
+    | References
     | Drawing
     | PictureBlock
     | TableBlock

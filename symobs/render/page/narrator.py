@@ -28,7 +28,8 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import Conjunction
-from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON, THEOREMS
+from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
+from symobs.phrases.literature import reference
 from symobs.render.page.blocks import (
     Block,
     CaseBlock,
@@ -41,14 +42,16 @@ from symobs.render.page.blocks import (
     Inlines,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Title,
     Verified,
 )
+from symobs.render.page.citations import cited_literature
 from symobs.render.page.convention_notes import letters_used, stated_conventions
 from symobs.render.page.detail_level import at_detail
 from symobs.render.page.prose import filled, joined, with_reference
-from symobs.render.page.side_by_side import in_rows, is_beside, row_by_row
+from symobs.render.page.side_by_side import in_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -67,12 +70,12 @@ _UNNUMBERED = {"task", "tasks"}
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
-    "conventions": "Conventions:",
+    "conventions": "Notation:",
     "observer_matrix": "observer matrix",
     "error": "error",
     "case": "Case",
-    "caution": "A caution.",
-    "sources": "Sources.",
+    "caution": "Remark.",
+    "sources": "References",
 }
 
 
@@ -81,8 +84,8 @@ def narrate(document: Document) -> tuple[Block, ...]:
     for derivation in document.derivations:
         derivation.check()
     parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
-    numbers = numbered(parts)
-    page = _PageBlocks(document.convention, numbers=numbers)
+    works, citations = cited_literature(step for steps in parts for step in steps)
+    page = _PageBlocks(document.convention, citations=citations)
     page.blocks.append(_title(document))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
@@ -95,24 +98,9 @@ def narrate(document: Document) -> tuple[Block, ...]:
             if not _is_statement(step):
                 page.emit_step(step)
         page.printed |= _inside(steps)
-    page.blocks += _sources(numbers)
+    if works:
+        page.blocks.append(References(LABELS["sources"], tuple(f"{reference(key)}." for key in works)))
     return _punctuated(page.blocks)
-
-
-def numbered(parts: Sequence[Sequence[Step]]) -> dict[str, int]:
-    """Return the theorems cited by the sentences, numbered in the order of the page."""
-    keys = dict.fromkeys(
-        RESTS_ON[sentence.key] for steps in parts for sentence in _sentences(steps) if sentence.key in RESTS_ON
-    )
-    return {key: number for number, key in enumerate(keys, 1)}
-
-
-def _sources(numbers: Mapping[str, int]) -> list[Block]:
-    """Return the closing paragraph: each theorem under its number, with its source."""
-    if not numbers:
-        return []
-    listed = "; ".join(f"[{number}] {': '.join(THEOREMS[key])}" for key, number in numbers.items())
-    return [Caution(LABELS["sources"], (f"{listed}.",), warns=False)]
 
 
 def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
@@ -146,15 +134,6 @@ def _inside(steps: Sequence[Step]) -> set[Step]:
     return {*printed, *(replace(step, answer=False) for step in printed if isinstance(step, (Define, Equal, Where)))}
 
 
-def _sentences(steps: Sequence[Step]) -> Iterator[Sentence]:
-    for step in steps:
-        found = getattr(step, "sentence", None)
-        if found is not None:
-            yield found
-        yield from getattr(step, "findings", ())
-        yield from _sentences(row_by_row(step) if is_beside(step) else getattr(step, "steps", ()))
-
-
 def printer_for(document: Document, kind: type[P]) -> P:
     """Return a printer for the mathematics of a document: variable, symbols, letters, time domain."""
     if not document.derivations:
@@ -183,11 +162,11 @@ class _PageBlocks:
         *,
         given: Mapping[Formula, Relation] | None = None,
         numbered: bool = True,
-        numbers: Mapping[str, int] | None = None,
+        citations: Mapping[str, str] | None = None,
     ) -> None:
         self.convention = convention
         self.blocks: list[Block] = []
-        self.theorems = dict(numbers or {})
+        self.citations = dict(citations or {})
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.printed: set[Step] = set()
@@ -299,7 +278,7 @@ class _PageBlocks:
         """Emit sections in columns."""
         rows: list[tuple[tuple[Block, ...], ...]] = []
         for row in in_rows([column.steps for column in columns]):
-            cells = [_PageBlocks(self.convention, given=self.given, numbers=self.theorems) for _ in row]
+            cells = [_PageBlocks(self.convention, given=self.given, citations=self.citations) for _ in row]
             for cell, steps in zip(cells, row, strict=True):
                 for step in steps:
                     cell.emit_step(step)
@@ -317,7 +296,7 @@ class _PageBlocks:
 
     def emit_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Emit the steps of a case, whose data hold only there."""
-        inner = _PageBlocks(self.convention, given=self.given, numbered=False, numbers=self.theorems)
+        inner = _PageBlocks(self.convention, given=self.given, numbered=False, citations=self.citations)
         inner.emit_sentence(sentence)
         inner.emit(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
@@ -329,7 +308,7 @@ class _PageBlocks:
         """Emit a sentence, appended to a paragraph before it."""
         if sentence is None:
             return
-        inlines = with_reference(filled(sentence, self.convention), self.theorems.get(RESTS_ON.get(sentence.key, "")))
+        inlines = with_reference(filled(sentence, self.convention), self.citations.get(RESTS_ON.get(sentence.key, "")))
         goes_on = sentence.key not in OPENS
         if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
             self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))

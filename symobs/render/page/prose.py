@@ -64,18 +64,18 @@ def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
     return joined(inlines)
 
 
-def with_reference(inlines: Inlines, number: int | None) -> Inlines:
-    """Return a sentence with the number of its theorem, in its slot or before the final punctuation."""
+def with_reference(inlines: Inlines, citation: str | None) -> Inlines:
+    """Return a sentence with the citation of its theorem, in its slot or before the final punctuation."""
     if any(isinstance(part, str) and MARK in part for part in inlines):
-        shown = "" if number is None else f"\N{NO-BREAK SPACE}[{number}]"
+        shown = "" if citation is None else f"\N{NO-BREAK SPACE}{citation}"
         return tuple(part.replace(MARK, shown) if isinstance(part, str) else part for part in inlines)
-    if number is None:
+    if citation is None:
         return inlines
     *rest, last = inlines
     if not isinstance(last, str):
-        return joined((*inlines, f"\N{NO-BREAK SPACE}[{number}]"))
+        return joined((*inlines, f"\N{NO-BREAK SPACE}{citation}"))
     words = last.rstrip(".:,")
-    return joined((*rest, f"{words}\N{NO-BREAK SPACE}[{number}]{last[len(words) :]}"))
+    return joined((*rest, f"{words}\N{NO-BREAK SPACE}{citation}{last[len(words) :]}"))
 
 
 def joined(inlines: Iterable[Inline]) -> Inlines:

@@ -33,11 +33,8 @@ RESTS_ON: dict[str, str] = {
     "routh_changes_axis": "routh",
 }
 
-THEOREMS: dict[str, tuple[str, str]] = {
-    "routh": (
-        "Routh's criterion",
-        "E. J. Routh, A Treatise on the Stability of a Given State of Motion (Macmillan, 1877)",
-    ),
+THEOREMS: dict[str, str] = {
+    "routh": "routh1877",
 }
 
 EXPLAINS = (

@@ -1,0 +1,44 @@
+"""The literature that the sentences of a page rest on, numbered in the order of the page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.phrases import RESTS_ON, THEOREMS
+from symobs.phrases.literature import bibliography, cited
+from symobs.render.page.detail_level import at_detail
+from symobs.render.page.side_by_side import is_beside, row_by_row
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from symobs.derivation import Sentence, Step
+    from symobs.result import Document
+
+
+def cited_literature(steps: Iterable[Step]) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Return the works cited, in the order of the page, and how each theorem is cited by their numbers."""
+    works: dict[str, int] = {}
+    citations: dict[str, str] = {}
+    for theorem in dict.fromkeys(RESTS_ON[said.key] for said in _sentences(steps) if said.key in RESTS_ON):
+        places = [
+            f"{works.setdefault(key, len(works) + 1)}{', ' * bool(place)}{place}"
+            for key, place in cited(THEOREMS[theorem])
+        ]
+        citations[theorem] = f"[{'; '.join(places)}]"
+    return tuple(works), citations
+
+
+def bibliography_of(document: Document) -> str:
+    """Return the works that a page cites, as a BibTeX file."""
+    steps = (step for derivation in document.derivations for step in at_detail(derivation.steps, document.detail))
+    return bibliography(cited_literature(steps)[0])
+
+
+def _sentences(steps: Iterable[Step]) -> Iterator[Sentence]:
+    for step in steps:
+        found = getattr(step, "sentence", None)
+        if found is not None:
+            yield found
+        yield from getattr(step, "findings", ())
+        yield from _sentences(row_by_row(step) if is_beside(step) else getattr(step, "steps", ()))
