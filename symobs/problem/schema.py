@@ -24,7 +24,7 @@ TOP: dict[str, dict[str, Any]] = {
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
     "convention": {
-        "description": "the convention the file is written in: standard, S0 to S4, or your own",
+        "description": 'the convention the file is written in: standard, a law such as "u = K x_hat, A + M C", or a name',
         "type": "string",
         "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },

@@ -22,9 +22,13 @@ if TYPE_CHECKING:
 Value: TypeAlias = Scalar | Matrix
 
 #: What the sources call the numbers of states, inputs and outputs; elsewhere n, m, p.
-SIZES = {"S1": ("n", "m", "q"), "S2": ("n", "p", "q"), "S3": ("n", "r", "m")}
+SIZES = {
+    "plusK-plusMC": ("n", "m", "q"),
+    "minusK-minusLC-estimate-x0": ("n", "p", "q"),
+    "minusK-minusLC": ("n", "r", "m"),
+}
 #: Where C stands for the invertible block C₁ of y = C₁ x₁.
-MEASURED = {"S2"}
+MEASURED = {"minusK-minusLC-estimate-x0"}
 #: The generators of time: the instants of a transition matrix and of an integral.
 INSTANTS = ("t", "t0", "t1", "sigma", "tau")
 #: What the transition matrix is kept in.
@@ -119,7 +123,7 @@ def krylov(A: Matrix, B: Matrix) -> Matrix:
 def _polynomials(
     plant: StateSpace, K: Matrix | None, L: Matrix | None, convention: Convention
 ) -> dict[str, Value | None]:
-    """Return the characteristic and the desired polynomials, V of the pair (Aᵀ, Cᵀ), and the coefficients of S1."""
+    """Return the characteristic and the desired polynomials, V of the pair (Aᵀ, Cᵀ), and the coefficients of `plusK-plusMC`."""
     m, s, name = PlantMatrices.of(plant), plant.variable, convention.name
     found: dict[str, Value | None] = {}
     if K is not None and m.B is not None:
@@ -131,11 +135,11 @@ def _polynomials(
     found["V"] = V
     if L is not None and L.shape == (plant.order, 1):
         found[convention.letters.get("phi_o", "phi_o")] = phi = (m.A - L @ m.C).characteristic_polynomial(s)
-        if name == "S1":
+        if name == "plusK-plusMC":
             for i, (alpha, beta) in enumerate(zip(chi.coefficients(s), phi.coefficients(s), strict=True)):
                 found |= {f"alpha_{i}": alpha, f"beta_{i}": beta, f"gamma_{i}": alpha - beta} if i else {}
             found |= {f"k_{i + 1}": -L[i, 0] for i in range(plant.order)}
-    if name == "S1" and not V.determinant().is_zero:
+    if name == "plusK-plusMC" and not V.determinant().is_zero:
         found["T"] = V.inverse()
     return found
 
@@ -167,8 +171,8 @@ def blocks_of(plant: StateSpace, K: Matrix | None, L: Matrix | None, convention:
 
 
 def _for_the_observer(m: PlantMatrices, L: Matrix | None, name: str) -> dict[str, Value | None]:
-    """Return F and G of S4, x̂' = F x̂ + G u + H y."""
-    if name != "S4" or L is None or m.C is None or L.shape != (m.A.shape[0], m.C.shape[0]):
+    """Return F and G of `plusK-minusHC`, x̂' = F x̂ + G u + H y."""
+    if name != "plusK-minusHC" or L is None or m.C is None or L.shape != (m.A.shape[0], m.C.shape[0]):
         return {}
     return {"F": m.A - L @ m.C, "G": m.B}
 

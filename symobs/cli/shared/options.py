@@ -60,7 +60,8 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "--convention",
         "convention_name",
         metavar="NAME",
-        help="Write the page in this convention: standard, S0 to S4, or the path of a TOML file.",
+        help='Write the page in this convention: standard, a law such as "u = K x_hat, A + M C", a name that '
+        "`symobs conventions` lists, or the path of a TOML file.",
     ),
     "timeout": click.option(
         "--timeout",
