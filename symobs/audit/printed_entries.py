@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.audit.equations.grammar import FUNCTIONS, read_relation
 from symobs.audit.equations.reading import EquationConditions
-from symobs.convention import Convention, conventions
-from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.convention import Convention, convention_named
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expression import declared_name
 from symobs.expression.source import shown
 from symobs.expression.syntax_tree import letters_of
@@ -54,19 +55,23 @@ def printed_entries(
     return found
 
 
+def _built_in(name: str, place: str) -> Convention:
+    try:
+        return convention_named(re.sub(r"(\.toml)+\Z", "", name))  # a file names no path
+    except UsageError as error:
+        raise InputError(error.message, where=f"{place}.convention", repair=error.repair) from None
+
+
 def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> PrintedEntry:
     name = entry.get("convention", convention.name)
-    known = {**conventions(), convention.name: convention} if name != convention.name else {name: convention}
-    if name not in known:
-        message = f'"{shown(name, 40)}" is not a convention'
-        raise InputError(message, where=f"{place}.convention", repair=f"use one of {', '.join(known)}")
+    written_in = convention if name == convention.name else _built_in(name, place)
     let = _lets(entry.get("let", {}), f"{place}.let")
     relation, condition = parted(entry.get("relation", ""), signs, f"{place}.relation")
     if "relation" in entry and len(read_relation(relation, f"{place}.relation")) < 2:
         repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
         raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
     where, erratum = entry.get("where", ""), entry.get("erratum", "")
-    return PrintedEntry(place, where, erratum, known[name], relation, condition, let, entry.get("expect", {}))
+    return PrintedEntry(place, where, erratum, written_in, relation, condition, let, entry.get("expect", {}))
 
 
 def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, EquationConditions]:

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.convention import STANDARD, Convention, convention_named, conventions
+from symobs.convention.builtin import ALIASES
 from symobs.convention.convention_file import read_convention
 from symobs.derivation import convention_signs, translated
 from symobs.errors import DerivationRejected, InputError, ProblemErrors, UsageError
@@ -86,7 +87,20 @@ def unmet(found: Problem) -> list[str]:
 
 
 def test_the_profiles_are_those_of_the_table() -> None:
-    assert {name: (found.law, found.observer_matrix, found.pair) for name, found in conventions().items()} == TABLE
+    written = {name: (found.law, found.observer_matrix, found.pair) for name, found in conventions().items()}
+    assert written == {ALIASES.get(name, name): laws for name, laws in TABLE.items()}
+    assert {name: convention_named(name).name for name in ALIASES} == ALIASES
+
+
+def test_a_convention_is_named_by_its_law() -> None:
+    assert convention_named("u = K x_hat, A + M C").name == "plusK-plusMC"
+    assert convention_named("u = -K x_hat, A - L C") is STANDARD
+    own = convention_named("u = -R x_hat, A + G C")
+    assert (own.law, own.observer_matrix) == ("u = -R x_hat", "A + G C")
+    with pytest.raises(
+        UsageError, match=r"not a control law and an observer matrix: law, observer: this cannot be read"
+    ):
+        convention_named("u = K x_hat, A")
 
 
 @pytest.mark.parametrize("name", TABLE)
