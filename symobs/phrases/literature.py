@@ -318,9 +318,9 @@ def reference(key: str) -> str:
 
 
 def bibliography(keys: Iterable[str]) -> str:
-    """Return entries as a BibTeX file."""
+    """Return entries as a BibTeX file; what is no key of the literature has none."""
     entries = []
-    for key in sorted(set(keys)):
+    for key in sorted({key for key in keys if key in LITERATURE}):
         kind, of = LITERATURE[key]
         fields = {name: value.replace("–", "--").replace("&", r"\&") for name, value in of.items() if value}
         fields["author"] = _authors(fields["author"])

@@ -293,7 +293,7 @@ def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivo
     page = " ".join(str(result.to("text")).split())
     for mode in (-1, -2):
         survives = "is among" if mode in poles else "is not among"
-        assert f"its fixed mode {mode} {survives} the poles asked for" in page
+        assert f"its fixed mode {mode} {survives} the desired poles" in page
     if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1
         assert matrix_at(result.answer["L"], {"c": Fraction(1)}) == [[-3], [6]]
         with pytest.raises(ZeroDivisionError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 import tomllib
@@ -13,8 +14,9 @@ import pytest
 
 from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.phrases.english import question_phrases
+from symobs.phrases.literature import LITERATURE, bibliography, cited
 from symobs.problem import read
-from symobs.result import Task, tasks
+from symobs.result import Task, methods, tasks
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -94,6 +96,25 @@ def keys_of(path: Path) -> list[str]:
 
 def test_every_theorem_is_appealed_to_and_none_is_missing() -> None:
     assert set(RESTS_ON.values()) == THEOREMS.keys()
+
+
+def test_what_theorems_and_methods_cite_is_in_the_literature() -> None:
+    sources = [THEOREMS[name] for name in THEOREMS]
+    sources += [found.source for name in tasks() for found in methods(name).values()]
+    keys = {key for source in sources for key, _ in cited(source)}
+    own_words = {"definition", "least-squares estimate", "standard: equating coefficients"}
+    assert keys - own_words - {"second-order step response"} <= LITERATURE.keys()
+    assert LITERATURE.keys() <= keys
+
+
+def test_the_bibliography_has_an_entry_for_every_work() -> None:
+    entries = bibliography(LITERATURE)
+    assert re.findall(r"^@(\w+)\{(\w+),$", entries, re.MULTILINE) == [
+        (kind, key) for key, (kind, _) in sorted(LITERATURE.items())
+    ]
+    assert "  author = {S. P. Bhattacharyya and E. de Souza}," in entries
+    assert "  author = {R. E. Kalman and Y. C. Ho and K. S. Narendra}," in entries
+    assert "  pages = {261--263}," in entries
 
 
 def test_the_phrases_bring_no_code_with_them() -> None:

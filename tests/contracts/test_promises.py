@@ -345,8 +345,8 @@ def test_a_plant_that_cannot_be_read_does_not_hide_what_is_missing() -> None:
 @pytest.mark.parametrize(
     ("poles", "said"),
     [
-        ("-1, -2, -5", "its fixed modes -1, -2 are among the poles asked for"),
-        ("-1, -3, -5", "its fixed modes -1, -2 are not all among the poles asked for"),
+        ("-1, -2, -5", "its fixed modes -1, -2 are among the desired poles"),
+        ("-1, -3, -5", "its fixed modes -1, -2 are not all among the desired poles"),
     ],
 )
 def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> None:
@@ -427,7 +427,7 @@ def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
 @pytest.mark.parametrize(
     "problem",
     [
-        {  # a fixed mode among the poles asked for, on a curve of another degree: a fraction that is a polynomial there
+        {  # a fixed mode among the desired poles, on a curve of another degree: a fraction that is a polynomial there
             "task": "observer",
             "symbols": {"a": "nonzero", "b": "nonnegative"},
             "plant": {"A": "[b^2 0; 0 2*a-b]", "C": "[-3 0]"},

@@ -172,7 +172,7 @@ QUESTIONS: dict[str, str] = {"ask trace": "What stands on the diagonal of $A$?"}
 
 RESTS_ON: dict[str, str] = {"trace_is": "trace_theorem"}
 
-THEOREMS: dict[str, tuple[str, str]] = {"trace_theorem": ("traces", "nobody, Theorem 2")}
+THEOREMS: dict[str, str] = {"trace_theorem": "nobody, Theorem 2"}
 
 FIGURES: dict[str, dict[str, object]] = {
     "free_motion": {
@@ -278,7 +278,7 @@ def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
     for text in told.values():
         assert "✓ det(sI - A + L C) = s² + 20s + 100" in text
     assert "A gain that assigns it is" in told["dummy"]
-    assert "With zeros in the places" in told["second"]
+    assert "No gain with zero entries at" in told["second"]
     assert "A gain that assigns it is" not in told["second"] + told["ackermann"]
 
 

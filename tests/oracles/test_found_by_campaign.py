@@ -95,7 +95,7 @@ def test_a_root_at_1_for_all_parameters_leaves_no_region(polynomial: str) -> Non
     """)
     assert result.verdict == "no"
     assert [str(bound) for bound in result.stable_if] == ["False"]
-    assert "Whatever the values, not all roots lie in the open unit disc" in result.to("text")
+    assert "For no values of the parameters do all roots lie in the open unit disc" in result.to("text")
 
 
 def test_a_constant_compensator_is_stable() -> None:

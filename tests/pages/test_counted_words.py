@@ -18,7 +18,12 @@ def text_of(result: object) -> str:
 @pytest.mark.parametrize(
     ("A", "C", "poles", "sentence"),
     [
-        ("[-1 0; 0 -2]", "[1 0]", [-2, -3], "No gain moves the unobservable mode -2, but it is among the poles"),
+        (
+            "[-1 0; 0 -2]",
+            "[1 0]",
+            [-2, -3],
+            "No gain moves the unobservable mode -2, but it is among the desired poles",
+        ),
         ("[-1 0 0; 0 -2 0; 0 0 -3]", "[1 0 0]", [-2, -3, -4], "the unobservable modes -2, -3, but they are among"),
     ],
 )
@@ -29,9 +34,9 @@ def test_hidden_modes_are_counted(A: str, C: str, poles: list[int], sentence: st
 def test_the_fixed_modes_of_a_case_are_counted() -> None:
     # c = 0 hides the states whose eigenvalues are -2, or -2 and -4.
     one = symobs.observer(symobs.StateSpace("[-1 0; 0 -2]", C="[1 c]"), poles=[-2, -3])
-    assert "but its fixed mode -2 is among the poles" in text_of(one)
+    assert "but its fixed mode -2 is among the desired poles" in text_of(one)
     two = symobs.observer(symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -4]", C="[1 c c]"), poles=[-2, -3, -5])
-    assert "and its fixed modes -2, -4 are not all among the poles" in text_of(two)
+    assert "and its fixed modes -2, -4 are not all among the desired poles" in text_of(two)
 
 
 def test_the_only_root_and_several_of_them() -> None:
@@ -55,6 +60,6 @@ def test_a_sketch_in_characters_speaks_of_no_dots_and_dashes() -> None:
     text, page = result.to("text"), result.to("html")
     assert isinstance(text, str)
     assert isinstance(page, str)
-    assert "Stable for" in text
+    assert "Shaded: stable values of" in text
     assert "Dots" not in text
     assert "Dots" in page

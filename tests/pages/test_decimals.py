@@ -95,7 +95,7 @@ def test_decimals_of_the_data_are_given_as_decimals() -> None:
     page = str(reduced_order_observer(plant, poles="-20, -20+20i, -20-20i").to("text"))
     given_part = page.partition("1. Observability")[0]
     assert "10.78" in given_part
-    assert "The decimals are exact: 10.78 = 539/50, 0.98 = 49/50." in " ".join(given_part.split())
+    assert "The decimals are taken as exact: 10.78 = 539/50, 0.98 = 49/50." in " ".join(given_part.split())
     assert "-1643.65" in page  # not the -1643 of a gain that was cut off
     assert "-16986.53" in page
 

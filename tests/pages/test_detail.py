@@ -213,12 +213,12 @@ def test_python_and_the_shell_know_the_levels() -> None:
     result = symobs.observer(plant, poles=[-10, -10])
     full, outline, answer = (str(result.to("text", detail=detail)) for detail in DETAILS)
     assert len(answer) < len(outline) < len(full)
-    assert "corrected by the output error" in full
-    assert "corrected by the output error" not in outline
+    assert "with a correction proportional to the output error" in full
+    assert "with a correction proportional to the output error" not in outline
     assert "as required" in answer
     run = inside("solve", str(SERVO), "--format", "text", "--detail", "answer")
     assert run.code == 0
-    assert "Carried back" not in run.out
+    assert "In the original coordinates it is" not in run.out
     assert (
         inside("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles", "-1, -1", "--detail", "outline").code == 0
     )

@@ -143,7 +143,7 @@ def test_json_holds_every_problem(folder: Path) -> None:
     assert (good["file"], good["title"]) == ("good.toml", "Good & well")
     assert good["results"][0]["polynomial"] == "s**2 - 2*s + 1"
     assert bad["results"] is None
-    assert bad["failure"] == "This problem could not be worked out."
+    assert bad["failure"] == "This problem could not be solved."
     assert no["results"][0]["verdict"] == "no"
     assert "Is the pair (C, A) observable?" in no["question"]
     only = json.loads(inside("sheet", "good.toml", "--questions", "--format", "json", folder=folder).out)["problems"][0]
@@ -176,7 +176,7 @@ def test_detail_holds_for_solutions() -> None:
 def test_one_that_fails_loses_no_other(folder: Path) -> None:
     run = inside("sheet", "broken.toml", "bad.toml", "good.toml", "--format", "text", folder=folder)
     assert run.code == 3
-    failed = "This problem could not be worked out."
+    failed = "This problem could not be solved."
     assert run.out.count(failed) == 3
     assert "Problem 1. broken\n=" in run.out
     assert "Design an observer with the pole -1." in run.out  # what is asked can be told, not what comes of it
@@ -390,5 +390,5 @@ def test_a_suffix_never_means_slides(folder: Path) -> None:
 def test_every_format_with_sheets_says_what_failed(name: str, folder: Path) -> None:
     run = inside("sheet", "bad.toml", "good.toml", "--format", name, folder=folder)
     assert run.code == 3
-    assert "could not be worked out" in run.out
+    assert "could not be solved" in run.out
     assert "Good" in run.out

@@ -28,7 +28,7 @@ def text_of(result: Any) -> str:
 )
 def test_a_polynomial_that_is_stable_whatever_the_values(polynomial: str, parameters: list[str]) -> None:
     text = text_of(symobs.stability_region(polynomial, parameters=parameters))
-    assert f"So all roots are stable for all values of {' and '.join(parameters)}." in text
+    assert f"Hence all roots are stable for all values of {' and '.join(parameters)}." in text
     assert "connected" not in text
 
 
@@ -40,20 +40,20 @@ def test_where_a_single_value_is_left_out_not_all_are_stable() -> None:
 
 def test_one_point_has_two_sides() -> None:
     text = text_of(symobs.stability_region("s + h", parameters=["h"]))
-    assert "On either side of this point nothing changes" in text
+    assert "On either side of this point the number of stable roots is constant" in text
     assert "Between one point" not in text
 
 
 def test_stable_means_what_was_sought() -> None:
     # With the margin 1 the roots of s^2 + s + 1, which lie left of the axis, do not count as stable.
     text = text_of(symobs.stability_region("s^2 + h s + k", parameters=["h", "k"], margin=1))
-    assert "has a real part below -1; a root that has is called stable here." in text
+    assert "has real part less than -1; such roots are called stable here." in text
 
 
 def test_a_single_root_leaves_the_disc_alone() -> None:
     plant = symobs.StateSpace("[1/2]", C="[1]", dt=1)
     text = text_of(symobs.stability_region(plant, L="[h]", parameters=["h"]))
-    assert "the root leaves the disc only at 1 or at −1: where one of these vanishes" in text
+    assert "the root can leave the disc only at 1 or at −1, that is, where one of the following vanishes" in text
 
 
 # -- functions of time ------------------------------------------------------------------------------------------------
@@ -74,7 +74,7 @@ def test_a_gain_of_many_is_not_called_the_only_one() -> None:
     # Two outputs see the modes -1, -2, c: for c = -2 one of two modes -2 is hidden.
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
     text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
-    assert "is among the poles asked for, so this L still works." in text
+    assert "is among the desired poles, so this L remains a solution." in text
     assert "only one" not in text
 
 
@@ -82,28 +82,28 @@ def test_the_equation_is_solved_where_its_own_spectra_are_apart() -> None:
     # The plant has the poles -1 and -2 that are asked for; a gain taken out first moves them away.
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
     text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
-    assert "where no pole asked for is an eigenvalue of the plant" not in text
-    assert "where the two square matrices beside the unknown one have no eigenvalue in common" in text
+    assert "if and only if no desired pole is an eigenvalue of the plant" not in text
+    assert "if and only if the two coefficient matrices have no common eigenvalue" in text
 
 
 def test_gains_that_a_family_leaves_out_are_told() -> None:
     # L = [3 0] places -1 as well, and has no G with 1 in its second row.
     text = text_of(symobs.observer(symobs.StateSpace("[2]", C="[1; 3]"), poles=[-1]))
-    assert "and special ones for which that row cannot be held. All the others are" in text
+    assert "and nongeneric ones for which that row cannot be fixed." in text
 
 
 @pytest.mark.parametrize("outputs", ["[0 0]", "[0 0; 0 0]"])
 def test_where_all_poles_are_fixed_there_are_no_others(outputs: str) -> None:
     text = text_of(symobs.observer(symobs.StateSpace("[-1 0; 0 -2]", C=outputs), poles=[-1, -2]))
-    assert "There are no others to place, so every gain serves, for example" in text
-    assert "places the others" not in text
+    assert "No other poles remain to be placed, so any gain will do, for example" in text
+    assert "that places the remaining poles is" not in text
     assert "Sylvester" not in text
 
 
 def test_what_is_hidden_from_the_input_is_not_called_seen() -> None:
     plant = symobs.StateSpace("[-1 0; 0 -2]", "[1 2; 0 0]")
     text = text_of(symobs.state_feedback(plant, poles=[-2, -5]))
-    assert "the part that the input moves has the freedom of Sylvester's equation" in text
+    assert "on the controllable part there is the freedom of Sylvester's equation" in text
 
 
 # -- cautions ---------------------------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ def test_what_is_hidden_from_the_input_is_not_called_seen() -> None:
 
 def test_a_single_pole_at_0_keeps_the_start() -> None:
     text = text_of(symobs.state_feedback(symobs.StateSpace("[2]", "[1]"), poles=[0]))
-    assert "A pole asked for is 0: with this feedback the loop comes to rest" in text
+    assert "A desired pole is 0: the closed loop converges to an equilibrium" in text
 
 
 @pytest.mark.parametrize(
@@ -120,14 +120,18 @@ def test_a_single_pole_at_0_keeps_the_start() -> None:
         (
             [0, -1],
             None,
-            "A pole asked for is 0: with this feedback the loop comes to rest, but where its start decides.",
+            "A desired pole is 0: the closed loop converges to an equilibrium that depends on the initial state.",
         ),
         (
             [1, "1/2"],
             1,
-            "A pole asked for is 1: with this feedback the loop comes to rest, but where its start decides.",
+            "A desired pole is 1: the closed loop converges to an equilibrium that depends on the initial state.",
         ),
-        ([-1, "1/2"], 1, "lies on the unit circle: with this feedback the loop does not come to rest by itself."),
+        (
+            [-1, "1/2"],
+            1,
+            "lies on the unit circle: for almost every initial state the closed loop does not converge to an equilibrium.",
+        ),
     ],
 )
 def test_a_loop_that_keeps_a_part_of_its_start_does_come_to_rest(poles: list[Any], dt: Any, words: str) -> None:
@@ -144,13 +148,13 @@ def test_a_loop_that_keeps_a_part_of_its_start_does_come_to_rest(poles: list[Any
 )
 def test_a_loop_without_response_has_no_poles(B: str, C: str, control: str, observer: str) -> None:
     design = symobs.compensator(symobs.StateSpace("[-1 0; 0 -2]", B, C), control_poles=control, observer_poles=observer)
-    assert "It has no poles: those of the state feedback and of the observer, -" in text_of(design)
+    assert "It has no poles: all control and observer poles, -" in text_of(design)
 
 
 def test_a_single_pole_that_is_left_is_one() -> None:
     plant = symobs.StateSpace("[1 0; 0 -2]", "[1; 1]", "[0 1]")
     text = text_of(symobs.compensator(plant, control_poles=[-1, -2], observer_poles=[1, -4]))
-    assert "The only pole, -2, is among those of the state feedback and of the observer" in text
+    assert "The only pole, -2, is a control or observer pole, as expected" in text
 
 
 def test_a_direct_term_that_is_zero_is_not_given_a_reason() -> None:
@@ -165,15 +169,15 @@ def test_a_direct_term_that_is_zero_is_not_given_a_reason() -> None:
 
 def test_what_no_gain_moves_is_not_compared() -> None:
     text = text_of(symobs.reduced_order_observer(symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 0]"), poles=[-2]))
-    assert "No L moves the mode -2, and it is the pole asked for: every gain serves, for example" in text
-    assert "Equal coefficients require" not in text
-    assert "of no use here" not in text
+    assert "No L moves the mode -2, and it is the desired pole: any gain will do, for example" in text
+    assert "Equating coefficients gives" not in text
+    assert "does not work here" not in text
 
 
 def test_coordinates_under_a_condition_are_told_in_whole_sentences() -> None:
     # For c = 0 there is no output, which no row completes.
     text = text_of(symobs.reduced_order_observer(symobs.StateSpace("[0 0; 0 1]", C="[0 c]"), poles=[0]))
-    assert "elsewhere other rows would have to complete C. In them the measured states come first:" in text
+    assert "otherwise C must be completed by other rows." in text
 
 
 # -- feedforward and tracking -----------------------------------------------------------------------------------------
@@ -182,12 +186,33 @@ def test_coordinates_under_a_condition_are_told_in_whole_sentences() -> None:
 @pytest.mark.parametrize(
     ("A", "B", "C", "D", "poles", "words"),
     [
-        ("[0 1; 0 0]", "[0; 1]", "[0 1]", None, "-1, -1; -2, 0", "the plant has a zero there"),
+        ("[0 1; 0 0]", "[0; 1]", "[0 1]", None, "-1, -1; -2, 0", "the plant has a zero at zero frequency"),
         ("[-1 0; 0 -2]", "[0; 0]", "[1 1]", None, "-1, -2; -3, -4", "The transfer function of the plant is zero"),
-        ("[0 1; 0 0]", "[1 0; 0 1]", "[1 0; 2 0]", None, "-1, -2; -3, 0", "= 1, and there are more outputs"),
-        ("[0 1; 0 0]", "[0; 1]", "[1 0; 0 1]", None, "-1, -2; -3, -4", "= 1, and there are more outputs"),
-        ("[-1 0; 0 -2]", "[1 0; 0 1]", "[1 0; 0 1]", "[-1 0; 0 0]", "-1, -2; -3, -4", "the plant has a zero there"),
-        ("[0 1; 0 0]", "[0; 1]", "[1 0]", None, "-1, 0; -3, -4", "where it comes to rest, if it does, depends on its"),
+        (
+            "[0 1; 0 0]",
+            "[1 0; 0 1]",
+            "[1 0; 2 0]",
+            None,
+            "-1, -2; -3, 0",
+            "= 1, which is less than the number of outputs",
+        ),
+        ("[0 1; 0 0]", "[0; 1]", "[1 0; 0 1]", None, "-1, -2; -3, -4", "= 1, which is less than the number of outputs"),
+        (
+            "[-1 0; 0 -2]",
+            "[1 0; 0 1]",
+            "[1 0; 0 1]",
+            "[-1 0; 0 0]",
+            "-1, -2; -3, -4",
+            "the plant has a zero at zero frequency",
+        ),
+        (
+            "[0 1; 0 0]",
+            "[0; 1]",
+            "[1 0]",
+            None,
+            "-1, 0; -3, -4",
+            "The steady state, if there is one, therefore depends on the",
+        ),
     ],
 )
 def test_why_the_output_at_rest_cannot_be_set(A: str, B: str, C: str, D: Any, poles: str, words: str) -> None:
@@ -195,7 +220,7 @@ def test_why_the_output_at_rest_cannot_be_set(A: str, B: str, C: str, D: Any, po
     plant = symobs.StateSpace(A, B, C, D)
     text = text_of(symobs.feedforward(plant, control_poles=control, observer_poles=observer, observer="full"))
     assert words in text
-    assert ("has a zero there" in text) == ("has a zero there" in words)
+    assert ("has a zero at zero frequency" in text) == ("has a zero at zero frequency" in words)
 
 
 def test_a_reference_that_stays_in_0_is_refused() -> None:
@@ -210,8 +235,8 @@ def test_a_reference_that_stays_in_0_is_refused() -> None:
 def test_a_gramian_that_may_not_exist_is_not_said_to_have_no_kernel() -> None:
     # The integral over all time exists for a > 0 alone.
     text = text_of(symobs.gramian(symobs.StateSpace("[-a 0; 0 -2]", C="[1 1]"), horizon="inf"))
-    assert "so it has no kernel." in text
-    assert "neither has W" not in text
+    assert "so its kernel is trivial." in text
+    assert "and so is that of W" not in text
 
 
 def test_without_input_noise_there_is_one_part() -> None:
@@ -223,7 +248,7 @@ def test_without_input_noise_there_is_one_part() -> None:
 @pytest.mark.parametrize(("B", "Q"), [("[0]", "q"), ("[1]", "0")])
 def test_input_noise_that_does_not_arrive_spoils_no_estimate(B: str, Q: str) -> None:
     text = text_of(symobs.initial_state_covariance(symobs.StateSpace("[-1]", B, "[1]"), Q=Q, R="r", horizon="T"))
-    assert "does not have the smallest variance" not in text
+    assert "is not the minimum-variance estimate" not in text
 
 
 # -- time-varying plants ----------------------------------------------------------------------------------------------
@@ -234,22 +259,22 @@ def test_not_every_function_is_an_output() -> None:
     text = text_of(
         symobs.time_varying_observability(symobs.StateSpace("[0 0; 0 0]", C="[1 t]"), interval="0, 1", output="t^2")
     )
-    assert "No initial state has this output" in text
-    assert "no two initial states have the same output" in text
+    assert "No initial state produces this output" in text
+    assert "distinct initial states give distinct outputs" in text
 
 
 def test_a_rank_that_drops_is_not_told_of_every_instant() -> None:
     # [C; CA] = [t t^2; 0 0] has the rank 1 but for t = 0.
     text = text_of(symobs.time_varying_observability(symobs.StateSpace("[0 0; 0 0]", C="[t t^2]"), interval="0, 1"))
-    assert "= 1 at almost every instant, and nowhere more, and yet the plant is observable" in text
+    assert "= 1 at almost every instant, and never more, and yet the plant is observable" in text
 
 
 def test_several_hidden_directions_may_be_combined() -> None:
     two = symobs.StateSpace("[0 0 0; 0 0 0; 0 0 -1]", C="[0 0 1]")
     text = text_of(symobs.initial_state(two, output="exp(-t)", horizon=1))
-    assert "those of the vectors beside it vanish, so every combination of these may be added" in text
+    assert "the vectors beside it are unobservable, so any linear combination of them may be added" in text
     one = symobs.StateSpace("[0 0; 0 -1]", C="[0 1]")
-    assert "so every multiple of that one may be added" in text_of(
+    assert "so any multiple of the latter may be added" in text_of(
         symobs.initial_state(one, output="exp(-t)", horizon=1)
     )
 
@@ -260,16 +285,16 @@ def test_several_hidden_directions_may_be_combined() -> None:
 def test_a_radius_is_said_to_be_positive() -> None:
     # For r < 0 the roots of s^2 + sqrt(2) r s + r^2 lie in the right half-plane.
     double = ("[0 1; 0 0]", "[0; 1]", "[1 0]")
-    assert "As a radius, r is positive." in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius="r"))
+    assert "Being a radius, r is positive." in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius="r"))
     known = symobs.StateSpace(*double, symbols={"r": "positive"})
-    assert "As a radius" not in text_of(symobs.pole_advice(known, radius="r"))
-    assert "As a radius" not in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius=10))
+    assert "Being a radius" not in text_of(symobs.pole_advice(known, radius="r"))
+    assert "Being a radius" not in text_of(symobs.pole_advice(symobs.StateSpace(*double), radius=10))
 
 
 def test_a_zero_that_is_stable_and_slow_is_not_denied() -> None:
     plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1/10 1 0]")
     text = text_of(symobs.pole_advice(plant, settling_time=2, overshoot="1/20"))
-    assert "too slow for the settling time" in text
+    assert "too slow for the specified settling time" in text
     assert "No stable zero" not in text
 
 

@@ -159,7 +159,7 @@ VALUES: dict[str, tuple[str, ...]] = {
         "[-3 1; -2 0]",
         "[3; 2]",
         "line: dx̂₁/dt = -3x̂₁ + x̂₂ + 3y, dx̂₂/dt = -2x̂₁ + u + 2y",
-        "line: An estimate that is right stays right",
+        "line: If the estimate is exact at one instant, it remains exact",
     ),
     "S1-CL": (
         "[-2 -2]",
@@ -171,7 +171,7 @@ VALUES: dict[str, tuple[str, ...]] = {
         "line: ẋ = (A + B K)x - B K x̄",
     ),
     "S2-PART": (
-        "line: its output error is zero whatever the gain is",
+        "line: the output error is zero for every gain",
         "line: A₂₂(x₂ - x₀₂)",
         "line: eigenvalues 0, ± (7/10)√22",
     ),
@@ -216,12 +216,12 @@ VALUES: dict[str, tuple[str, ...]] = {
     ),
     "S3-OBS-D": (
         "line: dx̂/dt = A x̂ + B u + L(y - C x̂ - D u)",
-        "line: The output error does not contain the input, since the feedthrough cancels in it",
+        "line: The feedthrough term cancels in the output error, which therefore does not depend on the input",
         "line: y - C x̂ - D u = C e",
-        "line: with B - L D in place of B so that the feedthrough does cancel",
+        "line: with B - L D in place of B to account for the feedthrough",
     ),
     "S3-ERR": ("line: ė = A x + B u - (A x̂ + B u + L(y - C x̂ - D u)) = (A - L C)e",),
-    "S3-RRE": ("line: f Ψ⁻¹", "line: A further independent null vector does not exist", "line: -1, -6, -7"),
+    "S3-RRE": ("line: f Ψ⁻¹", "line: has no further independent null vector", "line: -1, -6, -7"),
     "S3-EX": (
         "[2 2 2 1; -1 -5 0 0; -15 -5 -9 -2]",
         "[1 0 0 -25/68; 0 1 0 5/68; 0 0 1 27/34]",

@@ -436,7 +436,7 @@ def test_what_cannot_be_written_down_is_undecided() -> None:
     found: Any = symobs.observability(generic(5))
     assert (found.verdict, found.fields["rank"], found.fields["determinant"]) == ("undecided", 5, None)
     assert found.holds_where == ()
-    assert "too long to be written down" in " ".join(found.to("text").split())
+    assert "too long to display" in " ".join(found.to("text").split())
 
 
 def test_a_chain_with_three_outputs_mixed_is_decided_everywhere() -> None:

@@ -296,7 +296,7 @@ def test_a_problem_that_takes_too_much_keeps_its_place_with_its_question(hard: P
     assert first["results"][0]["verdict"] == "yes"
     assert (second["results"], second["title"]) == (None, "All of sixth order")
     assert "Design an observer" in second["question"]
-    assert second["failure"] == "This problem was not worked out in the time or memory it was given."
+    assert second["failure"] == "This problem could not be solved within the time or memory allowed."
 
 
 def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:

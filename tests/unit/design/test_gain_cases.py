@@ -122,15 +122,15 @@ def test_a_mode_that_the_input_does_not_move_may_grow() -> None:
     # The page called the whole characteristic polynomial stable, which its own check refused.
     found = symobs.gramian(symobs.StateSpace("[1 0; 0 -2]", "[0; 1]"), horizon="inf", of="controllability")
     assert str(found.fields["matrix"]) == "[0 0; 0 1/4]"
-    assert "since what the input moves decays" in " ".join(found.to("text").split())
+    assert "since all controllable modes decay" in " ".join(found.to("text").split())
 
 
 def test_a_rank_that_drops_somewhere_is_told_in_general() -> None:
     plant = symobs.StateSpace("[-1 0; 0 -2]", None, "[a 0]")
     found = symobs.observability(plant)
     page = " ".join(found.to("text").split())
-    assert "In general rank 𝒪 = 1 < 2, and nowhere more" in page
-    assert "Case a ≠ 0. It becomes observable when state 2 is measured as well." in page
+    assert "For generic parameter values rank 𝒪 = 1 < 2, and for no values is it larger" in page
+    assert "Case a ≠ 0. It becomes observable if state 2 is also measured." in page
     everywhere = symobs.observability(symobs.StateSpace("[-1 0; 0 -2]", None, "[a^2+1 0]"))
     assert "Here rank 𝒪 = 1 < 2" in everywhere.to("text")
 

@@ -327,10 +327,10 @@ def test_a_decoupled_gain_that_lies_in_no_chart_is_written() -> None:
     found = symobs.observer(plant, poles=[-1, -1], member="decoupled")
     assert sympy.eye(2) == found.L
     words = " ".join(str(found.to("text")).split())
-    assert "The output errors are decoupled, each obeying an equation of its own, by the gain" in words
+    assert "The output errors are decoupled, each satisfying an equation of its own, by the gain" in words
     back = symobs.state_feedback(symobs.StateSpace("[0 0; 0 0]", "[1 0; 0 1]"), poles=[-1, -1], member="decoupled")
     words = " ".join(str(back.to("text")).split())
-    assert "The inputs are decoupled, each driving a part of its own, by the gain" in words
+    assert "The inputs are decoupled, each driving a separate subsystem, by the gain" in words
 
 
 @pytest.mark.parametrize("arguments", [{}, {"zero": "(1, 1)"}, {"L": "[1 2; 3 4]"}])

@@ -132,7 +132,7 @@ def test_a_pattern_that_one_parameter_value_allows() -> None:
     assert sympy.simplify(there) == 0
     assert case.result.cases[0].result.verdict == "no"
     page = " ".join(found.to("text").split())
-    assert "have a common solution only where b - 2 vanishes" in page
+    assert "have a common solution only if b - 2 vanishes" in page
     assert "Here we assume a ≠ 0" in page
 
 

@@ -224,7 +224,7 @@ def test_text_has_headings_checks_and_a_drawing() -> None:
     text = Text().render(example.target_document())
     assert "1. State feedback\n-----------------\n" in text
     assert "✓ det(" in text
-    assert "! A caution." in text
+    assert "! Remark." in text
     assert " r ───▶○─" in text
 
 

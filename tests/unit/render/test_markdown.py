@@ -12,7 +12,7 @@ from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula import Environment, Letter, Literal, Relation, Roots
 from symobs.phrases import PHRASES
 from symobs.render.formats.markdown import Markdown, MarkdownWriter, paragraph, plain, portable
-from symobs.render.page.blocks import CaseBlock, Caution, Display, Paragraph
+from symobs.render.page.blocks import CaseBlock, Caution, Display, Paragraph, References
 from symobs.render.printers.latex_printer import LatexPrinter
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
@@ -51,7 +51,7 @@ def test_the_page_to_aim_at() -> None:
     ]
     assert sum(line.startswith("✓ ") for line in lines) == 2
     assert r"=\boxed{\begin{bmatrix}4&3\end{bmatrix}} $$" in page
-    assert "> **A caution.** The double pole at $-2$ is defective" in page
+    assert "> **Remark.** The double pole at $-2$ is defective" in page
     (sketch,) = re.findall(r"\n\n```text\n(.*?)\n```\n\n", page, flags=re.DOTALL)
     assert "┌" in sketch
     assert "(319s + 400)/(s² + 23s + 161)" in sketch
@@ -110,9 +110,9 @@ def test_a_case_is_a_quotation_with_its_displays_on_one_line() -> None:
     assert page == "> **Case **\n>\n> so\n>\n> $$ K=L. $$"
 
 
-def test_notes_are_no_warnings() -> None:
-    assert writer().block(Caution("A caution.", ("x",))).startswith("> **A caution.** ")
-    assert writer().block(Caution("Sources.", ("x",), warns=False)).startswith("**Sources.** ")
+def test_references_are_no_warnings() -> None:
+    assert writer().block(Caution("Remark.", ("x",))).startswith("> **Remark.** ")
+    assert writer().block(References("References", ("x",))) == "**References**\n\n- \\[1\\] x"
 
 
 def test_rows_of_a_display_are_aligned() -> None:

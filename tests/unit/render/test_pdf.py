@@ -49,7 +49,7 @@ def test_the_page_to_aim_at(require_tool: RequireTool, tmp_path: Path) -> None:
     words = words_of(Pdf().render(example.target_document()), tmp_path, require_tool("pdftotext"))
     assert "Output feedback of 1/(s(s+1)) with a full-order observer" in words
     assert "4. Closed loop." in words
-    assert "A caution." in words
+    assert "Remark." in words
 
 
 def test_the_same_page_gives_the_same_bytes(require_tool: RequireTool) -> None:

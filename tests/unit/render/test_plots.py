@@ -187,22 +187,20 @@ def words(picture: Picture) -> str:
 
 
 def test_captions_say_what_is_shown() -> None:
-    drawn_for = (
-        "Stable for (h₁, h₂) in the shaded region; its boundary does not belong to it. Dots are stable points, crosses"
-    )
+    drawn_for = "Stable for (h₁, h₂) in the shaded region; boundary excluded. Dots are stable points, crosses"
     assert words(hand.pendulum()).startswith(drawn_for)
     assert words(hand.pendulum()).endswith("Drawn for b = 1, ω = 1.")
-    assert "Open circles do not belong to it." in words(hand.ring_hole())
+    assert "Open circles: excluded points." in words(hand.ring_hole())
     assert words(replace(hand.ring_hole(), areas=(), marks=())) == (
-        "Nothing is shaded: for no (h₁, h₂) shown here is it stable."
+        "No value of (h₁, h₂) in the range shown is stable."
     )
-    assert words(replace(hand.hyperbola(), marks=hand.hyperbola().marks[:1])).endswith("Crosses are unstable points.")
+    assert words(replace(hand.hyperbola(), marks=hand.hyperbola().marks[:1])).endswith("Crosses: unstable test points.")
     window = Fraction(0), Fraction(1)
-    assert words(LinePicture("k", window, ((None, None),))) == "Stable for every k shown here."
-    assert words(LinePicture("k", window, ())) == "Stable for no k shown here."
-    assert "the thick interval; its ends do not belong to it" in words(hand.interval())
-    assert "The shaded half-plane is Re s < -1/2." in words(hand.third_order())
-    assert "The shaded disc has the radius 1." in words(hand.sampled())
+    assert words(LinePicture("k", window, ((None, None),))) == "All values of k shown are stable."
+    assert words(LinePicture("k", window, ())) == "No value of k shown is stable."
+    assert "Thick interval: stable values of k, endpoints excluded" in words(hand.interval())
+    assert "Shaded half-plane: Re s < -1/2." in words(hand.third_order())
+    assert "The shaded disc has radius 1." in words(hand.sampled())
 
 
 def test_curves_that_divide_only_are_left_out_where_they_are_many() -> None:
@@ -212,8 +210,8 @@ def test_curves_that_divide_only_are_left_out_where_they_are_many() -> None:
         for y in range(-2, 3)
     )
     few, many = (replace(picture, curves=(*picture.curves[:1], *lines[:n])) for n in (3, 5))
-    assert "Dashed curves" in words(few)
-    assert "Dashed curves" not in words(many)
+    assert "Dashed: curves" in words(few)
+    assert "Dashed: curves" not in words(many)
 
 
 # -- LaTeX ------------------------------------------------------------------------------------------------------------
@@ -270,7 +268,7 @@ def test_svg_sets_scripts_as_text() -> None:
 def test_svg_of_a_file_carries_the_caption() -> None:
     root = read(svg_file(hand.three_components(), TextPrinter()))
     written = " ".join("".join(element.itertext()) for element in root.iter(f"{SVG}text"))
-    assert "its boundary does not belong to it." in written
+    assert "boundary excluded." in written
     assert "Curve (1) is h13 +" in written
 
 

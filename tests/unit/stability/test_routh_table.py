@@ -603,5 +603,5 @@ def test_a_page_in_discrete_time_names_the_variable() -> None:
 
 def test_the_theorems_have_their_sources() -> None:
     for name in ("routh", "hurwitz", "lienard_chipart"):
-        assert any(year in THEOREMS[name][1] for year in ("1877", "1895", "1914"))
+        assert any(year in THEOREMS[name] for year in ("1877", "1895", "1914"))
     assert {key for key in RESTS_ON if key.startswith("routh")} <= PHRASES.keys()

@@ -27,14 +27,14 @@ def text_of(transfer_function: object, dt: object = 0) -> str:
     ("function", "dt", "said"),
     [
         ("(s+1)/((s+1)(s+2))", 0, "The pole -1 cancels, and what follows is about the function in lowest terms."),
-        ("(s-1)/((s-1)(s+2))", 0, "A caution. The pole 1 cancels, .* it does not lie in the open left half plane"),
+        ("(s-1)/((s-1)(s+2))", 0, "Remark. The pole 1 cancels, .* it does not lie in the open left half plane"),
         ("(z-1/2)/((z-1/2) z)", 1, "The pole 1/2 cancels, and what follows is about the function in lowest terms."),
-        ("(z-2)/((z-2) z)", 1, "A caution. The pole 2 cancels, .* it does not lie inside the unit circle"),
-        ("s(s+1)/(s^2 (s+1)^2)", 0, "A caution. The poles 0, -1 cancel, .* not all lie in the open left half plane"),
-        ("(s+b)/((s+b)(s+2))", 0, "A caution. The pole -b cancels, .* it is stable exactly where b > 0"),
+        ("(z-2)/((z-2) z)", 1, "Remark. The pole 2 cancels, .* it does not lie inside the unit circle"),
+        ("s(s+1)/(s^2 (s+1)^2)", 0, "Remark. The poles 0, -1 cancel, .* not all lie in the open left half plane"),
+        ("(s+b)/((s+b)(s+2))", 0, "Remark. The pole -b cancels, .* stable if and only if b > 0"),
         ("1/(s+1) - s/(s+1)^2 - 1/(s+1)^2 + 1/s", 0, "The poles -1, -1 cancel"),
-        ((s**2 - 1) / (s**2 + s - 2), 0, "A caution. The pole 1 cancels"),
-        ([[1, -1], [1, 1, -2]], 0, "A caution. The pole 1 cancels"),
+        ((s**2 - 1) / (s**2 + s - 2), 0, "Remark. The pole 1 cancels"),
+        ([[1, -1], [1, 1, -2]], 0, "Remark. The pole 1 cancels"),
     ],
 )
 def test_a_pole_that_cancels_is_a_finding(function: object, dt: int, said: str) -> None:
