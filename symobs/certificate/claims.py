@@ -149,8 +149,8 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Return whether exact values are needed: residues cannot decide functions of time, nor relations."""
-    if environment.relations:
+    """Return whether exact values are needed: residues cannot decide functions of time, roots, nor relations."""
+    if environment.relations or any(value.field.roots for value in (*leaves, *environment.coefficients.values())):
         return True
     meanings = [formula for formula in environment.signals.values() if formula is not None]
     if relation.is_of_instants or any(contains(formula, (At, Integral)) for formula in meanings):

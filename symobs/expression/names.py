@@ -66,14 +66,15 @@ class Scope:
     context: Field | None = None
     functions: bool = False
     rounding: bool = False
+    roots: bool = False
 
     @staticmethod
-    def of(names: Names, variable: str | None, where: str, *, functions: bool = False, rounding: bool = False) -> Scope:
+    def of(names: Names, variable: str | None, where: str, **reading: bool) -> Scope:
         """Return the scope; raises ExpressionError if the variable of the polynomial is declared as a symbol."""
         if names is not None and variable in names:
             message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
             raise ExpressionError(message, where=where, repair="give the symbol another name")
-        return Scope(names, variable, functions=functions, rounding=rounding)
+        return Scope(names, variable, **reading)
 
     def declares(self, name: str) -> bool:
         """Return whether the name is declared by name, not only admitted because every name is."""

@@ -59,6 +59,12 @@ class Function:
         return Scalar.symbol(self.name)
 
     @property
+    def square(self) -> int:
+        """The prime whose positive square root this is: values are kept in normal form in it; else 0."""
+        number = int(self.argument.fraction()) if self.kind == "sqrt" and self.argument.is_constant else 0
+        return number if number.bit_length() <= _PRIME_BITS and fmpz(number).is_prime() else 0
+
+    @property
     def symbols(self) -> frozenset[str]:
         """The plain symbols inside."""
         return symbols_in(self.argument)
@@ -196,6 +202,8 @@ def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
 def normal_form(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
+        if root.square:
+            continue  # the field itself keeps values in normal form in it
         above = _split(value.numerator, root)
         below = _split(value.denominator, root)
         q = root.value
@@ -345,7 +353,7 @@ def identities(
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
     if falling:
         steps = {key: step if key[0] else -step for key, step in steps.items()}
-    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
+    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name) if not root.square]
     counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
     relations += [f.argument.substitute(dict.fromkeys(f.argument.names, f.value)) for f in counted]
     for (turns, monomial), step in steps.items():

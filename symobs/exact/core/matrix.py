@@ -29,10 +29,8 @@ class Matrix:
         self, field: Field, table: fmpz_mat | ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]
     ) -> None:
         """Take a table over a common denominator; `Matrix.of` is the general constructor."""
-        self.field = field
-        self.table = table
-        self.denominator = denominator
-        self.shape = shape
+        self.field, self.shape = field, shape
+        self.table, self.denominator = ring.normal_table(field, table, denominator) if field.roots else (table, denominator)
         self._elsewhere: dict[Field, Matrix] = {}
 
     # -- construction ---------------------------------------------------------------------------------------------

@@ -58,7 +58,8 @@ class Ideal:
     @cached_property
     def generators(self) -> tuple[Scalar, ...]:
         """The reduced Gröbner basis."""
-        return tuple(self._back(polynomial) for polynomial in self.basis)
+        found = [self._back(polynomial) for polynomial in self.basis]
+        return tuple(generator for generator in found if generator)
 
     @property
     def is_whole(self) -> bool:
@@ -78,6 +79,8 @@ class Ideal:
     def within(self, field: Field) -> Ideal:
         """Return the ideal in a larger field: further generators leave a reduced basis of the same order what it is."""
         if (EIGENVALUE in field.position) != (EIGENVALUE in self.field.position):
+            return _ideal(self.generators, field)
+        if field.roots:
             return _ideal(self.generators, field)
         home = _home(field)
         moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in self.generators]
@@ -128,7 +131,7 @@ class Ideal:
 
         As many monomials are divisible by no leading monomial of the basis.
         """
-        if self._bounds is None or prod(self._bounds) > _MONOMIALS:
+        if self.field.roots or self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         monomials = product(*map(range, self._bounds))
@@ -164,7 +167,7 @@ class Ideal:
         return Ideal.of((*self.generators, *others))
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
-        return Scalar(self.field, polynomial.project_to_context(self.field.context), self.field.one)
+        return Scalar(self.field, self.field.normal(polynomial.project_to_context(self.field.context)), self.field.one)
 
 
 def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:
@@ -201,6 +204,7 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):
         return Ideal(field, fmpz_mpoly_vec([home.constant(1)], home), home)
+    moved += [square.project_to_context(home) for square in field.relations] if moved else []
     if len(moved) > 1 and sum(len(polynomial) for polynomial in moved) > TERMS:
         message = "the equations have too many terms"
         raise TooLarge(message)
