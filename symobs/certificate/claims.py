@@ -22,7 +22,7 @@ from symobs.conditions import sign_where, vanishing_factors
 from symobs.errors import CertificateRejected, NotShown, WrongKind
 from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
 from symobs.exact.core.generators import symbols_named
-from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
+from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator, squares_of
 from symobs.formula import (
     Apply,
     At,
@@ -149,8 +149,8 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Return whether exact values are needed: residues cannot decide functions of time, roots, nor relations."""
-    if environment.relations or any(value.field.roots for value in (*leaves, *environment.coefficients.values())):
+    """Return whether exact values are needed: residues cannot decide functions of time, nor relations."""
+    if environment.relations:
         return True
     meanings = [formula for formula in environment.signals.values() if formula is not None]
     if relation.is_of_instants or any(contains(formula, (At, Integral)) for formula in meanings):
@@ -232,7 +232,9 @@ def _holds_at_points(
     generator = random.Random(_seed(relation, environment, leaves))  # noqa: S311 - repeatable by design
     error, points = 1.0, 0
     names = {environment.variable}.union(*(leaf.field.names for leaf in [*leaves, *environment.coefficients.values()]))
-    for _ in range(_DRAWS):
+    roots = len(squares_of(names))
+    draws = _DRAWS << roots  # one prime in 2^k has roots of k numbers
+    for _ in range(draws):
         try:
             arithmetic = Modular(environment, Point(names, generator))
             if not _holds_at(relation, environment, arithmetic):
@@ -240,7 +242,7 @@ def _holds_at_points(
         except (VanishingDenominator, ZeroDivisionError):
             continue
         points += 1
-        error *= _error_bound(relation, environment, arithmetic)
+        error *= _error_bound(relation, environment, arithmetic, draws << roots if roots else 1)
         if error <= ERROR_GOAL:
             return f"at {points} random point{'s' if points > 1 else ''} modulo 64-bit primes", error
     return "", 0.0
@@ -254,8 +256,12 @@ def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular)
     )
 
 
-def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular) -> float:
-    """Return a bound for the probability that a false relation passes at a random point modulo a random prime."""
+def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular, share: int) -> float:
+    """Return a bound for the probability that a false relation passes at a random point modulo a random prime.
+
+    Beside k roots the integer that a prime must not divide is a norm, of 2ᵏ times the bits; and no prime among all that
+    may have been drawn may divide it: `share` is the number of draws times 2ᵏ.
+    """
     bounds = Bounds(environment, arithmetic)
     total = 0.0
     sizes = [evaluate(member, environment, bounds) for member in relation.members]
@@ -263,7 +269,7 @@ def _error_bound(relation: Relation, environment: Environment, arithmetic: Modul
         for first, second in _paired(left, right):
             degree = max(first.above + second.below, second.above + first.below)
             bits = 1 + max(first.above_bits + second.below_bits, second.above_bits + first.below_bits)
-            total += degree / 2.0**POINT_BITS + bits / (PRIME_BITS - 1) / PRIMES_BELOW
+            total += degree / 2.0**POINT_BITS + share * bits / (PRIME_BITS - 1) / PRIMES_BELOW
     return min(total, 0.5)
 
 

@@ -95,6 +95,11 @@ class Field:
             return self
         return _join(self, other)
 
+    @property
+    def numbers(self) -> Field:
+        """The field of the roots alone: Q, or Q(√2, …)."""
+        return Field.of([self.names[index] for index, _ in self.roots]) if self.roots else RATIONALS
+
     def without(self, names: frozenset[str]) -> Field:
         """Return the field of the other generators."""
         return _without(self, names)

@@ -130,8 +130,8 @@ def square_root(radicand: Scalar) -> Scalar:
     Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
     """
     unit, factors = radicand.factors()
-    number = unit.fraction()
-    if number < 0 and all(power % 2 == 0 for _, power in factors):
+    number = unit.fraction() if unit.is_constant else None
+    if number is not None and number < 0 and all(power % 2 == 0 for _, power in factors):
         message = f"{radicand} has no real root"
         raise ZeroDivisionError(message)
     front, odd = ONE, ONE
@@ -139,9 +139,9 @@ def square_root(radicand: Scalar) -> Scalar:
         half, rest = divmod(power, 2)
         front = front * factor**half
         odd = odd * factor if rest else odd
-    if odd.is_one:
+    if odd.is_one and number is not None:
         return front * _root_of_number(number)
-    return front * generator("sqrt", odd * number)
+    return front * generator("sqrt", odd * unit)
 
 
 def square_part(number: int) -> int:
@@ -233,6 +233,8 @@ def with_roots(value: Scalar, roots: Iterable[Function]) -> Scalar:
         square = root.value**2 * root.argument.denominator
         unit, _ = core.factors()
         core, square = core / unit, square / unit
+        if core.is_one:  # a number under the root divides everything
+            continue
         below = value.denominator
         while not (quotient := below / core).is_zero and quotient.denominator.is_constant:
             below, power = quotient, power + 1

@@ -242,14 +242,14 @@ class Scalar:
     def numerator(self) -> Scalar:
         """The numerator of the reduced form."""
         if self.field.roots and not self.denominator_part.is_constant():
-            return _lowest_terms(self)[0]
+            return _lowest_terms(self, self.field.names)[0]
         return Scalar(self.field, self.numerator_part, self.field.one)
 
     @property
     def denominator(self) -> Scalar:
         """The denominator of the reduced form."""
         if self.field.roots and not self.denominator_part.is_constant():
-            return _lowest_terms(self)[1]
+            return _lowest_terms(self, self.field.names)[1]
         return Scalar(self.field, self.denominator_part, self.field.one)
 
     def common_denominator(self) -> Scalar:
@@ -359,9 +359,10 @@ def _factored(value: Scalar, names: tuple[str, ...]) -> tuple[Scalar, tuple[tupl
 
 
 @lru_cache(maxsize=1024)
-def _lowest_terms(value: Scalar) -> tuple[Scalar, Scalar]:
-    """Return numerator and denominator without a common factor over the roots of the field."""
-    field = value.field
+def _lowest_terms(value: Scalar, names: tuple[str, ...]) -> tuple[Scalar, Scalar]:
+    """Return numerator and denominator without a common factor over the roots of the field, which has these names."""
+    field = Field.of(names)
+    value = value.within(field)
     above, below = number_field.lowest_terms(field, value.numerator_part, value.denominator_part)
     return Scalar(field, above, field.one), Scalar(field, below, field.one)
 
@@ -393,7 +394,7 @@ def _compose(polynomial: fmpz_mpoly, field: Field, values: Mapping[str, Scalar])
         term = target.context.constant(coefficient)
         for image, exponent in zip(images, exponents, strict=True):
             if exponent:
-                term = term * image ** int(exponent)
+                term = target.normal(term * target.normal(image ** int(exponent)))
         for index, degree, denominator in homogenised:
             term = term * denominator ** (degree - int(exponents[index]))
         total = total + term

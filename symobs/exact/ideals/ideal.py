@@ -115,7 +115,12 @@ class Ideal:
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:
-        """The exponents at which each generator alone is a leading monomial; None where one never is."""
+        """The exponents at which each generator alone is a leading monomial; None where one never is.
+
+        Beside roots of numbers there are none: the zeros would be counted once for each sign of a root.
+        """
+        if self.field.roots:
+            return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         found = [_pure_power(leading, k) for k in range(len(self.home.names()))]
         return tuple(bound for bound in found if bound is not None) if found and None not in found else None
@@ -131,7 +136,7 @@ class Ideal:
 
         As many monomials are divisible by no leading monomial of the basis.
         """
-        if self.field.roots or self._bounds is None or prod(self._bounds) > _MONOMIALS:
+        if self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         monomials = product(*map(range, self._bounds))
