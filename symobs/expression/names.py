@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.errors import ExpressionError
+from symobs.exact import Scalar
 from symobs.expression.size_limits import Meter
 from symobs.expression.source import shown
 
@@ -79,6 +80,11 @@ class Scope:
     def declares(self, name: str) -> bool:
         """Return whether the name is declared by name, not only admitted because every name is."""
         return name == self.variable or (self.names is not None and name in self.names)
+
+    def constant(self, name: str) -> Scalar | None:
+        """Return the value of a declared constant, None for any other name."""
+        value = None if self.names is None else self.names.get(name)
+        return value if isinstance(value, Scalar) else None
 
     def is_imaginary_unit(self, name: str) -> bool:
         """Return whether the name stands for the imaginary unit here."""

@@ -233,6 +233,9 @@ class Tokeniser:
         reasons = refusal(name)
         if reasons:
             raise self.source.error(reasons[0], at, reasons[1])
+        constant = self.scope.constant(name)
+        if constant is not None:
+            return constant
         if not self.scope.declares(name):
             self._require_admitted(name, at, called=called)
         if len(self.symbols) >= MOST_NAMES:

@@ -87,7 +87,7 @@ def read_question(
         found["L"] = read_gain(gains["L"], plant, "L", (plant.order, plant.outputs))
     boundary = _boundary(plant, margin, radius)
     asked = Question(plant, found["K"], found["L"], (), boundary)
-    roots = (asked.polynomial.field | boundary.field).numbers.names
+    roots = (asked.polynomial.field | boundary.margin.field | boundary.radius.field).numbers.names
     if roots:
         message = f"the data contain {roots[0]}, and regions are found for polynomials with rational coefficients"
         repair = "write a symbol in its place: the inequalities then hold for its value"
