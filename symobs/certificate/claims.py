@@ -221,8 +221,13 @@ def as_scalar(value: Any) -> Scalar:
 
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
-    """Return whether signs and stated conditions imply that a value is nonzero, factor by factor."""
+    """Return whether signs and stated conditions imply that a value is nonzero, factor by factor.
+
+    The factors are those over the numbers of the conditions: where k − √2 and k + √2 are not 0, k² − 2 is not.
+    """
     known = {*environment.assumed, *environment.domain}
+    for factor in known:
+        value = value.within(value.field | factor.field.numbers)
     return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))
 
 

@@ -196,8 +196,8 @@ class Matrix:
 
     def common_denominator(self) -> Scalar:
         """Return the least common denominator of the entries."""
-        parts = (entry.within(self.field).denominator_part for entry in self.entries)
-        return Scalar(self.field, reduce(ring.common_multiple, parts, self.field.one), self.field.one)
+        parts = (entry.within(self.field).denominator for entry in self.entries)
+        return reduce(lambda multiple, below: multiple * (below / multiple).numerator, parts, Scalar.of(1))
 
     @property
     def is_zero(self) -> bool:

@@ -192,12 +192,15 @@ def apart_from_zero(value: Scalar) -> Scalar:
 def _home(field: Field) -> fmpz_mpoly_ctx:
     """Return the context of a basis: with an eigenvalue among the names, what does not speak of it is seen in the basis.
 
-    It comes first in a lexicographic order, which eliminates it.
+    It comes first in a lexicographic order, which eliminates it.  Roots of numbers come last in one: then the basis is
+    that over the field of the numbers, and the squares of the roots.
     """
-    if EIGENVALUE not in field.position:
+    if EIGENVALUE not in field.position and not field.roots:
         return context_of(field.names, Ordering.degrevlex)
-    others = (name for name in field.names if name != EIGENVALUE)
-    return context_of((EIGENVALUE, *others), Ordering.lex)
+    numbers = field.numbers.names
+    first = (EIGENVALUE,) if EIGENVALUE in field.position else ()
+    others = (name for name in field.names if name != EIGENVALUE and name not in numbers)
+    return context_of((*first, *others, *numbers), Ordering.lex)
 
 
 @lru_cache(maxsize=512)
