@@ -94,7 +94,8 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     if EIGENVALUE in polynomial.names:  # it may be complex: nothing is certain of its square either
         return "real"
     total = "zero"
-    for sign, powers in _signed_terms(polynomial):
+    for lead, powers in _signed_terms(polynomial):
+        sign = lead
         for name, exponent in powers:
             sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name), exponent))
         total = _sum_sign(total, sign)

@@ -91,10 +91,17 @@ class Evaluator:
             start = len(stack) - len(node.parts)
             stack[start:] = [self._value(node, stack[start:])]
         (found,) = stack
-        if not self.functions and isinstance(found, Scalar) and PI in found.names:
-            place = self.source.text.index(PI)
-            raise self.source.error('"pi" is no algebraic number', place, "declare a symbol for it")
+        if PI in self.source.text and not self.functions:
+            self._require_no_pi(found)
         return found  # type: ignore[no-any-return]
+
+    def _require_no_pi(self, entry: Entry) -> None:
+        """Raise ExpressionError where π is left: only as part of an argument it may be one of a number in the field."""
+        numbers = [number for row in entry.rows for number in row] if isinstance(entry, Grid) else [entry]
+        parts = (part for number in numbers for part in (Complex.of(number).real, Complex.of(number).imaginary))
+        if any(PI in part.names for part in parts):
+            instead = "declare a symbol for it; cos(pi/6) and the like have square roots for their values"
+            raise self.source.error('"pi" is no algebraic number', self.source.text.index(PI), instead)
 
     def _value(self, node: SyntaxNode, parts: list[Any]) -> Any:
         """Return the value of a node, given the values of its parts."""
@@ -149,7 +156,7 @@ class Evaluator:
         raise self.source.error(f"{function} has no exact value here", place, instead)
 
     def _root(self, place: int, number: Number) -> Number:
-        """Return √number: of a number the value in a field with roots of primes, of anything else only where `roots` are read."""
+        """Return √number: of a number its value in a field with roots of primes, of others only where `roots` are read."""
         if isinstance(number, Complex):
             raise self.source.error("sqrt of a complex number", place, "write its real and imaginary part")
         if number.is_constant and number.fraction() < 0:

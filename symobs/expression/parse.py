@@ -100,8 +100,8 @@ def parse_poles(
 ) -> tuple[Complex, ...]:
     """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
 
-    With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in one context with
-    `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
+    With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in
+    one context with `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     if isinstance(value, str):

@@ -47,7 +47,9 @@ class Restricted(Exact):
         if function != "rank":
             return super().apply(function, value)
         generators = self.ideal.generators
-        field = self.ideal.field | value.field  # what is irreducible over Q may not be so beside the roots of the values
+        field = (
+            self.ideal.field | value.field
+        )  # what is irreducible over Q may not be so beside the roots of the values
         factors = generators[0].within(field).factors()[1] if len(generators) == 1 else ()
         if len(factors) != 1 or factors[0][1] != 1:
             message = "a rank on a stratum is shown by minors and kernels"

@@ -6,16 +6,18 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.conditions import SIGNS
 from symobs.errors import InputError
-from symobs.exact import Scalar
 from symobs.expression import declared_name
 from symobs.expression.names import NAME
 from symobs.expression.source import shown
 from symobs.notation import GREEK, symbol_latex
+
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
+from symobs.exact.algebraic.polynomial_roots import rational_sqrt
 from symobs.exact.core.generators import Function, function_named, normal_form, roots_in, square_root
 from symobs.exact.core.scalar import Scalar
 
@@ -26,7 +27,7 @@ def conjugates(value: Complex, *, of_numbers: bool) -> tuple[Complex, ...]:
     roots = dict.fromkeys(root for part in (value.real, value.imaginary) for root in roots_in(part))
     found = [value]
     for root in roots:
-        if of_numbers or not root.argument.is_constant:
+        if of_numbers or not is_number(root.argument):
             found += [_with_sign_changed(image, root) for image in found]
     return tuple(dict.fromkeys([*found, *(image.conjugate() for image in found)]))
 
@@ -52,7 +53,10 @@ def is_in_kernel(value: Scalar) -> bool:
 
 
 def root_in_field(number: Scalar) -> Scalar | None:
-    """Return the positive square root of a positive number where it is one of Q(√2, √3, …), as √(3 + 2 √2) = 1 + √2."""
+    """Return the positive square root of a positive number where it is one of a field Q(√2, √3, …).
+
+    √(3 + 2 √2) = 1 + √2, and √(2 + √3) = (√6 + √2)/2.
+    """
     if number.is_constant:
         root = square_root(number)
         return root if is_in_kernel(root) else None
@@ -60,8 +64,24 @@ def root_in_field(number: Scalar) -> Scalar | None:
         return None
     variable = "x"
     found = (Scalar.symbol(variable) ** 2 - number).factors()[1]
-    if len(found) == 1 and found[0][1] == 1:
-        return None
+    if len(found) == 1:
+        return _sum_of_two_roots(number)
     lead, constant = found[0][0].coefficients(variable)
     root = constant / lead
     return root if sign_of_number(root) == "positive" else -root
+
+
+def _sum_of_two_roots(number: Scalar) -> Scalar | None:
+    """Return √(a + b √d) as √((a + e)/2) ± √((a − e)/2) where e² = a² − b² d is the square of a rational number."""
+    field = number.field
+    names = [field.names[index] for index, _ in field.roots if field.names[index] in number.names]
+    if len(names) != 1:
+        return None
+    other = number.substitute({names[0]: -Scalar.symbol(names[0])})
+    norm, mean = (number * other).fraction(), ((number + other) / 2).fraction()
+    size = rational_sqrt(norm) if norm >= 0 else None
+    if size is None:
+        return None
+    first, second = (square_root(Scalar.of((mean + part) / 2)) for part in (size, -size))
+    found = next(total for total in (first + second, first - second) if total**2 == number)
+    return found if is_in_kernel(found) else None

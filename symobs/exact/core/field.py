@@ -126,12 +126,12 @@ class Field:
             return polynomial
         reduced: dict[tuple[int, ...], fmpz] = {}
         for powers, coefficient in polynomial.terms():
-            left = list(powers)
+            left, number = list(powers), coefficient
             for index, square in high:
                 half, left[index] = divmod(int(left[index]), 2)
-                coefficient = coefficient * square**half
+                number = number * square**half
             place = tuple(left)
-            reduced[place] = reduced[place] + coefficient if place in reduced else coefficient
+            reduced[place] = reduced[place] + number if place in reduced else number
         return self.context.from_dict(reduced)
 
     @property

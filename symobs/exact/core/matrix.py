@@ -30,7 +30,9 @@ class Matrix:
     ) -> None:
         """Take a table over a common denominator; `Matrix.of` is the general constructor."""
         self.field, self.shape = field, shape
-        self.table, self.denominator = ring.normal_table(field, table, denominator) if field.roots else (table, denominator)
+        self.table, self.denominator = (
+            ring.normal_table(field, table, denominator) if field.roots else (table, denominator)
+        )
         self._elsewhere: dict[Field, Matrix] = {}
 
     # -- construction ---------------------------------------------------------------------------------------------

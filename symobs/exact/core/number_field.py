@@ -26,12 +26,10 @@ def scaled(field: Field, polynomial: fmpz_mpoly) -> fmpz_mpoly:
     places = [index for index, _ in field.roots]
     first = min(polynomial.monoms(), key=lambda powers: _rank(powers, places))
     others = {k: power for k, power in enumerate(first) if k not in places}
-    lead = {
-        powers: c
-        for powers, c in polynomial.terms()
-        if all(powers[k] == power for k, power in others.items())
-    }
-    number = field.context.from_dict({tuple(p if k in places else 0 for k, p in enumerate(m)): c for m, c in lead.items()})
+    lead = {powers: c for powers, c in polynomial.terms() if all(powers[k] == power for k, power in others.items())}
+    number = field.context.from_dict(
+        {tuple(p if k in places else 0 for k, p in enumerate(m)): c for m, c in lead.items()}
+    )
     polynomial, _ = field.rationalised(polynomial, number)
     _, polynomial = polynomial.primitive()
     return -polynomial if _lead(polynomial, places) < 0 else polynomial

@@ -163,10 +163,8 @@ class Scalar:
     def __pow__(self, exponent: int) -> Scalar:
         if exponent < 0:
             return (Scalar.of(1) / self) ** -exponent
-        above = self.field.normal(self.numerator_part**exponent)
-        if self.field.roots:
-            return Scalar.reduced(self.field, above, self.denominator_part**exponent)
-        return Scalar(self.field, above, self.denominator_part**exponent)
+        make = Scalar.reduced if self.field.roots else Scalar
+        return make(self.field, self.numerator_part**exponent, self.denominator_part**exponent)
 
     # -- questions ------------------------------------------------------------------------------------------------
 
