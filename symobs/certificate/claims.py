@@ -261,7 +261,7 @@ def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular)
     )
 
 
-def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular, share: int) -> float:
+def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular, share: int = 1) -> float:
     """Return a bound for the probability that a false relation passes at a random point modulo a random prime.
 
     Beside k roots the integer that a prime must not divide is a norm, of 2ᵏ times the bits; and no prime among all that
