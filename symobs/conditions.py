@@ -15,9 +15,10 @@ from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.core.generators import PI, function_named
+from symobs.exact.core.polynomial import by_monomial
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 #: What may be declared of a symbol.  Each implies that the symbol is real.
 SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
@@ -93,14 +94,25 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     if EIGENVALUE in polynomial.names:  # it may be complex: nothing is certain of its square either
         return "real"
     total = "zero"
-    for coefficient, powers in polynomial.each_term():
-        sign = "positive" if coefficient > 0 else "negative"
+    for lead, powers in _signed_terms(polynomial):
+        sign = lead
         for name, exponent in powers:
             sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break
     return total
+
+
+def _signed_terms(polynomial: Scalar) -> Iterator[tuple[str, tuple[tuple[str, int], ...]]]:
+    """Yield the sign of the coefficient of each monomial, and its powers; roots of numbers belong to the coefficients."""
+    if not polynomial.field.roots:
+        for coefficient, powers in polynomial.each_term():
+            yield ("positive" if coefficient > 0 else "negative"), powers
+        return
+    roots = {polynomial.field.names[index] for index, _ in polynomial.field.roots}
+    for monomial, number in by_monomial(polynomial, roots).items():
+        yield sign_of_number(number), monomial
 
 
 def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
@@ -114,7 +126,7 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     if whole not in {"real", "nonnegative", "nonpositive"} or value.size > FACTORED_UP_TO:
         return whole
     unit, factors = value.factors()
-    sign = "positive" if unit.fraction() > 0 else "negative"
+    sign = sign_of_number(unit)
     for factor, power in factors:
         of_factor = _sum_of_terms(factor, signs)
         of_factor = sign_of_number(factor) if of_factor == "real" else of_factor
@@ -162,9 +174,9 @@ def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Sca
     """
     if polynomial.size > FACTORED_UP_TO or EIGENVALUE in polynomial.names:
         return ()
-    terms = polynomial.terms()
-    if len(terms) > 1 and _sum_of_terms(polynomial, signs) != "real":
-        return tuple(_radical(powers, signs) for _, powers in terms)
+    monomials = [powers for _, powers in _signed_terms(polynomial)]
+    if len(monomials) > 1 and _sum_of_terms(polynomial, signs) != "real":
+        return tuple(_radical(powers, signs) for powers in monomials)
     for name in sorted(polynomial.names):
         if polynomial.degree(name) != 2:
             continue

@@ -15,6 +15,7 @@ from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
+from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
 from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 
@@ -159,14 +160,14 @@ def desired_polynomial(
 def read_poles(value: object, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
-        return parse_poles(value, symbols.names, variable=variable, where=where)
+        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True)
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
     entries = listed if isinstance(listed, Sequence) else [listed]
     read = [
         read_complex(entry, f"{where}[{index}]") if type(entry).__module__.startswith("sympy") else entry
         for index, entry in enumerate(entries)
     ]
-    return parse_poles(read, symbols.names, variable=variable, where=where)
+    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True)
 
 
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
@@ -174,6 +175,36 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         repair = f"give as many poles as the order asks for, {degree}, with commas between"
         raise InputError(message, where=where, repair=repair, given=len(poles))
+    if all(is_in_kernel(part) and not part.field.roots for pole in poles for part in (pole.real, pole.imaginary)):
+        return DesiredPolynomial(variable, _factors_of_pairs(poles, variable, where), poles)
+    factors, waiting = list[Scalar](), list(map(tidied, poles))
+    while waiting:
+        families = (conjugates(waiting[0], of_numbers=choice) for choice in (True, False))
+        complete = (family for family in families if all(pole in waiting for pole in family))
+        found = ((family, product_of_linear(variable, family)) for family in complete)
+        family, factor = next(((family, factor) for family, factor in found if factor is not None), ((), None))
+        if factor is None:
+            raise _not_closed(waiting, where)
+        for pole in family:
+            waiting.remove(pole)
+        factors.append(factor)
+    return DesiredPolynomial(variable, tuple(factors), poles)
+
+
+def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:
+    """Return the error for poles, of which those of the first one are not all there, or make no polynomial of the data."""
+    pole = waiting[0]
+    partner = next((other for other in conjugates(pole, of_numbers=False) if other not in waiting), None)
+    if partner is not None:
+        message = f"the poles are not closed under conjugation: {partner} is missing beside {pole}"
+        return InputError(message, where=where, repair=f"replace one of the poles by {partner}")
+    message = f"the polynomial with the pole {pole} has coefficients that are not in the field of the data"
+    repair = "give poles whose product is free of roots, but for those of rational numbers"
+    return InputError(message, where=where, repair=repair)
+
+
+def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> tuple[Scalar, ...]:
+    """Return one factor for each real pole and each pair, for poles without roots."""
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
     )
@@ -187,11 +218,10 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
             continue
         partner = pole.conjugate()
         if partner not in waiting:
-            message = f"the poles are not closed under conjugation: {partner} is missing beside {pole}"
-            raise InputError(message, where=where, repair=f"replace one of the poles by {partner}")
+            raise _not_closed([pole, *waiting], where)
         waiting.remove(partner)
         factors.append((s - pole.real) ** 2 + pole.imaginary**2)
-    return DesiredPolynomial(variable, tuple(factors), poles)
+    return tuple(factors)
 
 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:

@@ -22,7 +22,7 @@ from symobs.conditions import sign_where, vanishing_factors
 from symobs.errors import CertificateRejected, NotShown, WrongKind
 from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
 from symobs.exact.core.generators import symbols_named
-from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator
+from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator, squares_of
 from symobs.formula import (
     Apply,
     At,
@@ -221,8 +221,13 @@ def as_scalar(value: Any) -> Scalar:
 
 
 def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
-    """Return whether signs and stated conditions imply that a value is nonzero, factor by factor."""
+    """Return whether signs and stated conditions imply that a value is nonzero, factor by factor.
+
+    The factors are those over the numbers of the conditions: where k − √2 and k + √2 are not 0, k² − 2 is not.
+    """
     known = {*environment.assumed, *environment.domain}
+    for factor in known:
+        value = value.within(value.field | factor.field.numbers)
     return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))
 
 
@@ -232,7 +237,9 @@ def _holds_at_points(
     generator = random.Random(_seed(relation, environment, leaves))  # noqa: S311 - repeatable by design
     error, points = 1.0, 0
     names = {environment.variable}.union(*(leaf.field.names for leaf in [*leaves, *environment.coefficients.values()]))
-    for _ in range(_DRAWS):
+    roots = len(squares_of(names))
+    draws = _DRAWS << roots  # one prime in 2^k has roots of k numbers
+    for _ in range(draws):
         try:
             arithmetic = Modular(environment, Point(names, generator))
             if not _holds_at(relation, environment, arithmetic):
@@ -240,7 +247,7 @@ def _holds_at_points(
         except (VanishingDenominator, ZeroDivisionError):
             continue
         points += 1
-        error *= _error_bound(relation, environment, arithmetic)
+        error *= _error_bound(relation, environment, arithmetic, draws << roots if roots else 1)
         if error <= ERROR_GOAL:
             return f"at {points} random point{'s' if points > 1 else ''} modulo 64-bit primes", error
     return "", 0.0
@@ -254,8 +261,12 @@ def _holds_at(relation: Relation, environment: Environment, arithmetic: Modular)
     )
 
 
-def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular) -> float:
-    """Return a bound for the probability that a false relation passes at a random point modulo a random prime."""
+def _error_bound(relation: Relation, environment: Environment, arithmetic: Modular, share: int = 1) -> float:
+    """Return a bound for the probability that a false relation passes at a random point modulo a random prime.
+
+    Beside k roots the integer that a prime must not divide is a norm, of 2ᵏ times the bits; and no prime among all that
+    may have been drawn may divide it: `share` is the number of draws times 2ᵏ.
+    """
     bounds = Bounds(environment, arithmetic)
     total = 0.0
     sizes = [evaluate(member, environment, bounds) for member in relation.members]
@@ -263,7 +274,7 @@ def _error_bound(relation: Relation, environment: Environment, arithmetic: Modul
         for first, second in _paired(left, right):
             degree = max(first.above + second.below, second.above + first.below)
             bits = 1 + max(first.above_bits + second.below_bits, second.above_bits + first.below_bits)
-            total += degree / 2.0**POINT_BITS + bits / (PRIME_BITS - 1) / PRIMES_BELOW
+            total += degree / 2.0**POINT_BITS + share * bits / (PRIME_BITS - 1) / PRIMES_BELOW
     return min(total, 0.5)
 
 

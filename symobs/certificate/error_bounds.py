@@ -6,7 +6,7 @@ from math import log2
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.modular import POINT_BITS
+from symobs.exact.core.modular import POINT_BITS, squares_of
 
 if TYPE_CHECKING:
     from symobs.formula import Environment, Modular
@@ -25,14 +25,14 @@ class SizeBound(NamedTuple):
 class Bounds:
     """The arithmetic of sizes: bounds for degree and height of the value of a formula.
 
-    Heights are those of the integers the leaves became at the point.  Named coefficients are rational there, so with them
-    the heights are bounded through the coefficients of the leaves instead.
+    Heights are those of the integers the leaves became at the point.  Named coefficients are rational there, and roots
+    of numbers have conjugates, so with them the heights are bounded through the coefficients of the leaves instead.
     """
 
     def __init__(self, environment: Environment, arithmetic: Modular) -> None:
         """Bound the values of named coefficients in the order of their definition."""
         self.arithmetic = arithmetic
-        self.named = bool(environment.coefficients)
+        self.named = bool(environment.coefficients) or bool(squares_of(arithmetic.point.values))
         degrees: dict[str, float] = {}
         bits: dict[str, float] = {}
         for name, meaning in environment.coefficients.items():
@@ -42,7 +42,8 @@ class Bounds:
             degrees[name] = max(1.0, (above + below) * growth)
             bits[name] = sum(meaning.lengths()) + (above + below) * max(length, POINT_BITS)
         self.larger = max(degrees.values(), default=1.0)
-        self.longer = max([*bits.values(), POINT_BITS])
+        squares = squares_of(arithmetic.point.values).values()
+        self.longer = max([*bits.values(), POINT_BITS, *(square.bit_length() for square in squares)])
 
     def leaf(self, value: Scalar | Matrix) -> SizeBound:
         above, below = value.degrees()

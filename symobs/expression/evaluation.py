@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import operator
-from math import isqrt
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Scalar
+from symobs.exact.algebraic.conjugates import root_in_field
 from symobs.exact.core import generators
+from symobs.exact.core.generators import PI
 from symobs.expression.fast_path import plain_rows
 from symobs.expression.size_limits import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
 from symobs.expression.source import Source, shown
@@ -80,7 +81,7 @@ class Evaluator:
     def __init__(self, source: Source, scope: Scope) -> None:
         self.source = source
         self.meter = scope.meter
-        self.functions = scope.functions
+        self.functions, self.roots = scope.functions, scope.roots
         self.names = scope.names or {}
 
     def entry(self, tree: SyntaxNode) -> Entry:
@@ -90,7 +91,17 @@ class Evaluator:
             start = len(stack) - len(node.parts)
             stack[start:] = [self._value(node, stack[start:])]
         (found,) = stack
+        if PI in self.source.text and not self.functions:
+            self._require_no_pi(found)
         return found  # type: ignore[no-any-return]
+
+    def _require_no_pi(self, entry: Entry) -> None:
+        """Raise ExpressionError where π is left: only as part of an argument it may be one of a number in the field."""
+        numbers = [number for row in entry.rows for number in row] if isinstance(entry, Grid) else [entry]
+        parts = (part for number in numbers for part in (Complex.of(number).real, Complex.of(number).imaginary))
+        if any(PI in part.names for part in parts):
+            instead = "declare a symbol for it; cos(pi/6) and the like have square roots for their values"
+            raise self.source.error('"pi" is no algebraic number', self.source.text.index(PI), instead)
 
     def _value(self, node: SyntaxNode, parts: list[Any]) -> Any:
         """Return the value of a node, given the values of its parts."""
@@ -129,23 +140,36 @@ class Evaluator:
         return base**exponent
 
     def _call(self, call: SyntaxNode, number: Number) -> Number:
-        """Return sqrt of the square of a rational number, the one call with a value in the field.
+        """Return the value of a call: sqrt of a number, cos and sin of a multiple of π.
 
         Where functions of time are asked for, a function of a real argument is a generator of its own.
         """
         function, place = call.text, call.places[0]
         if self.functions:
             return self._function(function, place, number)
-        instead = "sqrt of the square of a rational number is possible; for other constants declare a symbol"
-        if function != "sqrt":
-            raise self.source.error(f"{function} has no exact value here", place, instead)
-        if isinstance(number, Complex) or not number.is_constant or number.fraction() < 0:
+        if function == "sqrt":
+            return self._root(place, number)
+        turns = isinstance(number, Scalar) and (number.is_zero or number.names == {PI})
+        if function in {"cos", "sin"} and turns and (number / Scalar.symbol(PI)).is_constant:  # type: ignore[operator]
+            return self._function(function, place, number)
+        instead = "roots of rational numbers, and cos and sin of pi/6, pi/4, pi/3, are possible; or declare a symbol"
+        raise self.source.error(f"{function} has no exact value here", place, instead)
+
+    def _root(self, place: int, number: Number) -> Number:
+        """Return √number: of a number its value in a field with roots of primes, of others only where `roots` are read."""
+        if isinstance(number, Complex):
+            raise self.source.error("sqrt of a complex number", place, "write its real and imaginary part")
+        if number.is_constant and number.fraction() < 0:
+            return Complex(Scalar.of(0), generators.square_root(-number))
+        if number.is_zero:
+            return number
+        known = root_in_field(number)
+        if known is not None:
+            return known
+        instead = "sqrt of a rational number is possible; for other constants declare a symbol"
+        if not self.roots:
             raise self.source.error("sqrt of this has no exact value here", place, instead)
-        square = number.fraction()
-        above, below = isqrt(square.numerator), isqrt(square.denominator)
-        if (above**2, below**2) != (square.numerator, square.denominator):
-            raise self.source.error(f"sqrt({shown(str(square))}) is not rational", place, instead)
-        return Scalar.rational(above, below)
+        return generators.square_root(self._with_one_root(place, number))
 
     def _function(self, name: str, place: int, argument: Number) -> Scalar:
         if isinstance(argument, Complex):

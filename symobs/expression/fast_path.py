@@ -50,7 +50,7 @@ def _is_symbol(name: str, scope: Scope) -> bool:
     """Return whether a name is declared, or may be a symbol where every name may."""
     if name in FUNCTIONS or scope.is_imaginary_unit(name) or refusal(name):
         return False
-    return scope.names is None or scope.declares(name)
+    return scope.names is None or (scope.declares(name) and scope.constant(name) is None)
 
 
 def _value(cell: list[tuple[str, str]], known: dict[str, Scalar]) -> Scalar:

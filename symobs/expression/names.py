@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.errors import ExpressionError
+from symobs.exact import Scalar
 from symobs.expression.size_limits import Meter
 from symobs.expression.source import shown
 
@@ -66,18 +67,24 @@ class Scope:
     context: Field | None = None
     functions: bool = False
     rounding: bool = False
+    roots: bool = False
 
     @staticmethod
-    def of(names: Names, variable: str | None, where: str, *, functions: bool = False, rounding: bool = False) -> Scope:
+    def of(names: Names, variable: str | None, where: str, **reading: bool) -> Scope:
         """Return the scope; raises ExpressionError if the variable of the polynomial is declared as a symbol."""
         if names is not None and variable in names:
             message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
             raise ExpressionError(message, where=where, repair="give the symbol another name")
-        return Scope(names, variable, functions=functions, rounding=rounding)
+        return Scope(names, variable, **reading)
 
     def declares(self, name: str) -> bool:
         """Return whether the name is declared by name, not only admitted because every name is."""
         return name == self.variable or (self.names is not None and name in self.names)
+
+    def constant(self, name: str) -> Scalar | None:
+        """Return the value of a declared constant, None for any other name."""
+        value = None if self.names is None else self.names.get(name)
+        return value if isinstance(value, Scalar) else None
 
     def is_imaginary_unit(self, name: str) -> bool:
         """Return whether the name stands for the imaginary unit here."""

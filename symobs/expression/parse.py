@@ -96,13 +96,14 @@ def parse_poles(
     where: str = "",
     functions: bool = False,
     rounding: bool = False,
+    roots: bool = False,
 ) -> tuple[Complex, ...]:
     """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
 
-    With `functions` square roots are read as generators; where there are names, the values stand in one context with
-    `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
+    With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in
+    one context with `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
-    scope = Scope.of(names, None, where, functions=functions, rounding=rounding)
+    scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     if isinstance(value, str):
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -44,7 +45,7 @@ _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
     """Return the scope with one context for all texts among the values, and for the variable of what is made of them."""
     context = _context_of((value for value in values if isinstance(value, str)), variable)
-    return Scope(scope.names, scope.variable, scope.meter, context, scope.functions, scope.rounding)
+    return replace(scope, context=context)
 
 
 def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
@@ -227,11 +228,14 @@ class Tokeniser:
 
     def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
         """Return the symbol `name`; raises the error with the reason if there is none."""
-        if name == PI and self.scope.functions:
+        if name == PI and (self.scope.functions or self.open):  # what it is an argument of takes it, or refuses it
             return Scalar.symbol(PI)
         reasons = refusal(name)
         if reasons:
             raise self.source.error(reasons[0], at, reasons[1])
+        constant = self.scope.constant(name)
+        if constant is not None:
+            return constant
         if not self.scope.declares(name):
             self._require_admitted(name, at, called=called)
         if len(self.symbols) >= MOST_NAMES:

@@ -91,10 +91,19 @@ class Exact:
     """The exact kernel."""
 
     def __init__(self, environment: Environment) -> None:
-        """Substitute the values of named coefficients in every value."""
+        """Substitute the values of named coefficients in every value.
+
+        With roots of numbers all are put in at once: what is still a name would grow in a denominator without roots.
+        """
         self.coefficients = dict(environment.coefficients)
+        self.at_once = any(meaning.field.roots for meaning in self.coefficients.values())
+        if self.at_once:
+            for name, meaning in self.coefficients.items():
+                self.coefficients[name] = meaning.substitute(self.coefficients)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
+        if self.at_once:
+            return value.substitute(self.coefficients)
         for name in reversed(self.coefficients):
             if name in value.field.position:
                 value = value.substitute({name: self.coefficients[name]})

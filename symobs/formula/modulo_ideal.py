@@ -47,12 +47,16 @@ class Restricted(Exact):
         if function != "rank":
             return super().apply(function, value)
         generators = self.ideal.generators
-        factors = generators[0].factors()[1] if len(generators) == 1 else ()
+        field = (
+            self.ideal.field | value.field
+        )  # what is irreducible over Q may not be so beside the roots of the values
+        factors = generators[0].within(field).factors()[1] if len(generators) == 1 else ()
         if len(factors) != 1 or factors[0][1] != 1:
             message = "a rank on a stratum is shown by minors and kernels"
             raise NotShown(message)
-        field = AlgebraicExtension(generators[0], max(factors[0][0].names, key=lambda name: (name == EIGENVALUE, name)))
-        return Scalar.of(len(field.echelon(value)[0]))
+        roots = {field.names[index] for index, _ in field.roots}
+        name = max(factors[0][0].names - roots, key=lambda name: (name == EIGENVALUE, name))
+        return Scalar.of(len(AlgebraicExtension(generators[0], name).echelon(value)[0]))
 
     def equal(self, left: Any, right: Any) -> bool:
         """Return whether two values agree wherever the relations hold."""

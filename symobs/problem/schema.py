@@ -29,6 +29,11 @@ TOP: dict[str, dict[str, Any]] = {
         "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
+    "constants": {
+        "description": 'names for numbers: r = "sqrt(3)", c = "cos(pi/6)"; a text may use them',
+        "type": "object",
+        "additionalProperties": {"type": ["string", "integer"]},
+    },
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},

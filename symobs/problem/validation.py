@@ -16,6 +16,7 @@ from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
+from symobs.problem.constants import with_constants
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
 from symobs.result import Document, Result, Task, task_named, tasks
@@ -133,6 +134,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
+    symbols = with_constants(_table(data, "constants", errors), symbols, errors)
     dt = _period(data, symbols, errors)
     plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)

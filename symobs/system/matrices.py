@@ -15,13 +15,16 @@ class Matrices:
     """The four exact matrices of a plant; a missing one has no columns (B) or no rows (C)."""
 
     def __init__(self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None) -> None:
-        """Complete missing matrices; D is zero."""
+        """Complete missing matrices; D is zero.  All have the same roots of numbers in their fields."""
         order = A.shape[0]
         self.A = A
         self.B = Matrix.zeros(order, 0) if B is None else B
         self.C = Matrix.zeros(0, order) if C is None else C
         self.D = Matrix.zeros(self.C.shape[0], self.B.shape[1]) if D is None else D
         self.has_input, self.has_output = B is not None, C is not None
+        numbers = self.A.field.numbers | self.B.field.numbers | self.C.field.numbers | self.D.field.numbers
+        if numbers.names:  # what factors over these numbers does so for every matrix
+            self.A, self.B, self.C, self.D = (m.within(m.field | numbers) for m in (self.A, self.B, self.C, self.D))
 
     @property
     def has_feedthrough(self) -> bool:

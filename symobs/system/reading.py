@@ -113,7 +113,7 @@ def _from_numpy(value: Any, where: str) -> object:
 
 
 def read_complex(value: object, where: str) -> Complex:
-    """Return the exact complex number of a SymPy expression."""
+    """Return the exact complex number of a SymPy expression, square roots in it as generators."""
     from symobs.exact.sympy_bridge.conversion import complex_from_sympy  # noqa: PLC0415
 
-    return complex_from_sympy(value, where)
+    return complex_from_sympy(value, where, roots=True)

@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.conditions import SIGNS
@@ -16,23 +16,30 @@ from symobs.expression.names import NAME
 from symobs.expression.source import shown
 from symobs.notation import GREEK, symbol_latex
 
+if TYPE_CHECKING:
+    from symobs.exact import Scalar
+
 
 @dataclass(frozen=True)
 class Symbols:
     """The symbols of a problem: names, signs, printed forms, and the caller's SymPy objects.
 
-    `closed` means that only these names exist; otherwise every well-formed name is a real symbol.
+    `closed` means that only these names exist; otherwise every well-formed name is a real symbol.  A text may have the names
+    of `constants` in it: their values take their place when it is read.
     """
 
     signs: Mapping[str, str] = field(default_factory=dict)
     latex: Mapping[str, str] = field(default_factory=dict)
     objects: Mapping[str, Any] = field(default_factory=dict)
     closed: bool = False
+    constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property
-    def names(self) -> Mapping[str, str] | None:
-        """The declared names, or None if every name is admitted."""
-        return self.signs if self.closed else None
+    def names(self) -> Mapping[str, object] | None:
+        """The declared names, each with its sign, or for a constant its value; None if every name is admitted."""
+        if not self.closed:
+            return None
+        return {**self.signs, **self.constants} if self.constants else self.signs
 
     def sign(self, name: str) -> str:
         """Return the sign of a symbol, `real` if undeclared."""
@@ -106,7 +113,7 @@ class Symbols:
                 raise _alike(name, f"symbols.{name}")
 
         signs = {**{name: sign_from_assumptions(symbol) for name, symbol in found.items()}, **self.signs}
-        return Symbols(signs, self.latex, {**found, **self.objects}, self.closed)
+        return replace(self, signs=signs, objects={**found, **self.objects})
 
 
 def _name_of(symbol: Any) -> str:

@@ -87,6 +87,11 @@ def read_question(
         found["L"] = read_gain(gains["L"], plant, "L", (plant.order, plant.outputs))
     boundary = _boundary(plant, margin, radius)
     asked = Question(plant, found["K"], found["L"], (), boundary)
+    roots = (asked.polynomial.field | boundary.margin.field | boundary.radius.field).numbers.names
+    if roots:
+        message = f"the data contain {roots[0]}, and regions are found for polynomials with rational coefficients"
+        repair = "write a symbol in its place: the inequalities then hold for its value"
+        raise InputError(message, where="specification.polynomial", repair=repair)
     names = sorted(asked.polynomial.names - {plant.variable})
     degree = asked.polynomial.degree(plant.variable)
     if names and degree > MOST_DEGREE:

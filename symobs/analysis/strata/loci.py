@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.conditions import FACTORED_UP_TO, real_consequences, vanishing_factors
+from symobs.conditions import FACTORED_UP_TO, real_consequences, sign_of, vanishing_factors
 from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ class Locus:
         basis = ideal.generators
         if EIGENVALUE not in ideal.field.position and ideal.triangular:
             basis = min(basis, ideal.triangular, key=lambda equations: sum(e.size for e in equations))
-        positive = [g if g.factors()[0].fraction() > 0 else -g for g in basis]
+        positive = [g if sign_of(g.factors()[0], {}) == "positive" else -g for g in basis]
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
     def lies_in(self, other: Locus) -> bool:

@@ -376,7 +376,7 @@ def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
 
 def _sign(polynomial: Scalar) -> int:
     """Return the sign that a polynomial is printed with, as a factor."""
-    return -1 if polynomial.factors()[0].fraction() < 0 else 1
+    return -1 if sign_of(polynomial.factors()[0], {}) == "negative" else 1
 
 
 def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:

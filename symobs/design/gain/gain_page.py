@@ -33,6 +33,7 @@ from symobs.result import choose
 from symobs.specification import DesiredPolynomial
 
 if TYPE_CHECKING:
+    from symobs.exact.core.generators import Function
     from symobs.result import Case
 
 #: The degree of the factor of a conjugate pair.
@@ -75,17 +76,23 @@ def write_reduction(page: Page, design: GainDesign, side: PlacementProblem, desi
 
 def write_ackermann(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
-    is_of_family = design.chart is not None or all_roots(design.answer[side.gain])
+    is_of_family = design.chart is not None or _roots_found(design, side)
     (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
 
 
 def write_member(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
-    if all_roots(design.answer[side.gain]):
+    if _roots_found(design, side):
         page.with_roots(design.answer[side.gain])
         page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
     else:
         write_sylvester(page, design, side, desired)
+
+
+def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Function]:
+    """Return the square roots of a gain that are in no datum: those of a solution of quadratic equations."""
+    m, desired = design.plant.matrices, () if design.desired is None else design.desired.factors
+    return all_roots(design.answer[side.gain]) - all_roots(m.A, m.B, m.C, *desired)
 
 
 def define_test_matrix(page: Page, side: PlacementProblem) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import Matrix, Scalar, companion, rank, reduced_echelon, roots_of
+from symobs.exact.core.generators import roots_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -78,7 +79,8 @@ def _block(factor: Scalar, desired: DesiredPolynomial) -> Matrix:
     if len(coefficients) == 1:
         return Matrix.of([[-coefficients[0]]])
     s = Scalar.symbol(variable)
-    given = (pole for pole in desired.poles if (s - pole.real) ** 2 + pole.imaginary**2 == factor)
+    rational = (pole for pole in desired.poles if not roots_in(pole.real) and not roots_in(pole.imaginary))
+    given = (pole for pole in rational if (s - pole.real) ** 2 + pole.imaginary**2 == factor)
     pair = next(given, None)
     if pair is None and len(coefficients) == 2:
         pair = roots_of(factor, variable)[0].exact()

@@ -72,10 +72,11 @@ def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
 
 
 def _number(value: Scalar) -> Fraction | None:
-    """Return a rational number; of a real root without a closed form, an approximation."""
+    """Return a rational number; of a square root of one, or a real root without a closed form, an approximation."""
     if value.is_constant:
         return value.fraction()
-    counted = any(f.kind == "CRootOf" for name in value.names if (f := function_named(name)) is not None)
+    functions = [f for name in value.names if (f := function_named(name)) is not None]
+    counted = any(f.square or f.kind == "CRootOf" for f in functions)
     return near(value) if counted else None
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact.algebraic.complex import Complex
+from symobs.exact.core.generators import leads_with_minus, normal_form, roots_in
 from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -235,9 +236,12 @@ def polynomial_of_roots(variable: str, roots: tuple[Root, ...]) -> Scalar | None
 
 def root_of_pole(pole: Complex, variable: str) -> Root:
     """Return a given pole as a root of its real factor."""
-    s = Scalar.symbol(variable)
+    s, centre, offset, turned = Scalar.symbol(variable), pole.real, pole.imaginary, -1
     if pole.is_real:
-        return Root(s - pole.real, variable, pole.real, Scalar.of(0), 1)
-    square = pole.imaginary**2
-    negative = pole.imaginary.is_constant and pole.imaginary.fraction() < 0
-    return Root((s - pole.real) ** 2 + square, variable, pole.real, -square, -1 if negative else 1)
+        formal = [root for root in roots_in(centre) if not root.square]
+        if not formal:
+            return Root(s - centre, variable, centre, Scalar.of(0), 1)
+        centre, turned = centre.substitute(dict.fromkeys((root.name for root in formal), Scalar.of(0))), 1
+        offset = pole.real - centre
+    square = normal_form(offset**2) * turned
+    return Root((s - centre) ** 2 - square, variable, centre, square, -1 if leads_with_minus(offset) else 1)

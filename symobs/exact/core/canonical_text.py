@@ -78,8 +78,9 @@ def scalar_text(value: RationalFunction) -> str:
     below = value.denominator
     if below.is_constant:
         return _sum(value.numerator, int(below.fraction()))
-    top, bottom = _sum(value.numerator, 1), _denominator(below)
-    if len(value.numerator_part) > 1:
+    above = value.numerator
+    top, bottom = _sum(above, 1), _denominator(below)
+    if len(above.numerator_part) > 1:
         top = f"({top})"
-    is_single_name = len(value.denominator_part) == 1 and "*" not in bottom
+    is_single_name = len(below.numerator_part) == 1 and "*" not in bottom
     return f"{top}/{bottom}" if is_single_name else f"{top}/({bottom})"

@@ -20,6 +20,8 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from flint import fmpz
+
 VARIABLES = ("s", "z", "t")
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
 EIGENVALUE = "lambda"
@@ -31,6 +33,10 @@ class NamedFunction(Protocol):
     @property
     def text(self) -> str:
         """SymPy's text."""
+
+    @property
+    def square(self) -> int:
+        """The prime whose positive square root this is, 0 for any other function."""
 
 
 class Generator(str):
@@ -57,7 +63,7 @@ def _canonical(names: set[str]) -> tuple[str, ...]:
 class Field:
     """Q(names): rational functions with rational coefficients in the generators `names`."""
 
-    __slots__ = ("__weakref__", "context", "functions", "names", "one", "position", "routes", "zero")
+    __slots__ = ("__weakref__", "context", "functions", "names", "one", "position", "roots", "routes", "zero")
 
     names: tuple[str, ...]
     context: fmpz_mpoly_ctx
@@ -74,6 +80,8 @@ class Field:
         self.position = {name: index for index, name in enumerate(names)}
         self.zero = self.context.constant(0)
         self.one = self.context.constant(1)
+        #: The generators that are roots of numbers, and their squares.  Data without roots pay for one look at this.
+        self.roots = tuple((self.position[name], f.square) for name, f in self.functions.items() if f.square)
         self.routes: dict[tuple[str, ...], Route] = {}
 
     @staticmethod
@@ -86,6 +94,11 @@ class Field:
         if self is other or not other.names:
             return self
         return _join(self, other)
+
+    @property
+    def numbers(self) -> Field:
+        """The field of the roots alone: Q, or Q(√2, …)."""
+        return Field.of([self.names[index] for index, _ in self.roots]) if self.roots else RATIONALS
 
     def without(self, names: frozenset[str]) -> Field:
         """Return the field of the other generators."""
@@ -104,6 +117,47 @@ class Field:
     def lift(self, polynomial: fmpz_mpoly, source: Field) -> fmpz_mpoly:
         """Convert a polynomial of `source`; raises ValueError if a generator is missing here."""
         return polynomial if source is self else self.route_from(source).carry(polynomial)
+
+    def normal(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the normal form of a polynomial: degree at most 1 in each root."""
+        degrees = polynomial.degrees() if self.roots else ()
+        high = [(index, square) for index, square in self.roots if degrees[index] > 1]
+        if not high:
+            return polynomial
+        reduced: dict[tuple[int, ...], fmpz] = {}
+        for powers, coefficient in polynomial.terms():
+            left, number = list(powers), coefficient
+            for index, square in high:
+                half, left[index] = divmod(int(left[index]), 2)
+                number = number * square**half
+            place = tuple(left)
+            reduced[place] = reduced[place] + number if place in reduced else number
+        return self.context.from_dict(reduced)
+
+    @property
+    def relations(self) -> list[fmpz_mpoly]:
+        """The polynomials x² − p that vanish at the roots."""
+        return [self.context.gen(index) ** 2 - square for index, square in self.roots]
+
+    def conjugate(self, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
+        """Return a polynomial in normal form with the sign of one root changed."""
+        slope = polynomial.derivative(index)
+        return polynomial - 2 * slope * self.context.gen(index) if slope else polynomial
+
+    def rationalised(self, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return the same fraction with both parts in normal form and no root in the denominator."""
+        numerator, denominator = self.normal(numerator), self.normal(denominator)
+        for index, _ in self.roots:
+            other = self.conjugate(denominator, index)
+            if other != denominator:
+                numerator, denominator = self.normal(numerator * other), self.normal(denominator * other)
+        return numerator, denominator
+
+    def norm(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
+        """Return the product of a polynomial in normal form and its conjugates, which has no root."""
+        for index, _ in self.roots:
+            polynomial = self.normal(polynomial * self.conjugate(polynomial, index))
+        return polynomial
 
     def route_from(self, source: Field) -> Route:
         """Return the conversion of polynomials from `source`."""

@@ -59,6 +59,12 @@ class Function:
         return Scalar.symbol(self.name)
 
     @property
+    def square(self) -> int:
+        """The prime whose positive square root this is: values are kept in normal form in it; else 0."""
+        number = int(self.argument.fraction()) if self.kind == "sqrt" and self.argument.is_constant else 0
+        return number if number.bit_length() <= _PRIME_BITS and fmpz(number).is_prime() else 0
+
+    @property
     def symbols(self) -> frozenset[str]:
         """The plain symbols inside."""
         return symbols_in(self.argument)
@@ -124,8 +130,8 @@ def square_root(radicand: Scalar) -> Scalar:
     Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
     """
     unit, factors = radicand.factors()
-    number = unit.fraction()
-    if number < 0 and all(power % 2 == 0 for _, power in factors):
+    number = unit.fraction() if unit.is_constant else None
+    if number is not None and number < 0 and all(power % 2 == 0 for _, power in factors):
         message = f"{radicand} has no real root"
         raise ZeroDivisionError(message)
     front, odd = ONE, ONE
@@ -133,9 +139,9 @@ def square_root(radicand: Scalar) -> Scalar:
         half, rest = divmod(power, 2)
         front = front * factor**half
         odd = odd * factor if rest else odd
-    if odd.is_one:
+    if odd.is_one and number is not None:
         return front * _root_of_number(number)
-    return front * generator("sqrt", odd * number)
+    return front * generator("sqrt", odd * unit)
 
 
 def square_part(number: int) -> int:
@@ -196,6 +202,8 @@ def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
 def normal_form(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
+        if root.square:
+            continue  # the field itself keeps values in normal form in it
         above = _split(value.numerator, root)
         below = _split(value.denominator, root)
         q = root.value
@@ -225,6 +233,8 @@ def with_roots(value: Scalar, roots: Iterable[Function]) -> Scalar:
         square = root.value**2 * root.argument.denominator
         unit, _ = core.factors()
         core, square = core / unit, square / unit
+        if core.is_one:  # a number under the root divides everything
+            continue
         below = value.denominator
         while not (quotient := below / core).is_zero and quotient.denominator.is_constant:
             below, power = quotient, power + 1
@@ -345,7 +355,7 @@ def identities(
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
     if falling:
         steps = {key: step if key[0] else -step for key, step in steps.items()}
-    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name)]
+    relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name) if not root.square]
     counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
     relations += [f.argument.substitute(dict.fromkeys(f.argument.names, f.value)) for f in counted]
     for (turns, monomial), step in steps.items():

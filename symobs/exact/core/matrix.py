@@ -29,10 +29,10 @@ class Matrix:
         self, field: Field, table: fmpz_mat | ring.Rows, denominator: fmpz_mpoly, shape: tuple[int, int]
     ) -> None:
         """Take a table over a common denominator; `Matrix.of` is the general constructor."""
-        self.field = field
-        self.table = table
-        self.denominator = denominator
-        self.shape = shape
+        self.field, self.shape = field, shape
+        self.table, self.denominator = (
+            ring.normal_table(field, table, denominator) if field.roots else (table, denominator)
+        )
         self._elsewhere: dict[Field, Matrix] = {}
 
     # -- construction ---------------------------------------------------------------------------------------------
@@ -198,8 +198,8 @@ class Matrix:
 
     def common_denominator(self) -> Scalar:
         """Return the least common denominator of the entries."""
-        parts = (entry.within(self.field).denominator_part for entry in self.entries)
-        return Scalar(self.field, reduce(ring.common_multiple, parts, self.field.one), self.field.one)
+        parts = (entry.within(self.field).denominator for entry in self.entries)
+        return reduce(lambda multiple, below: multiple * (below / multiple).numerator, parts, Scalar.of(1))
 
     @property
     def is_zero(self) -> bool:

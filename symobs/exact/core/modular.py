@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mat, nmod, nmod_mat
 
+from symobs.exact.core.field import Generator
+
 if TYPE_CHECKING:
     import random
     from collections.abc import Iterable
@@ -30,11 +32,15 @@ _SMALL_PRIMES = 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 * 37 * 41 * 43 * 47
 
 
 class VanishingDenominator(Exception):
-    """A denominator is zero at this point."""
+    """A denominator is zero at this point, or a number has no square root modulo its prime."""
 
 
 class Point:
-    """A value for every name, modulo one prime."""
+    """A value for every name, modulo one prime; a root of a number has a root modulo the prime for its value.
+
+    An element of Q(√2, …) with k roots that is not 0 has a norm over Q that is not 0, of at most 2ᵏ times the bits that
+    bound its conjugates; a prime at which the element vanishes divides the norm.
+    """
 
     __slots__ = ("bits", "prime", "values")
 
@@ -42,6 +48,7 @@ class Point:
         """Draw a prime of 64 bits and a residue for each name."""
         self.prime = random_prime(generator)
         self.values = {name: generator.getrandbits(POINT_BITS) for name in sorted(names)}
+        self.values |= {name: root_modulo(square, self.prime) for name, square in squares_of(self.values).items()}
         self.bits: dict[int, tuple[int, int]] = {}
 
     def scalar(self, value: Scalar) -> int:
@@ -73,6 +80,18 @@ class Point:
         if not residue:
             raise VanishingDenominator
         return pow(residue, -1, self.prime), number.bit_length()
+
+
+def squares_of(names: Iterable[str]) -> dict[str, int]:
+    """Return the numbers under those of the names that are roots of numbers."""
+    return {name: name.function.square for name in names if isinstance(name, Generator) and name.function.square}
+
+
+def root_modulo(square: int, prime: int) -> int:
+    """Return a square root modulo a prime; raises `VanishingDenominator` where there is none."""
+    if pow(square, (prime - 1) // 2, prime) != 1:  # Euler's criterion
+        raise VanishingDenominator
+    return int(fmpz(square).sqrtmod(prime))
 
 
 def random_prime(generator: random.Random) -> int:

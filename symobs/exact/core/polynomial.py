@@ -23,6 +23,11 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
 
 def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:
     """Return the coefficients of a numerator as a polynomial in all other names."""
+    return list(by_monomial(value, names).values())
+
+
+def by_monomial(value: Scalar, names: Collection[str]) -> dict[tuple[tuple[str, int], ...], Scalar]:
+    """Return the coefficients of a numerator as a polynomial in all other names, by their monomials."""
     found: dict[tuple[tuple[str, int], ...], Scalar] = {}
     for coefficient, powers in value.numerator.terms():
         inner = Scalar.of(coefficient)
@@ -30,7 +35,7 @@ def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:
             inner = inner * Scalar.symbol(name) ** power if name in names else inner
         monomial = tuple((name, power) for name, power in powers if name not in names)
         found[monomial] = found.get(monomial, Scalar.of(0)) + inner
-    return list(found.values())
+    return found
 
 
 def product_of(factors: Iterable[Scalar]) -> Scalar:
@@ -80,6 +85,7 @@ def _horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> M
         image = [ring.dot(row, image, field.zero) for row in rows]
         if factor:
             image = [entry + factor * old for entry, old in zip(image, column, strict=True)]
+        image = list(map(field.normal, image)) if field.roots else image
     return Matrix(field, tuple((entry,) for entry in image), below, vector.shape)
 
 
@@ -118,12 +124,12 @@ def remainder(polynomial: Scalar, divisor: Scalar, variable: str) -> tuple[Scala
 
 def discriminant(polynomial: Scalar, variable: str) -> Scalar:
     """Return the discriminant of the numerator in a variable: 0 where two roots are equal."""
-    found = polynomial.numerator_part.discriminant(variable)
-    return Scalar(polynomial.field, found, polynomial.field.one)
+    field = polynomial.field
+    return Scalar(field, field.normal(polynomial.numerator_part.discriminant(variable)), field.one)
 
 
 def resultant(one: Scalar, other: Scalar, variable: str) -> Scalar:
     """Return the resultant of two numerators in a variable: 0 where they have a root in common, or both leads vanish."""
     field = one.field | other.field | Field.of((variable,))
     one, other = one.within(field), other.within(field)
-    return Scalar(field, one.numerator_part.resultant(other.numerator_part, variable), field.one)
+    return Scalar(field, field.normal(one.numerator_part.resultant(other.numerator_part, variable)), field.one)

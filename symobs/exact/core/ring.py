@@ -53,6 +53,13 @@ def added(left: Rows, right: Rows) -> Rows:
     return tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
 
 
+def normal_table(field: Field, rows: Rows, denominator: fmpz_mpoly) -> tuple[Rows, fmpz_mpoly]:
+    """Return the same matrix with its entries in normal form and no root in the denominator."""
+    factor, denominator = field.rationalised(field.one, denominator)
+    entries = rows if factor.is_one() else tuple(tuple(entry * factor for entry in row) for row in rows)
+    return tuple(tuple(map(field.normal, row)) for row in entries), denominator
+
+
 def transpose(rows: Rows) -> Rows:
     """Return the transpose."""
     return tuple(zip(*rows, strict=True))
@@ -112,7 +119,7 @@ def determinant(rows: Rows, field: Field) -> fmpz_mpoly:
         return field.one
     content, rows = strip_row_contents(rows, field)
     value = _by_minors(rows, field) if len(rows) <= MINORS_UP_TO else _by_elimination(rows, field)
-    return value * content
+    return field.normal(value * content)
 
 
 def strip_row_contents(rows: Rows, field: Field) -> tuple[fmpz_mpoly, Rows]:
@@ -160,7 +167,7 @@ def maximal_minors(rows: Rows, field: Field) -> dict[tuple[int, ...], fmpz_mpoly
                     larger[chosen] = -term if known is None else known - term
                 else:
                     larger[chosen] = term if known is None else known + term
-        minors = larger
+        minors = {chosen: field.normal(minor) for chosen, minor in larger.items()} if field.roots else larger
     return minors
 
 
@@ -187,7 +194,9 @@ def cofactor(rows: Rows, row: int, column: int, field: Field) -> fmpz_mpoly:
     return -value if (row + column) % 2 else value
 
 
-def echelon(rows: Rows, vanishes: Callable[[fmpz_mpoly], bool]) -> tuple[list[int], list[list[fmpz_mpoly]]]:
+def echelon(
+    rows: Rows, vanishes: Callable[[fmpz_mpoly], bool], field: Field
+) -> tuple[list[int], list[list[fmpz_mpoly]]]:
     """Return (pivot columns, reduced rows): elimination without fractions, `vanishes` deciding what counts as zero.
 
     In the reduced rows each pivot column is zero but at its own pivot.  Pivots are the simplest entries available:
@@ -207,7 +216,8 @@ def echelon(rows: Rows, vanishes: Callable[[fmpz_mpoly], bool]) -> tuple[list[in
         for i, line in enumerate(work):
             if i != rank and not vanishes(line[column]):
                 factor = line[column]
-                work[i] = _primitive([lead * a - factor * b for a, b in zip(line, work[rank], strict=True)], vanishes)
+                cleared = [field.normal(lead * a - factor * b) for a, b in zip(line, work[rank], strict=True)]
+                work[i] = _primitive(cleared, vanishes)
         pivots.append(column)
         if len(pivots) == len(work):
             break

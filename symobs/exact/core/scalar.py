@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from flint import fmpz, fmpz_mpoly
 
 from symobs.errors import WrongKind
+from symobs.exact.core import number_field
 from symobs.exact.core.canonical_text import scalar_text
 from symobs.exact.core.field import RATIONALS, Field
 from symobs.exact.core.ring import (
@@ -46,7 +47,12 @@ class Scalar:
 
     @staticmethod
     def reduced(field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> Scalar:
-        """Return numerator / denominator in lowest terms; the denominator must not be zero."""
+        """Return numerator / denominator in lowest terms; the denominator must not be zero.
+
+        Beside roots the numerator is in normal form and the denominator free of them.
+        """
+        if field.roots:
+            numerator, denominator = field.rationalised(numerator, denominator)
         if not numerator:
             return Scalar(field, field.zero, field.one)
         if not denominator.is_one():
@@ -157,7 +163,8 @@ class Scalar:
     def __pow__(self, exponent: int) -> Scalar:
         if exponent < 0:
             return (Scalar.of(1) / self) ** -exponent
-        return Scalar(self.field, self.numerator_part**exponent, self.denominator_part**exponent)
+        make = Scalar.reduced if self.field.roots else Scalar
+        return make(self.field, self.numerator_part**exponent, self.denominator_part**exponent)
 
     # -- questions ------------------------------------------------------------------------------------------------
 
@@ -232,11 +239,15 @@ class Scalar:
     @property
     def numerator(self) -> Scalar:
         """The numerator of the reduced form."""
+        if self.field.roots and not self.denominator_part.is_constant():
+            return _lowest_terms(self, self.field.names)[0]
         return Scalar(self.field, self.numerator_part, self.field.one)
 
     @property
     def denominator(self) -> Scalar:
         """The denominator of the reduced form."""
+        if self.field.roots and not self.denominator_part.is_constant():
+            return _lowest_terms(self, self.field.names)[1]
         return Scalar(self.field, self.denominator_part, self.field.one)
 
     def common_denominator(self) -> Scalar:
@@ -244,7 +255,10 @@ class Scalar:
         return self.denominator
 
     def fraction(self) -> Fraction:
-        """Return a constant as a `Fraction`."""
+        """Return a constant as a `Fraction`; raises ValueError for a number with roots."""
+        if self.field.roots and not self.is_constant:
+            message = f"{self} is not rational"
+            raise ValueError(message)
         return Fraction(int(number_of(self.numerator_part)), int(number_of(self.denominator_part)))
 
     def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
@@ -270,7 +284,7 @@ class Scalar:
         if not self.numerator_part:
             return -1
         index = self.field.position.get(variable)
-        return 0 if index is None else int(self.numerator_part.degrees()[index])
+        return 0 if index is None else int(self.numerator.numerator_part.degrees()[index])
 
     def is_polynomial_in(self, variable: str) -> bool:
         """Return whether the denominator is free of `variable`."""
@@ -284,7 +298,7 @@ class Scalar:
         """
         target = self.field if field is None else field
         index = self.field.position.get(variable)
-        if index is None or self.degree(variable) <= 0:
+        if index is None or self.numerator_part.degrees()[index] <= 0:
             return (self.within(target),)
         parts = coefficients_in(self.numerator_part, index, self.field, target)
         below = target.lift(self.denominator_part, self.field)
@@ -297,7 +311,7 @@ class Scalar:
 
         Factors are primitive with positive leading coefficient; those of the denominator have negative multiplicity.
         """
-        return (self, ()) if self.is_zero else _factored(self)
+        return (self, ()) if self.is_zero else _factored(self, self.field.names)
 
     def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
         """Return the value with generators replaced; raises ZeroDivisionError where a denominator vanishes."""
@@ -324,14 +338,31 @@ def _from_terms(
 
 
 @lru_cache(maxsize=1024)
-def _factored(value: Scalar) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
-    """Return the factors of a nonzero value; cached."""
-    field = value.field
-    above, over = factors_of(field, value.numerator_part)
-    below, under = factors_of(field, value.denominator_part)
+def _factored(value: Scalar, names: tuple[str, ...]) -> tuple[Scalar, tuple[tuple[Scalar, int], ...]]:
+    """Return the factors of a nonzero value over the numbers of its field, which has these names; cached."""
+    field = Field.of(names)
+    value = value.within(field)
+    parts = [part.numerator_part for part in (value.numerator, value.denominator)]
+    if field.roots:
+        over, under = (number_field.factors_over(field, part) for part in parts)
+    else:
+        (above, over), (below, under) = (factors_of(field, part) for part in parts)
     found = [(Scalar(field, part, field.one), power) for part, power in over]
     found += [(Scalar(field, part, field.one), -power) for part, power in under]
-    return Scalar.rational(above, below), tuple(found)
+    if not field.roots:
+        return Scalar.rational(above, below), tuple(found)
+    for factor, power in found:
+        value = value / factor**power
+    return value, tuple(found)
+
+
+@lru_cache(maxsize=1024)
+def _lowest_terms(value: Scalar, names: tuple[str, ...]) -> tuple[Scalar, Scalar]:
+    """Return numerator and denominator without a common factor over the roots of the field, which has these names."""
+    field = Field.of(names)
+    value = value.within(field)
+    above, below = number_field.lowest_terms(field, value.numerator_part, value.denominator_part)
+    return Scalar(field, above, field.one), Scalar(field, below, field.one)
 
 
 def _compose(polynomial: fmpz_mpoly, field: Field, values: Mapping[str, Scalar]) -> Scalar:
@@ -355,13 +386,13 @@ def _compose(polynomial: fmpz_mpoly, field: Field, values: Mapping[str, Scalar])
             homogenised.append((index, int(powers[name]), value.denominator_part))
             clearing = clearing * value.denominator_part ** int(powers[name])
     if not homogenised:
-        return Scalar(target, polynomial.compose(*images, ctx=target.context), target.one)
+        return Scalar(target, target.normal(polynomial.compose(*images, ctx=target.context)), target.one)
     total = target.zero
     for exponents, coefficient in polynomial.terms():
         term = target.context.constant(coefficient)
         for image, exponent in zip(images, exponents, strict=True):
             if exponent:
-                term = term * image ** int(exponent)
+                term = target.normal(term * target.normal(image ** int(exponent)))
         for index, degree, denominator in homogenised:
             term = term * denominator ** (degree - int(exponents[index]))
         total = total + term

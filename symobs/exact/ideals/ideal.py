@@ -58,7 +58,8 @@ class Ideal:
     @cached_property
     def generators(self) -> tuple[Scalar, ...]:
         """The reduced Gröbner basis."""
-        return tuple(self._back(polynomial) for polynomial in self.basis)
+        found = [self._back(polynomial) for polynomial in self.basis]
+        return tuple(generator for generator in found if generator)
 
     @property
     def is_whole(self) -> bool:
@@ -78,6 +79,8 @@ class Ideal:
     def within(self, field: Field) -> Ideal:
         """Return the ideal in a larger field: further generators leave a reduced basis of the same order what it is."""
         if (EIGENVALUE in field.position) != (EIGENVALUE in self.field.position):
+            return _ideal(self.generators, field)
+        if field.roots:
             return _ideal(self.generators, field)
         home = _home(field)
         moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in self.generators]
@@ -112,7 +115,12 @@ class Ideal:
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:
-        """The exponents at which each generator alone is a leading monomial; None where one never is."""
+        """The exponents at which each generator alone is a leading monomial; None where one never is.
+
+        Beside roots of numbers there are none: the zeros would be counted once for each sign of a root.
+        """
+        if self.field.roots:
+            return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         found = [_pure_power(leading, k) for k in range(len(self.home.names()))]
         return tuple(bound for bound in found if bound is not None) if found and None not in found else None
@@ -164,7 +172,7 @@ class Ideal:
         return Ideal.of((*self.generators, *others))
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
-        return Scalar(self.field, polynomial.project_to_context(self.field.context), self.field.one)
+        return Scalar(self.field, self.field.normal(polynomial.project_to_context(self.field.context)), self.field.one)
 
 
 def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:
@@ -184,12 +192,15 @@ def apart_from_zero(value: Scalar) -> Scalar:
 def _home(field: Field) -> fmpz_mpoly_ctx:
     """Return the context of a basis: with an eigenvalue among the names, what does not speak of it is seen in the basis.
 
-    It comes first in a lexicographic order, which eliminates it.
+    It comes first in a lexicographic order, which eliminates it.  Roots of numbers come last in one: then the basis is
+    that over the field of the numbers, and the squares of the roots.
     """
-    if EIGENVALUE not in field.position:
+    if EIGENVALUE not in field.position and not field.roots:
         return context_of(field.names, Ordering.degrevlex)
-    others = (name for name in field.names if name != EIGENVALUE)
-    return context_of((EIGENVALUE, *others), Ordering.lex)
+    numbers = field.numbers.names
+    first = (EIGENVALUE,) if EIGENVALUE in field.position else ()
+    others = (name for name in field.names if name != EIGENVALUE and name not in numbers)
+    return context_of((*first, *others, *numbers), Ordering.lex)
 
 
 @lru_cache(maxsize=512)
@@ -201,6 +212,7 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):
         return Ideal(field, fmpz_mpoly_vec([home.constant(1)], home), home)
+    moved += [square.project_to_context(home) for square in field.relations] if moved else []
     if len(moved) > 1 and sum(len(polynomial) for polynomial in moved) > TERMS:
         message = "the equations have too many terms"
         raise TooLarge(message)

@@ -30,6 +30,7 @@ def triangular(equations: Sequence[Scalar], unknowns: Sequence[str]) -> tuple[Sc
     moved = [field.lift(e.numerator_part, e.field).project_to_context(home) for e in equations if e]
     if any(polynomial.is_constant() for polynomial in moved):
         return (Scalar.of(1),)
+    moved += [square.project_to_context(home) for square in field.relations]
     if sum(len(polynomial) for polynomial in moved) > TERMS:
         message = "the equations have too many terms"
         raise TooLarge(message)
@@ -38,7 +39,8 @@ def triangular(equations: Sequence[Scalar], unknowns: Sequence[str]) -> tuple[Sc
         message = "the equations are too long to be eliminated"
         raise TooLarge(message)
     reduced = basis.autoreduction(groebner=True)  # type: ignore[attr-defined]
-    found = [Scalar(field, polynomial.project_to_context(field.context), field.one) for polynomial in reduced]
+    back = (field.normal(polynomial.project_to_context(field.context)) for polynomial in reduced)
+    found = [Scalar(field, polynomial, field.one) for polynomial in back if polynomial]
     order = {name: place for place, name in enumerate(unknowns)}
     return tuple(
         sorted(found, key=lambda p: (-min((order[n] for n in p.names if n in order), default=len(order)), p.size))

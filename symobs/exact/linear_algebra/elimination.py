@@ -41,7 +41,7 @@ def echelon(matrix: Matrix, relations: Ideal | Scalar | None = None) -> tuple[tu
             raise TooLarge(message)
         return Scalar(field, entry, field.one) in relations
 
-    pivots, reduced = ring.echelon(rows, vanishes)
+    pivots, reduced = ring.echelon(rows, vanishes, field)
     columns = range(matrix.shape[1])
     kernel = [_kernel_vector(j, pivots, reduced, field, vanishes, len(columns)) for j in columns if j not in pivots]
     return tuple(pivots), tuple(kernel)
@@ -102,7 +102,7 @@ def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:
 
 def reduced_echelon(matrix: Matrix) -> tuple[tuple[int, ...], Matrix]:
     """Return (pivot columns, row-reduced echelon form without its zero rows)."""
-    pivots, reduced = ring.echelon(matrix.polynomials, lambda entry: not entry)
+    pivots, reduced = ring.echelon(matrix.polynomials, lambda entry: not entry, matrix.field)
     field, one = matrix.field, matrix.field.one
     rows = [
         [Scalar(field, entry, one) / Scalar(field, row[pivot], one) for entry in row]

@@ -101,7 +101,8 @@ class Krylov:
         """The determinant of N."""
         if not self.field.names:
             return self.field.context.constant(self._numbers.det())
-        return ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
+        found = ring.dot(self.rows[-1].polynomials[0], self._last_cofactors, self.field.zero)
+        return self.field.normal(found)
 
     def placing(self, coefficients: Sequence[Fraction]) -> Matrix:
         """Return φ(A) 𝒪⁻¹ eₙ for a plant with numbers, φ given by its coefficients, highest power first.

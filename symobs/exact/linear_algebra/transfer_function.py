@@ -39,7 +39,7 @@ def controller(
     χ δ + z n = closed.
     """
     field = A.field | b.field | c.field | K.field | L.field | d.field | closed.field
-    if not field.names or A.shape[0] > ring.MINORS_UP_TO:
+    if not field.names or field.roots or A.shape[0] > ring.MINORS_UP_TO:
         return transfer(A - b @ K - L @ c + L @ K * d, L, K, Scalar.of(0), variable)
     field = field | Field.of((variable,))
     n, chi = (value.within(field) for value in _bordered(A, L, K, field, variable))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InexactInput, InputError
 from symobs.exact.algebraic.complex import Complex
+from symobs.exact.algebraic.conjugates import root_in_field
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.core import generators as functions
 from symobs.exact.core.field import EIGENVALUE
@@ -181,8 +182,11 @@ def relation_to_sympy(left: Scalar, operator: str, objects: Mapping[str, Any]) -
     return kinds[operator](scalar_to_sympy(left, objects), 0, evaluate=False)
 
 
-def complex_from_sympy(expression: Any, where: str) -> Complex:
-    """Return the exact value of a SymPy expression built from numbers, symbols, i and the four operations."""
+def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Complex:
+    """Return the exact value of a SymPy expression built from numbers and their roots, symbols, i and the four operations.
+
+    With `roots` square roots of other real expressions are generators.
+    """
     if isinstance(expression, (int, Fraction)):
         return Complex.of(expression)
     if isinstance(expression, sympy.Poly):
@@ -201,15 +205,31 @@ def complex_from_sympy(expression: Any, where: str) -> Complex:
         return Complex.of(Scalar.symbol(expression.name))
     arguments = expression.args
     if expression.is_Add or expression.is_Mul:
-        total = complex_from_sympy(arguments[0], where)
+        total = complex_from_sympy(arguments[0], where, roots=roots)
         for argument in arguments[1:]:
-            value = complex_from_sympy(argument, where)
+            value = complex_from_sympy(argument, where, roots=roots)
             total = total + value if expression.is_Add else total * value
         return total
     if expression.is_Pow and expression.exp.is_Integer:
-        return complex_from_sympy(expression.base, where) ** int(expression.exp)
+        return complex_from_sympy(expression.base, where, roots=roots) ** int(expression.exp)
+    if expression.is_Pow and expression.exp.is_Rational and expression.exp.q == 2:
+        found = _square_root(complex_from_sympy(expression.base, where, roots=roots), roots=roots)
+        if found is not None:
+            return found ** int(expression.exp.p)
     message = f"{expression} is not a rational expression"
-    raise InputError(message, where=where, repair="use numbers, symbols and + - * / with integer powers")
+    repair = "use numbers, roots of rational numbers, symbols and + - * / with integer powers"
+    raise InputError(message, where=where, repair=repair)
+
+
+def _square_root(radicand: Complex, *, roots: bool) -> Complex | None:
+    if not radicand.is_real or radicand.real.is_zero:
+        return radicand if radicand.is_real else None
+    if radicand.real.is_constant and radicand.real.fraction() < 0:
+        return Complex(Scalar.of(0), functions.square_root(-radicand.real))
+    known = root_in_field(radicand.real)
+    if known is None and roots:
+        known = functions.square_root(radicand.real)
+    return None if known is None else Complex.of(known)
 
 
 def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:

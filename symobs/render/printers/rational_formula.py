@@ -165,6 +165,8 @@ def _shortest(value: Scalar) -> Formula:
     expanded = _expanded(value.terms())
     if not isinstance(expanded, Sum) or len(expanded.terms) > FACTORED_UP_TO:
         return expanded
+    if not value.factors()[0].is_constant:  # a number with roots in front of the factors
+        return expanded
     factored = _factored(value)
     is_sign_only = isinstance(factored, Negative) and isinstance(factored.operand, Sum)
     return factored if size(factored) < size(expanded) and not is_sign_only else expanded

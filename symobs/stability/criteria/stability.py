@@ -109,7 +109,7 @@ def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:
     An even power is kept as the factor's square where the factor may vanish, since the inequality is strict.
     """
     unit, factors = condition.factors()
-    kept = Scalar.of(1 if unit.fraction() > 0 else -1)
+    kept = Scalar.of(1 if sign_of(unit, {}) == "positive" else -1)
     for factor, power in factors:
         sign = sign_of(factor, signs)
         if sign == "positive" or (power % 2 == 0 and sign in {"negative", "nonzero"}):

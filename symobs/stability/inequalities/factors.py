@@ -55,7 +55,7 @@ def split_into_factors(state: InequalitySystem, value: Scalar, signs: Mapping[st
     if value.is_constant or value.size > FACTORED_UP_TO:
         return state
     unit, factors = value.factors()
-    odd, even, weak = Scalar.of(1 if unit.fraction() > 0 else -1), list[Scalar](), list[Scalar]()
+    odd, even, weak = Scalar.of(1 if sign_of(unit, {}) == "positive" else -1), list[Scalar](), list[Scalar]()
     forward, known = list[Step](), list[Scalar]()
     for factor, power in factors:
         sign = sign_of(factor, signs)

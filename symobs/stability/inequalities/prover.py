@@ -196,7 +196,8 @@ def _stripped(item: Open, view: View) -> View | None:
     if sign_of(item.polynomial, view.signs) == "positive":
         return None
     unit, factors = item.polynomial.factors()
-    kept, certain, below = Scalar.of(1 if unit.fraction() > 0 else -1), Scalar.of(abs(unit.fraction())), ONE
+    turned = -1 if sign_of(unit, {}) == "negative" else 1
+    kept, certain, below = Scalar.of(turned), unit * turned, ONE
     for factor, power in factors:
         sign = sign_of(factor, view.signs)
         if sign not in {"positive", "negative"}:
@@ -221,7 +222,7 @@ def _stripped(item: Open, view: View) -> View | None:
 def _read_back(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
     """Return the steps to a goal whose image is positive: each factor is a sum of products of known values."""
     unit, factors = image.factors()
-    steps, above, below, sign = list(view.steps), list[Scalar](), list[Scalar](), unit.fraction()
+    steps, above, below, sign = list(view.steps), list[Scalar](), list[Scalar](), unit
     for factor, power in factors:
         found = sign_of(factor, view.signs)
         if found not in {"positive", "negative"}:
@@ -231,9 +232,9 @@ def _read_back(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | No
         value = oriented.substitute(view.stands_for)
         steps.append(Combined(value, UNIT, view.products(oriented)))
         (above if power > 0 else below).extend([value] * abs(power))
-    if sign < 0:
+    if sign_of(sign, {}) == "negative":
         return None
-    return (*steps, Combined(goal, ((ONE, tuple(below)),), ((Scalar.of(sign), tuple(above)),)))
+    return (*steps, Combined(goal, ((ONE, tuple(below)),), ((sign, tuple(above)),)))
 
 
 def _over_positive(value: Scalar, view: View) -> tuple[Scalar, Scalar] | None:

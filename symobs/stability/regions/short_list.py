@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from symobs._dataclass import dataclass
+from symobs.conditions import sign_of
 from symobs.exact import Scalar
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.stability.criteria.critical_polynomials import irreducible
@@ -119,7 +120,7 @@ def _candidates(critical: CriticalPolynomials, samples: Sequence[Sample]) -> lis
         if condition.is_constant:
             continue
         unit, factors = condition.factors()
-        rest = Scalar.of(1 if unit.fraction() > 0 else -1)
+        rest = Scalar.of(1 if sign_of(unit, {}) == "positive" else -1)
         for factor, power in factors:
             oriented = _oriented([factor], samples)
             if oriented:

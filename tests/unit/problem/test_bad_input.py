@@ -170,7 +170,7 @@ WRONG = {
     "number for a matrix": (problem(A="5"), "plant.A", "a matrix is expected, but a number came"),
     "division by zero": (problem(A='"[0 1; 0 1/0]"'), "plant.A", "division by zero"),
     "complex entry": (problem(A='"[0 1; 0 2i]"'), "plant.A[1][1]", "a real value is expected, but 2*I came"),
-    "irrational entry": (problem(A='"[0 1; 0 sqrt(2)]"'), "plant.A", "sqrt(2) is not rational … declare a symbol"),
+    "irrational entry": (problem(A='"[0 1; 0 exp(2)]"'), "plant.A", "exp has no exact value here … declare a symbol"),
     # expected answers
     "expected text unreadable": (problem(f'{POLES}\n[expect]\nL = "[19; 81"'), "expect.L", '"[" is never closed'),
     "expected field unknown": (problem(f'{POLES}\n[expect]\nK = "[1 2]"'), "expect.K", "no task here … L"),

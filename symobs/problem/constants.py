@@ -1,0 +1,50 @@
+"""The constants of a problem file: names for numbers, `r = "sqrt(3)"`, that texts may use."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import InputError
+from symobs.exact.algebraic.enclosure import is_number
+from symobs.expression import declared_name, parse_scalar
+from symobs.expression.source import shown
+from symobs.problem.file_tables import came
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from contextlib import AbstractContextManager
+
+    from symobs.system import Symbols
+
+_MAX_CONSTANTS = 100
+
+
+def with_constants(table: Mapping[str, Any], symbols: Symbols, errors: AbstractContextManager[Any, Any]) -> Symbols:
+    """Return the symbols with names for numbers; `errors` collects what is wrong with one of them."""
+    for name, value in list(table.items())[: _MAX_CONSTANTS + 1]:
+        with errors:
+            symbols = _with_constant(name, value, symbols)
+    return symbols
+
+
+def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
+    """Return the symbols with one more name for a number; those before it may occur in its text.
+
+    Raises `InputError` where the name is a symbol too, and where the value is no number.
+    """
+    where, known = f"constants.{shown(name, 40)}", symbols.constants
+    declared_name(name, where)
+    if len(known) == _MAX_CONSTANTS:
+        message = f"more than {_MAX_CONSTANTS} constants are declared"
+        raise InputError(message, where="constants", repair="write the numbers themselves")
+    if name in symbols.signs:
+        message = f"{name} is declared as a symbol, too"
+        raise InputError(message, where=where, repair="keep one of the two declarations")
+    if not isinstance(value, (str, int)) or isinstance(value, bool):
+        raise InputError(f"a number is expected, but {came(value)} came", where=where, repair='write r = "sqrt(3)"')
+    found = parse_scalar(value, {**symbols.signs, **known}, where=where)
+    if not is_number(found):
+        message = f"{name} contains a symbol, and a constant is a number"
+        raise InputError(message, where=where, repair="write the expression where it is needed")
+    return replace(symbols, constants={**known, name: found})

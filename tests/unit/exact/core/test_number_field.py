@@ -1,0 +1,130 @@
+"""Fields with roots of primes: normal forms, factors and lowest terms, held against SymPy and against pairs of fractions."""
+
+from __future__ import annotations
+
+import pickle
+import random
+from fractions import Fraction
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symobs.exact import Matrix, Scalar, kernel, product_of, rank
+from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.core.generators import square_root
+from symobs.exact.core.modular import Point, VanishingDenominator
+from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
+
+R2, R3 = square_root(Scalar.of(2)), square_root(Scalar.of(3))
+k, s, x = (Scalar.symbol(name) for name in "ksx")
+
+_FRACTIONS = st.fractions(min_value=-9, max_value=9, max_denominator=9)
+_PAIRS = st.tuples(_FRACTIONS, _FRACTIONS)
+
+
+def _number(pair: tuple[Fraction, Fraction]) -> Scalar:
+    return pair[0] + pair[1] * R2
+
+
+@given(_PAIRS, _PAIRS)
+def test_the_field_of_pairs(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction]) -> None:
+    """a + b √2 as a pair of fractions: (a, b)(c, d) = (ac + 2bd, ad + bc), 1/(a, b) = (a, −b)/(a² − 2b²)."""
+    one, other = _number(a), _number(b)
+    assert one * other == _number((a[0] * b[0] + 2 * a[1] * b[1], a[0] * b[1] + a[1] * b[0]))
+    assert one + other == _number((a[0] + b[0], a[1] + b[1]))
+    assert one.is_zero == (a == (0, 0))
+    if not one.is_zero:
+        norm = a[0] ** 2 - 2 * a[1] ** 2
+        assert other / one == other * _number((a[0] / norm, -a[1] / norm))
+        assert hash(1 / (1 / one)) == hash(one)
+
+
+def test_equal_numbers_have_one_form() -> None:
+    assert str(1 / (1 + R2)) == "sqrt(2) - 1"
+    assert square_root(Scalar.of(6)) == R2 * R3
+    assert square_root(Scalar.of(Fraction(1, 2))) == R2 / 2
+    assert 1 / (k - R2) == (k + R2) / (k**2 - 2)
+    assert pickle.loads(pickle.dumps(1 / (k - R2))) == 1 / (k - R2)  # noqa: S301 - our own text
+
+
+def test_lowest_terms_show_where_a_denominator_vanishes() -> None:
+    """(k + √2)/(k² − 2) has no value at √2 alone: its denominator is k − √2."""
+    value = (k + R2) / (k**2 - 2)
+    assert (value.numerator, value.denominator) == (1, k - R2)
+    assert str(value) == "1/(k - sqrt(2))"
+    assert ((k**2 - 2) * value).denominator.is_one
+
+
+_POLYNOMIALS = [
+    x**2 - 2,
+    x**4 + 1,
+    x**2 + R2 * x + 1,
+    x**4 - 10 * x**2 + 1,
+    (x - R2 * R3) * (x + 1 + R2) ** 2,
+    3 * x**3 - 6 * R2,
+]
+
+
+@pytest.mark.parametrize("polynomial", _POLYNOMIALS, ids=str)
+def test_factors_over_the_roots(polynomial: Scalar) -> None:
+    """The degrees of the factors are those that SymPy finds over Q(√2, √3)."""
+    inside = polynomial.within((polynomial * R2 * R3 * x).field)
+    unit, factors = inside.factors()
+    assert unit * product_of(factor**power for factor, power in factors) == polynomial
+    extension = [sympy.sqrt(2), sympy.sqrt(3)]
+    theirs = sympy.Poly(scalar_to_sympy(polynomial), sympy.Symbol("x"), extension=extension).factor_list()[1]
+    ours = sorted((factor.degree("x"), power) for factor, power in factors)
+    assert ours == sorted((int(factor.degree()), power) for factor, power in theirs)
+
+
+@settings(max_examples=30)
+@given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3), st.booleans()), min_size=1, max_size=3))
+def test_a_product_of_linear_factors_comes_apart(parts: list[tuple[int, int, bool]]) -> None:
+    """Π (x − a − b √2) or Π (x − a − b √2 k): as many linear factors, whatever the product looks like."""
+    given_factors = [x - a - b * R2 * (k if moves else 1) for a, b, moves in parts]
+    product = product_of(given_factors)
+    found = product.within((product * R2).field).factors()[1]
+    monic = {(factor / factor.coefficients("x")[0], power) for factor, power in found}
+    assert monic == {(factor, given_factors.count(factor)) for factor in given_factors}
+
+
+def test_elimination_sees_hidden_zeros() -> None:
+    """[√2 1; 2 √2] has determinant 0, though no entry looks like it."""
+    matrix = Matrix.of([[R2, 1], [2, R2]])
+    assert matrix.determinant().is_zero
+    assert rank(matrix) == 1
+    assert (matrix @ kernel(matrix)).is_zero
+    with pytest.raises(ZeroDivisionError, match="singular"):
+        matrix.inverse()
+
+
+def test_inverse_of_a_matrix_with_roots() -> None:
+    matrix = Matrix.of([[R2, 1, k], [2, R2 + 1, 0], [1, R3, 1]])
+    assert matrix.inverse() @ matrix == Matrix.identity(3)
+    assert matrix @ matrix.adjugate() == Matrix.identity(3) * matrix.determinant()
+
+
+def test_roots_of_numbers_with_roots() -> None:
+    assert root_in_field(3 + 2 * R2) == 1 + R2
+    assert root_in_field(5 - 2 * R2 * R3) == R3 - R2
+    assert root_in_field(2 + R3) == (R2 + R2 * R3) / 2
+    assert root_in_field(2 - R3) == (R2 * R3 - R2) / 2
+    assert root_in_field(2 + R2) is None  # no square in Q(√2)
+    assert root_in_field(1 - R2) is None  # negative
+
+
+def test_a_point_keeps_the_squares() -> None:
+    """At a point modulo a prime a root has a root for its value; where there is none there is no point."""
+    generator, seen = random.Random(3), 0  # noqa: S311 - repeatable
+    for _ in range(40):
+        try:
+            point = Point({*R2.field.names, *R3.field.names}, generator)
+        except VanishingDenominator:
+            continue
+        seen += 1
+        two, three = point.scalar(R2), point.scalar(R3)
+        assert (two * two % point.prime, three * three % point.prime) == (2, 3)
+        assert point.scalar((1 + R2) * (R3 - 1)) == (1 + two) * (three - 1) % point.prime
+    assert 0 < seen < 40

@@ -1,0 +1,151 @@
+"""Roots of numbers as data: what is read, what is refused and why, verdicts, conditions and lies."""
+
+from __future__ import annotations
+
+import json
+import random
+
+import pytest
+import sympy
+
+import symobs as so
+from symobs.certificate.claims import verify
+from symobs.derivation.builder import relation
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import square_root
+from symobs.formula import Environment
+from symobs.formula.term import letter
+from symobs.problem import read
+
+k = sympy.Symbol("k", real=True)
+
+
+def _observability(C: str) -> so.Result:
+    return so.observability(so.StateSpace("[0 1; 2 0]", C=C))
+
+
+@pytest.mark.parametrize(("C", "verdict"), [("[sqrt(2) 1]", "no"), ("[-sqrt(2) 1]", "no"), ("[sqrt(3) 1]", "yes")])
+def test_a_hidden_zero_decides_the_verdict(C: str, verdict: str) -> None:
+    """With eigenvalues ±√2 the row [c 1] misses a mode if and only if c² = 2."""
+    assert _observability(C).verdict == verdict
+
+
+def test_sympy_and_text_say_the_same() -> None:
+    entries = sympy.Matrix([[0, 1], [sympy.sqrt(2) * k, -1]])
+    plants = so.StateSpace(entries, C=[[1, sympy.sqrt(3)]]), so.StateSpace("[0 1; sqrt(2)*k -1]", C="[1 sqrt(3)]")
+    first, second = (so.observer(plant, poles=[-1, -sympy.sqrt(2)]).L for plant in plants)
+    assert (first - second.subs(sympy.Symbol("k"), k)).applyfunc(sympy.simplify).is_zero_matrix
+
+
+def test_conditions_are_exact() -> None:
+    """det 𝒪 = k² − 2 for C = [k 1]; beside √2 in the data it has two factors, and one of them is positive for k > 0."""
+    plant = so.StateSpace("[0 1; 2 0]", C="[k 1]", symbols={"k": "positive"})
+    (condition,) = so.observability(plant).conditions
+    assert condition == sympy.Ne(condition.lhs, 0, evaluate=False)
+    assert condition.lhs == sympy.Symbol("k") ** 2 - 2
+    beside = so.StateSpace("[0 1; 2 0]", C="[sqrt(2)*k 2]", symbols={"k": "positive"})
+    found = so.observability(beside)
+    assert found.verdict == "conditional"
+    assert [case.result.verdict for case in found.cases] == ["no"]
+
+
+def test_signs_of_constants_are_decided() -> None:
+    """1 − √3 − 3√2 k < 0 for every k > 0, so nothing is left to assume."""
+    plant = so.StateSpace("[0 1; sqrt(2)*k -1]", C="[1 sqrt(3)]", symbols={"k": "positive"})
+    assert so.observability(plant).verdict == "yes"
+    assert so.observability(so.StateSpace("[0 1; sqrt(2)*k -1]", C="[1 sqrt(3)]")).verdict == "conditional"
+
+
+def test_a_result_reads_back() -> None:
+    plant = so.StateSpace("[0 1; sqrt(2) -1]", "[0; 1]", "[1 sqrt(3)]")
+    data = json.loads(so.observer(plant, poles="-1, -2").to("json"))
+    (result,) = data["results"]
+    assert so.StateSpace(result["plant"]["A"], C=result["plant"]["C"]).A == plant.A
+    L = so.StateSpace(result["plant"]["A"], result["L"]).B
+    chi = (plant.A - L * plant.C).charpoly(sympy.Symbol("s")).as_expr()
+    assert sympy.simplify(chi - sympy.expand((sympy.Symbol("s") + 1) * (sympy.Symbol("s") + 2))) == 0
+
+
+@pytest.mark.parametrize(
+    ("entry", "reason"),
+    [
+        ("sqrt(k)", "sqrt of this has no exact value here"),
+        ("sqrt(2 + sqrt(2))", "sqrt of this has no exact value here"),
+        ("sqrt(-2)", "a real value is expected"),
+        ("exp(1)", "exp has no exact value here"),
+        ("cos(k)", "cos has no exact value here"),
+        ("cos(pi/7)", "is not written with square roots"),
+        ("(pi + 1)", "no algebraic number|reserved"),
+    ],
+)
+def test_what_is_no_number_is_refused(entry: str, reason: str) -> None:
+    with pytest.raises(so.InputError, match=reason):
+        so.StateSpace(f"[0 1; {entry} -1]", C="[1 0]")
+
+
+@pytest.mark.parametrize(
+    ("text", "same"), [("cos(pi/6)", "sqrt(3)/2"), ("sin(pi/4)^2", "1/2"), ("sqrt(3 + 2*sqrt(2))", "1 + sqrt(2)")]
+)
+def test_numbers_that_have_a_root(text: str, same: str) -> None:
+    assert so.StateSpace(f"[{text}]").A == so.StateSpace(f"[{same}]").A
+
+
+def test_regions_are_refused_beside_roots() -> None:
+    with pytest.raises(so.InputError, match=r"the data contain sqrt\(2\)"):
+        so.stability_region("s^2 + sqrt(2) h s + 1")
+
+
+def test_a_false_equation_is_seen_at_points() -> None:
+    """Claims too long to be checked exactly are checked modulo primes; one wrong sign of one root is seen there."""
+    dice, root = random.Random(1), square_root(Scalar.of(2))  # noqa: S311 - repeatable
+    names = [Scalar.symbol(name) for name in "abcdefgh"]
+
+    def entry() -> Scalar:
+        return sum((dice.randint(-9, 9) * name + root * dice.randint(1, 9) for name in names), Scalar.of(0))
+
+    A, B = (Matrix.of([[entry() for _ in range(3)] for _ in range(3)]) for _ in range(2))
+    right = A @ B
+    wrong = right.substitute({root.field.names[0]: -root})
+    for product, how in ((right, "random point"), (wrong, "")):
+        environment = Environment(values={"A": A, "B": B, "P": product})
+        a, b, p = (letter(name, environment) for name in "ABP")
+        method, bound = verify(relation(a @ b, p), environment)
+        assert how in method if how else method == ""
+        assert bound < 2**-50
+
+
+_FILE = """
+task = "observer"
+[symbols]
+k = "positive"
+[constants]
+{constants}
+[plant]
+A = "[0 1; r*k -1]"
+C = "[1 h]"
+[specification]
+poles = "-2 + 2 r i, -2 - 2 r i"
+"""
+
+
+@pytest.mark.parametrize(
+    ("constants", "reason"),
+    [
+        ('k = "sqrt(3)"', "declared as a symbol, too"),
+        ('r = "2 k"', "contains a symbol"),
+        ('r = "exp(1)"', "exp has no exact value here"),
+        ("r = true", "a number is expected"),
+        ('"1x" = 2', "is not a name"),
+        ('h = "r"\nr = 2', 'the name "r" is not declared'),
+    ],
+)
+def test_a_wrong_constant_is_told_at_its_place(constants: str, reason: str) -> None:
+    with pytest.raises(so.ProblemErrors, match=rf"constants\..*{reason}"):
+        read(_FILE.format(constants=constants))
+
+
+def test_constants_of_a_file() -> None:
+    problem = read(_FILE.format(constants='r = "sqrt(3)"\nh = "r/2 + cos(pi/6)"'))
+    assert sympy.Matrix([[1, sympy.sqrt(3)]]) == problem.plant.C
+    (result,) = problem.solve()
+    assert result.verdict == "yes"
