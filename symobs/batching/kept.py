@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any
 
@@ -116,8 +117,16 @@ class Child:
     def __init__(self, megabytes: float | None) -> None:
         self.megabytes = megabytes
         self.words = TemporaryFile()  # noqa: SIM115 - it lives as long as the process
-        command = [sys.executable, "-m", "symobs.batching.child", str(os.getpid()), f"{megabytes or 0:g}"]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.words)  # noqa: S603 - our own
+        place = str(Path(__file__).parents[2])  # the child is this symobs, whatever lies in the folder it starts in
+        paths = os.pathsep.join(filter(None, (place, os.environ.get("PYTHONPATH"))))
+        command = [sys.executable, "-P", "-m", "symobs.batching.child", str(os.getpid()), f"{megabytes or 0:g}"]
+        self.process = subprocess.Popen(  # noqa: S603 - our own
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.words,
+            env={**os.environ, "PYTHONPATH": paths},
+        )
         self.lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self.group: int | None = None
         self.is_ended = False

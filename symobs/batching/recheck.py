@@ -122,17 +122,17 @@ def _signed(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) ->
 
 
 def _atom(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) -> tuple[Fraction, int]:
-    token = tokens[place]
-    if token == "(":
+    word = tokens[place]
+    if word == "(":
         found, place = _sum(tokens, place + 1, names)
         if tokens[place] != ")":
             raise Beyond("a bracket is not closed")
         return found, place + 1
-    if token.isdigit():
-        return Fraction(int(token)), place + 1
-    if token not in names or tokens[place + 1] == "(":
-        raise Beyond(token)
-    return names[token], place + 1
+    if word.isdigit():
+        return Fraction(int(word)), place + 1
+    if word not in names or tokens[place + 1] == "(":
+        raise Beyond(word)
+    return names[word], place + 1
 
 
 class _Read:
