@@ -12,6 +12,7 @@ from symobs.expect import mismatches
 from symobs.problem import parse, validate
 from symobs.render.formats.json import answer_object, result_object
 from symobs.result import render
+from symobs.result.conversions import to_json
 from symobs.specification import desired_polynomial
 
 if TYPE_CHECKING:
@@ -25,12 +26,21 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     """Return the row of a problem: its results as JSON, and the pages asked for."""
     problem = problem_of(payload)
     results = problem.solve()
-    shown = answer_object if payload["fields"] == "answer" else result_object
+    shown = _SHOWN[payload["fields"]]
     row: dict[str, Any] = {**_how_it_went(problem, results), "result": [shown(result) for result in results]}
     if payload["formats"]:
         document = replace(problem.document(results), templates=None)
         row["files"] = {name: render(document, name) for name in payload["formats"]}
     return row
+
+
+def _with_cases(result: Result) -> dict[str, Any]:
+    """Return what was asked for, and where cases of their own begin."""
+    cases = [{"when": [to_json(condition) for condition in case.when]} for case in result.case_tree]
+    return {**answer_object(result), "cases": cases}
+
+
+_SHOWN = {"all": result_object, "answer": answer_object, "cases": _with_cases}
 
 
 def problem_of(payload: Mapping[str, Any]) -> Problem:

@@ -24,8 +24,10 @@ from symobs.batching.jobs import SCHEMA, Budget, fingerprint
 from symobs.errors import CertificateRejected, InputError, reason_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
+
+    from symobs.batching.jobs import Job
 
 #: What a job comes to that is not to be tried again.
 FINAL = ("done", "no", "unreadable")
@@ -67,6 +69,36 @@ class Store:
                         yield row
         for key in sorted(several):
             yield _settled(several[key], self.folder)
+
+    def in_order(self, jobs: Iterable[Job]) -> Iterator[tuple[int, Any]]:
+        """Yield the first index and the result of blocks, in the order of their jobs; one chunk is in memory at a time.
+
+        Raises `InputError` where one is missing.
+        """
+        places = dict(self._places())
+        for job in jobs:
+            if job.key not in places:
+                raise InputError(f"{job.name} are missing", where=str(self.folder), repair="run the same command again")
+            path, start, length = places[job.key]
+            with path.open("rb") as stream:
+                stream.seek(start)
+                row = json.loads(stream.read(length))
+            if "result" not in row:
+                raise InputError(
+                    f"{job.name}: {'; '.join(row['error'])}",
+                    where=str(self.folder),
+                    repair="run again with more --timeout",
+                )
+            yield json.loads(job.payload)["first"], row["result"]
+
+    def _places(self) -> Iterator[tuple[str, tuple[Path, int, int]]]:
+        """Yield where the row of each key stands."""
+        for path in self.chunks():
+            start = 0
+            with path.open("rb") as stream:
+                for line in stream:
+                    yield line[8:72].decode(), (path, start, len(line))
+                    start += len(line)
 
     def _keys_met_again(self) -> set[str]:
         """Return the keys that stand in more than one row."""

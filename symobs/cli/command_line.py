@@ -27,6 +27,7 @@ COMMANDS = {
     "schema": "Print the JSON schema of problem files.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
+    "sweep": "Design at every point of a grid, each exact and checked, into a table.",
     "templates": "List the built-in LaTeX templates, or copy them.",
 }
 
