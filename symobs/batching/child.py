@@ -15,7 +15,7 @@ import sys
 from typing import IO, Any, NoReturn
 
 from symobs.batching.jobs import digest, read_payload
-from symobs.batching.kinds import run
+from symobs.batching.kinds import prepare, run
 from symobs.child_processes import bound_memory, listeners
 from symobs.errors import ProblemErrors, SymobsError
 
@@ -24,8 +24,8 @@ _NO_MEMORY = 76
 _COLLECTED_AFTER = 50_000
 
 
-def main(parent: str, megabytes: str) -> NoReturn:
-    """Work on what comes from this parent, within this memory; 0 is unlimited."""
+def main(parent: str, megabytes: str, kind: str) -> NoReturn:
+    """Work on what comes from this parent, first of this kind, within this memory; 0 is unlimited."""
     said = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)  # what libraries print must not come between the lines
     _die_with(int(parent))
@@ -34,6 +34,8 @@ def main(parent: str, megabytes: str) -> NoReturn:
     listeners.append(lambda group: _say(said, {"group": group}))
     if float(megabytes):
         bound_memory(int(float(megabytes) * 2**20))
+    prepare(kind)
+    _say(said, {"ready": kind})
     for line in sys.stdin.buffer:
         job = json.loads(line)
         _limit(job["seconds"])

@@ -69,7 +69,7 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
             done, _ = wait(waiting, timeout=_LOOK_EVERY, return_when=FIRST_COMPLETED)
             if not waiting:
                 time.sleep(_LOOK_EVERY)
-            for future in done:
+            for future in [each for each in waiting if each in done]:
                 chunk = waiting.pop(future)
                 answer = _answer(future)
                 if answer is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -94,6 +95,7 @@ def _cluster(address: str, worker_timeout: float) -> Iterator[Workforce]:
     except ImportError:
         repair = "install it with pip install 'symobs[distributed]', or use --workers"
         raise UsageError("dask.distributed is not installed", where="--scheduler", repair=repair) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say is said by who waits for it
     try:
         client = distributed.Client(address, timeout=_CONNECT, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:

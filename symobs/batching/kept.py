@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Seconds that a child is given beyond the time of its job before it ends itself.
 _GRACE = 5.0
+#: Seconds in which a child must have imported what it needs, on the busiest machine.
+_START = 300.0
 #: How often a job may end its process.
 _ATTEMPTS = 2
 _NO_MEMORY = 76
@@ -77,7 +79,7 @@ def _row(kind: str, payload: str, limits: Budget) -> dict[str, Any]:
     """Return the row of one job; what ends its process is tried once more, in a fresh one."""
     told = {"seconds": limits.seconds, "megabytes": limits.megabytes}
     for attempt in range(1, _ATTEMPTS + 1):
-        child = _own_child(limits, fresh=attempt > 1)
+        child = _own_child(kind, limits, fresh=attempt > 1)
         try:
             return child.row(kind, payload, limits.seconds)
         except TimeoutError:
@@ -114,12 +116,13 @@ class _NoMemory(RuntimeError):
 class Child:
     """A process that does one job after the other."""
 
-    def __init__(self, megabytes: float | None) -> None:
+    def __init__(self, kind: str, megabytes: float | None) -> None:
+        """Start it, ready for jobs of a kind within this memory."""
         self.megabytes = megabytes
         self.words = TemporaryFile()  # noqa: SIM115 - it lives as long as the process
         place = str(Path(__file__).parents[2])  # the child is this symobs, whatever lies in the folder it starts in
         paths = os.pathsep.join(filter(None, (place, os.environ.get("PYTHONPATH"))))
-        command = [sys.executable, "-P", "-m", "symobs.batching.child", str(os.getpid()), f"{megabytes or 0:g}"]
+        command = [sys.executable, "-P", "-m", "symobs.batching.child", str(os.getpid()), f"{megabytes or 0:g}", kind]
         self.process = subprocess.Popen(  # noqa: S603 - our own
             command,
             stdin=subprocess.PIPE,
@@ -129,7 +132,7 @@ class Child:
         )
         self.lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
         self.group: int | None = None
-        self.is_ended = False
+        self.is_ready = self.is_ended = False
         threading.Thread(target=self._listen, daemon=True).start()
 
     def _listen(self) -> None:
@@ -148,6 +151,8 @@ class Child:
         with suppress(BrokenPipeError, OSError):
             stream.write(order.encode())
             stream.flush()
+        if not self.is_ready:  # the time of a job begins when the child has what every job needs
+            self.is_ready = bool(self._line(time.monotonic() + _START))
         end = None if seconds is None else time.monotonic() + seconds
         while True:
             line = self._line(end)
@@ -210,13 +215,13 @@ _children: set[Child] = set()
 _lock = threading.Lock()
 
 
-def _own_child(limits: Budget, *, fresh: bool) -> Child:
+def _own_child(kind: str, limits: Budget, *, fresh: bool) -> Child:
     """Return the child of this thread, a new one where there is none that will do."""
     child: Child | None = getattr(_own, "child", None)
     if child is not None and (fresh or child.megabytes != limits.megabytes):
         child.end()
     if child is None or child.is_ended:
-        child = _own.child = Child(limits.megabytes)
+        child = _own.child = Child(kind, limits.megabytes)
         with _lock:
             _children.add(child)
     return child

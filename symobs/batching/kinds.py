@@ -14,10 +14,19 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from symobs.result import tasks
+
 KINDS = {
+    "sheet-entry": "symobs.cli.commands.sheet",
     "solve": "symobs.batching.solving",
     "sweep-block": "symobs.batching.sweep.block",
 }
+
+
+def prepare(kind: str) -> None:
+    """Import what jobs of a kind need."""
+    tasks()
+    import_module(KINDS[kind])
 
 
 def run(kind: str, payload: dict[str, Any]) -> dict[str, Any]:

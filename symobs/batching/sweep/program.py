@@ -187,10 +187,13 @@ class Program:
 
     def alone(self, point: Sequence[Fraction], case: int | None) -> Row:
         """Return the row of a point that is solved by itself: its result has checked its own claims."""
-        result = self.solved_at(point)
+        count = len(self.columns())
+        try:
+            result = self.solved_at(point)
+        except InputError:  # a denominator of the data vanishes there
+            return Row("undefined", [None] * count, case)
         verdict = result.verdict
         status = {"no": "no", "undecided": "undecided"}.get(verdict, "done")
-        count = len(self.columns())
         if status != "done" or any(result.answer.get(gain) is None for gain in self.gains):
             return Row("no" if status == "done" else status, [None] * count, case)
         if any(entry.names for gain in self.gains for entry in result.answer[gain].entries):
@@ -211,13 +214,7 @@ class Program:
         scalars = {name: Scalar.of(value) for name, value in values.items()}
         for name in "ABCD":
             general: Matrix = getattr(self.problem.plant.matrices, name)
-            try:
-                wanted = general.substitute(scalars)
-            except ZeroDivisionError:
-                places = ", ".join(f"{key} = {value}" for key, value in values.items())
-                repair = "leave the point out"
-                raise InputError(f"there is no plant at {places}", where="over", repair=repair) from None
-            if wanted != getattr(problem.plant.matrices, name):
+            if general.substitute(scalars) != getattr(problem.plant.matrices, name):
                 raise CertificateRejected(f"the plant of a point has another {name}", repair="please report this")
         (result,) = problem.solve()
         return result

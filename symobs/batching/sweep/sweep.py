@@ -69,7 +69,7 @@ class Plan:
     def _once(self) -> dict[str, Any] | None:
         """Return the answer with the swept names as symbols, None where there is none to evaluate."""
         asked = job("solve", {"problem": self.tables, "fields": "cases", "formats": []})
-        child = Child(_ONCE.megabytes)
+        child = Child("solve", _ONCE.megabytes)
         try:
             row = child.row(asked.kind, asked.payload, _ONCE.seconds)
         except (TimeoutError, RuntimeError):

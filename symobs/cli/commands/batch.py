@@ -147,7 +147,7 @@ def batch_of(jobs: Callable[[], Iterator[Job]], out: Path, budget: Budget, run: 
 
 def finish(work: Batch, total: int, *, quiet: bool, done: Callable[[], None] = lambda: None) -> NoReturn:
     """Do the work of a run, tell how far it has come, and end with its exit code; `done` is called when all is done."""
-    signal.signal(signal.SIGTERM, _interrupt)
+    usual = signal.signal(signal.SIGTERM, _interrupt)
     progress = _Progress(total, quiet=quiet)
     try:
         for _ in work:
@@ -158,6 +158,7 @@ def finish(work: Batch, total: int, *, quiet: bool, done: Callable[[], None] = l
         write_message(f"{error}; {count} of {total} done, run the same command again to go on")
         sys.exit(EXIT_UNDECIDED)
     finally:
+        signal.signal(signal.SIGTERM, usual)
         progress.clear()
     done()
     for place in work.store.torn if work.store else ():
