@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.batching.jobs import fingerprint
 from symobs.batching.store import write_whole
@@ -15,7 +15,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from symobs.batching.sweep.sweep import SweepTable
+    from symobs.batching.sweep.grid import Grid
+
+
+class Swept(Protocol):
+    """What a table is written from: a plan, its grid, and the blocks in the order of their points."""
+
+    plan: Any
+
+    @property
+    def grid(self) -> Grid:
+        """The points."""
+
+    def blocks(self) -> Iterator[tuple[int, dict[str, Any]]]:
+        """Yield the first index and the result of every block."""
+
 
 SCHEMA = "symobs-sweep/1"
 MOST_CSV_ROWS = 10**6
@@ -40,7 +54,7 @@ def check_target(out: Path) -> None:
         )
 
 
-def write_table(table: SweepTable, out: Path, *, decimals: bool = False) -> None:
+def write_table(table: Swept, out: Path, *, decimals: bool = False) -> None:
     """Write the table whole or not at all: .csv, .parquet, or a folder of parts with a manifest."""
     try:
         if out.suffix == ".csv":
@@ -55,7 +69,7 @@ def write_table(table: SweepTable, out: Path, *, decimals: bool = False) -> None
         ) from None
 
 
-def columns_of(table: SweepTable, first: int, result: dict[str, Any], *, decimals: bool) -> dict[str, list[Any]]:
+def columns_of(table: Swept, first: int, result: dict[str, Any], *, decimals: bool) -> dict[str, list[Any]]:
     """Return a block as columns: the index, the names, the exact entries with their decimals, how it went."""
     count = len(result["status"])
     points = [table.grid.point(first + place) for place in range(count)]
@@ -78,13 +92,13 @@ def nearest(text: str) -> float | None:
         return None
 
 
-def _header(table: SweepTable, *, decimals: bool) -> list[str]:
+def _header(table: Swept, *, decimals: bool) -> list[str]:
     exact = [*table.grid.names, *table.plan.columns]
     named = [each for name in exact for each in ((name, f"{name}.d") if decimals else (name,))]
     return ["index", *named, *_LAST_COLUMNS]
 
 
-def _write_csv(table: SweepTable, out: Path, *, decimals: bool) -> None:
+def _write_csv(table: Swept, out: Path, *, decimals: bool) -> None:
     if table.grid.size > MOST_CSV_ROWS:
         repair = "write .parquet, or a folder"
         raise InputError(f"{table.grid.size} rows are too many for one CSV file", where="--out", repair=repair)
@@ -114,7 +128,7 @@ def _arrow() -> Any:
     return pa
 
 
-def _schema(table: SweepTable, *, decimals: bool) -> Any:
+def _schema(table: Swept, *, decimals: bool) -> Any:
     pa = _arrow()
     exact = [*table.grid.names, *table.plan.columns]
     fields = [pa.field("index", pa.int64())]
@@ -130,11 +144,11 @@ def _schema(table: SweepTable, *, decimals: bool) -> Any:
     )
 
 
-def _over(table: SweepTable) -> list[Any]:
+def _over(table: Swept) -> list[Any]:
     return [axis.data for axis in table.grid.axes]
 
 
-def arrow_batches(table: SweepTable, *, decimals: bool) -> Iterator[Any]:
+def arrow_batches(table: Swept, *, decimals: bool) -> Iterator[Any]:
     """Yield the table in record batches, a block each."""
     pa = _arrow()
     schema = _schema(table, decimals=decimals)
@@ -144,13 +158,13 @@ def arrow_batches(table: SweepTable, *, decimals: bool) -> Iterator[Any]:
         yield pa.record_batch(arrays, schema=schema)
 
 
-def arrow_table(table: SweepTable, *, decimals: bool) -> Any:
+def arrow_table(table: Swept, *, decimals: bool) -> Any:
     """Return the whole table in memory."""
     pa = _arrow()
     return pa.Table.from_batches(arrow_batches(table, decimals=decimals), schema=_schema(table, decimals=decimals))
 
 
-def _write_parquet(table: SweepTable, out: Path, *, decimals: bool) -> None:
+def _write_parquet(table: Swept, out: Path, *, decimals: bool) -> None:
     temporary = out.with_name(f".{out.name}.tmp")
     try:
         _one_file(arrow_batches(table, decimals=decimals), temporary, _schema(table, decimals=decimals))
@@ -173,7 +187,7 @@ def _one_file(batches: Iterator[Any], place: Path, schema: Any) -> None:
             writer.write_table(pa.Table.from_batches(waiting, schema=schema), row_group_size=ROW_GROUP)
 
 
-def _write_parts(table: SweepTable, out: Path, *, decimals: bool) -> None:
+def _write_parts(table: Swept, out: Path, *, decimals: bool) -> None:
     """Write parts of equal length in the order of their points, and what they are last."""
     out.mkdir(exist_ok=True)
     schema, batches = _schema(table, decimals=decimals), arrow_batches(table, decimals=decimals)

@@ -32,6 +32,7 @@ from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
+from types import SimpleNamespace
 
 SOURCES = sorted((ROOT / "symobs" / "batching").rglob("*.py"))
 
@@ -255,10 +256,10 @@ def test_a_deadline_ends_a_run_that_goes_on_later(
     rows = iter(Batch(lambda: jobs, tmp_path / "out", settings=settings, workers=1))
     next(rows)
     later = SimpleNamespace(monotonic=lambda: time.monotonic() + 2000.0, sleep=time.sleep)
-    monkeypatch.setattr("symobs.batching.engine.time", later)
-    with pytest.raises(Unfinished, match="1000 seconds are over") as left:
-        list(rows)
-    monkeypatch.undo()
+    with monkeypatch.context() as patch:
+        patch.setattr("symobs.batching.engine.time", later)
+        with pytest.raises(Unfinished, match="1000 seconds are over") as left:
+            list(rows)
     assert left.value.exit_code == 5
     done = len(stored(tmp_path / "out"))
     assert 0 < done < 60
