@@ -23,6 +23,8 @@ from symobs.analysis.time_response.initial_state import InitialState as _Initial
 from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.batching import batch as batch
+from symobs.batching.sweep import sweep as sweep
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign

@@ -1,7 +1,8 @@
-"""Which group of processes this one has started and waits for, told to whoever may have to end it from outside."""
+"""What a process that may be ended from outside tells and bears: the group it waits for, and a bound of its memory."""
 
 from __future__ import annotations
 
+import sys
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -25,3 +26,16 @@ def running(group: int) -> Iterator[None]:
 def _tell(group: int | None) -> None:
     for listener in listeners:
         listener(group)
+
+
+def bound_memory(size: int | None) -> None:
+    """Limit the data of this process and its children in bytes; None removes the limit."""
+    import resource  # noqa: PLC0415 - not on every system
+
+    # On Linux the data alone; elsewhere all addresses, libraries and reserved space included.
+    kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
+    most = resource.getrlimit(kind)[1]
+    wanted = most if size is None else size if most == resource.RLIM_INFINITY else min(size, most)
+    resource.setrlimit(kind, (wanted, most))
+    if size is not None:
+        resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))

@@ -21,11 +21,13 @@ _MOST_LINES = 100
 #: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called.
 COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
+    "batch": "Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.",
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
+    "sweep": "Design at every point of a grid, each exact and checked, into a table.",
     "templates": "List the built-in LaTeX templates, or copy them.",
 }
 

@@ -126,6 +126,11 @@ class Result(Faces):
         return self.answer
 
     @property
+    def asked_fields(self) -> Mapping[str, Any]:
+        """The fields without those that only follow from them and take long."""
+        return self.fields
+
+    @property
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of this result and of those it is made of."""
         return self.certificates

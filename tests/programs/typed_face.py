@@ -9,7 +9,7 @@ import inspect
 from collections.abc import Mapping
 from typing import Any
 
-from symobs import errors
+from symobs import FUNCTIONS, errors
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 from symobs.problem import read
 from symobs.result import Result, Task, tasks
@@ -136,6 +136,7 @@ def stub() -> str:
     raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
     imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
+    imports |= {f"from {module} import {name} as {name}" for name, module in FUNCTIONS.items()}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import os
+import pickle
 import sys
+import warnings
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -34,12 +38,14 @@ from symobs.render.page.sheet import Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.cli.shared.time_and_memory import Progress
     from symobs.result import Document
 
 _LONGEST_TITLE = 300
+#: So many problems are worth starting processes for.
+_WORTH_CHILDREN = 12
 _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 
 
@@ -102,10 +108,8 @@ def command(
     entries: list[SheetEntry] = []
     codes: set[int] = set()
     progress = _Progress(len(texts))
-    for number, (file, text) in enumerate(texts, 1):
-        progress.show(number, Path(file).stem)
-        name = place_of(file)
-        entry, code, messages = _bounded_entry(number, file, text, wanted)
+    for number, (entry, code, messages) in enumerate(_worked_out_all(texts, wanted, progress), 1):
+        name = place_of(texts[number - 1][0])
         entries.append(entry)
         codes.add(code)
         progress.clear()
@@ -146,6 +150,65 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     if errors:
         raise ProblemErrors(tuple(errors))
     return texts
+
+
+# -- many problems ----------------------------------------------------------------------------------------------------
+
+
+def _worked_out_all(
+    texts: Sequence[tuple[str, str]], wanted: _Wanted, progress: _Progress
+) -> Iterator[tuple[SheetEntry, int, list[str]]]:
+    """Yield entry, exit code and messages of every problem; many without a budget are worked out on all processors."""
+    if wanted.timeout is None and wanted.memory is None and len(texts) >= _WORTH_CHILDREN and (os.cpu_count() or 1) > 1:
+        yield from _by_children(texts, wanted, progress)
+        return
+    for number, (file, text) in enumerate(texts, 1):
+        progress.show(number, Path(file).stem)
+        yield _bounded_entry(number, file, text, wanted)
+
+
+def _by_children(
+    texts: Sequence[tuple[str, str]], wanted: _Wanted, progress: _Progress
+) -> Iterator[tuple[SheetEntry, int, list[str]]]:
+    """Yield the same, worked out by kept child processes, in the order of the sheet."""
+    from symobs.batching.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
+    from symobs.batching.executors import workforce  # noqa: PLC0415
+    from symobs.batching.jobs import Budget, job  # noqa: PLC0415
+
+    asked = [(number, file, text, wanted) for number, (file, text) in enumerate(texts, 1)]
+    jobs = [job("sheet-entry", {"asked": _packed(each)}, each[1]) for each in asked]
+    found: dict[str, Any] = {}
+    with workforce() as force:
+        for chunk in work(iter(jobs), force, Settings(Budget(None, None), chunk_seconds=0.5, recheck=0)):
+            found |= {row["key"]: row for row in chunk.rows}
+            progress.show(len(found), Path(chunk.rows[-1]["name"]).stem)
+    for each, its_job in zip(asked, jobs, strict=True):
+        row = found[its_job.key]
+        if "result" in row:
+            yield _unpacked(row["result"])
+        else:
+            entry = replace(_empty(*each[:2]), failure=PHRASES["sheet_failed"])
+            yield entry, EXIT_UNDECIDED if row["status"] == "undecided" else EXIT_BUG, list(row["error"])
+
+
+def run(payload: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of one problem of a sheet, as a child process works it out."""
+    with warnings.catch_warnings(record=True) as warned:
+        entry, code, messages = _entry(*_unpacked(payload["asked"]), lambda _: None)
+    told = [f"{each.category.__name__}: {each.message}" for each in warned]
+    return {"status": "done", "result": _packed((entry, code, [*told, *messages]))}
+
+
+def recheck(_payload: Mapping[str, Any], _row: Mapping[str, Any]) -> None:
+    """Return that nothing is looked at again: every line of a page was checked where it was written."""
+
+
+def _packed(value: object) -> str:
+    return base64.b64encode(pickle.dumps(value)).decode()
+
+
+def _unpacked(text: str) -> Any:
+    return pickle.loads(base64.b64decode(text))  # noqa: S301 - this process and its own children alone
 
 
 # -- one problem ------------------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
 
-from symobs.child_processes import listeners
+from symobs.child_processes import bound_memory, listeners
 from symobs.errors import OutOfBudget, SymobsError, TypesettingError, UsageError
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _set_up(budget: Budget) -> None:
     sys.unraisablehook = lambda _: None  # an alarm that C code could not pass on: the parent sees to it
     _silence()
     if budget.megabytes is not None:
-        _bound_memory(int(budget.megabytes * 2**20))
+        bound_memory(int(budget.megabytes * 2**20))
     if budget.seconds is not None:
         signal.setitimer(signal.ITIMER_REAL, budget.seconds)
 
@@ -158,24 +158,11 @@ def _silence() -> None:
         os.dup2(nowhere, 2)
 
 
-def _bound_memory(size: int | None) -> None:
-    """Limit the data of this process and its children in bytes; None removes the limit."""
-    import resource  # noqa: PLC0415 - not on every system
-
-    # On Linux the data alone; elsewhere all addresses, libraries and reserved space included.
-    kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
-    most = resource.getrlimit(kind)[1]
-    wanted = most if size is None else size if most == resource.RLIM_INFINITY else min(size, most)
-    resource.setrlimit(kind, (wanted, most))
-    if size is not None:
-        resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
-
-
 def _lift(budget: Budget) -> None:
     """Remove the limits once the answer is computed."""
     signal.setitimer(signal.ITIMER_REAL, 0)
     if budget.megabytes is not None:
-        _bound_memory(None)
+        bound_memory(None)
 
 
 def _for_want_of_memory(error: Exception, budget: Budget) -> bool:

@@ -333,13 +333,18 @@ class OutputFeedback(Result):
             numerator / characteristic, plant.variable, signs
         )
 
+    @property
+    def asked_fields(self) -> Mapping[str, Any]:
+        """K, L and F."""
+        return {name: self.answer[name] for name in ("K", "L", "F")}
+
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The fields of the contract."""
-        answers = {name: self.answer[name] for name in ("K", "L", "F")}
+        answers = self.asked_fields
         if not self.exists:
             fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
-            return answers | dict.fromkeys(_OF_A_LOOP) | fixed
+            return {**answers, **dict.fromkeys(_OF_A_LOOP), **fixed}
         return {
             **answers,
             "F_stable": self.own_stability,

@@ -110,6 +110,19 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
     }
 
 
+def answer_object(result: Result) -> dict[str, Any]:
+    """Return what was asked for and nothing that follows from it: the verdict, its conditions, the answers themselves."""
+    return {
+        "task": result.task,
+        "method": result.method,
+        "verdict": result.verdict,
+        "conditions": [to_json(condition) for condition in result.holds_where],
+        "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
+        **{name: to_json(value) for name, value in result.asked_fields.items()},
+    }
+
+
+
 def _plant_object(plant: StateSpace) -> dict[str, Any]:
     """Return the data: the matrices there are, the sampling time, and the names with their signs."""
     if plant.polynomial is not None:

@@ -1,0 +1,312 @@
+"""The store of a run: a folder that holds every chunk of rows whole or not at all, and from which a run goes on.
+
+manifest.json              what the folder holds; written last
+rows/KK/CHUNK.jsonl        the rows of a chunk, named by the hash of their keys
+files/KK/KEY.SUFFIX        the pages of a job
+keys.bin                   the keys of all rows, to begin again quickly; made anew where it does not fit the rows
+log.jsonl                  times
+lock                       held while a run writes here
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import socket
+import struct
+import time
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+from symobs.batching.jobs import SCHEMA, Budget, fingerprint
+from symobs.errors import CertificateRejected, InputError, reason_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from symobs.batching.jobs import Job
+
+#: What a job comes to that is not to be tried again.
+FINAL = ("done", "no", "unreadable")
+STATUSES = (*FINAL, "undecided", "failed")
+_RECORD = struct.Struct("<16sBff")
+_HEAD = re.compile(rb'\{"key":"([0-9a-f]{64})","status":"([a-z]+)"')
+_BUDGET = re.compile(rb'"budget":\{"seconds":([^,}]*),"megabytes":([^,}]*)\}')
+
+
+class Store:
+    """The rows of a run in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.final: set[bytes] = set()
+        self.others: dict[bytes, tuple[str, Budget]] = {}
+        self.counts = dict.fromkeys(STATUSES, 0)
+        self.torn: list[str] = []
+
+    # -- reading -----------------------------------------------------------------------------------------------------
+
+    def chunks(self) -> list[Path]:
+        """Return the files of rows, sorted by name."""
+        return sorted(self.folder.glob("rows/*/*.jsonl"))
+
+    def rows(self) -> Iterator[dict[str, Any]]:
+        """Yield the row of every job; of one that was tried again its last outcome.
+
+        Raises `CertificateRejected` where two results of one job contradict each other.
+        """
+        several: dict[str, list[dict[str, Any]]] = {key: [] for key in self._keys_met_again()}
+        for path in self.chunks():
+            with path.open("rb") as stream:
+                for line in stream:
+                    row = json.loads(line)
+                    if row["key"] in several:
+                        several[row["key"]].append(row)
+                    else:
+                        yield row
+        for key in sorted(several):
+            yield _settled(several[key], self.folder)
+
+    def in_order(self, jobs: Iterable[Job]) -> Iterator[tuple[int, Any]]:
+        """Yield the first index and the result of blocks, in the order of their jobs; one chunk is in memory at a time.
+
+        Raises `InputError` where one is missing.
+        """
+        places = dict(self._places())
+        for job in jobs:
+            if job.key not in places:
+                raise InputError(f"{job.name} are missing", where=str(self.folder), repair="run the same command again")
+            path, start, length = places[job.key]
+            with path.open("rb") as stream:
+                stream.seek(start)
+                row = json.loads(stream.read(length))
+            if "result" not in row:
+                raise InputError(
+                    f"{job.name}: {'; '.join(row['error'])}",
+                    where=str(self.folder),
+                    repair="run again with more --timeout",
+                )
+            yield json.loads(job.payload)["first"], row["result"]
+
+    def _places(self) -> Iterator[tuple[str, tuple[Path, int, int]]]:
+        """Yield where the row of each key stands."""
+        for path in self.chunks():
+            start = 0
+            with path.open("rb") as stream:
+                for line in stream:
+                    yield line[8:72].decode(), (path, start, len(line))
+                    start += len(line)
+
+    def _keys_met_again(self) -> set[str]:
+        """Return the keys that stand in more than one row."""
+        seen: set[bytes] = set()
+        again: set[str] = set()
+        for path in self.chunks():
+            for line in path.read_bytes().splitlines():
+                key = line[8:72]  # after {"key":"
+                if key in seen:
+                    again.add(key.decode())
+                seen.add(key)
+        return again
+
+    def load(self) -> None:
+        """Read which jobs have rows."""
+        for left in self.folder.glob("*/*/*.tmp"):
+            left.unlink(missing_ok=True)
+        index, chunks = self.folder / "keys.bin", self.chunks()
+        with suppress(OSError, struct.error):
+            head, _, records = index.read_bytes().partition(b"\n")
+            if head == _name(chunk.stem for chunk in chunks).encode():
+                for key, status, seconds, megabytes in _RECORD.iter_unpack(records):
+                    self._note(key, STATUSES[status], Budget(seconds or None, megabytes or None))
+                return
+        for path in chunks:
+            data = path.read_bytes()
+            if not data.endswith(b"\n"):
+                self.torn.append(str(path))
+                path.unlink()
+                continue
+            for line in data.splitlines():
+                head_of_row = _HEAD.match(line)
+                if head_of_row is None:
+                    raise InputError(
+                        "this is no row", where=str(path), repair="take the file away; its jobs are done again"
+                    )
+                key, status = bytes.fromhex(head_of_row[1].decode())[:16], head_of_row[2].decode()
+                self._note(key, status, Budget(None, None) if status in FINAL else _budget_of(line))
+
+    def _note(self, key: bytes, status: str, budget: Budget) -> None:
+        """Take note of a row; a later outcome of an open job takes the place of the earlier one."""
+        if key in self.final:
+            return
+        if key in self.others:
+            if status not in FINAL and self.others[key][1].exceeds(budget):
+                return
+            self.counts[self.others.pop(key)[0]] -= 1
+        self.counts[status] += 1
+        if status in FINAL:
+            self.final.add(key)
+        else:
+            self.others[key] = status, budget
+
+    def has(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> bool:
+        """Return whether a job is done, or has met as large a budget as this one without an end."""
+        short = bytes.fromhex(key[:32])
+        if short in self.final:
+            return True
+        if short not in self.others:
+            return False
+        status, allowed = self.others[short]
+        return status not in retry and not (status == "undecided" and budget.exceeds(allowed))
+
+    # -- writing -----------------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Hold the folder for one run; raises `InputError` if another run holds it."""
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with (self.folder / "lock").open("a+", encoding="utf-8") as stream:
+                self._take(stream)
+                self.load()
+                yield
+        except OSError as error:
+            raise _refused(error, self.folder) from None
+
+    def _take(self, stream: Any) -> None:
+        if not _locked(stream):
+            stream.seek(0)
+            repair = "wait for its end, or name another folder with --out"
+            raise InputError(
+                f"another run is at work here ({stream.read()[:100].strip()})", where=str(self.folder), repair=repair
+            )
+        stream.truncate(0)
+        stream.write(f"process {os.getpid()} on {socket.gethostname()}\n")
+        stream.flush()
+
+    def add(self, rows: Sequence[dict[str, Any]], seconds: float) -> None:
+        """Write a chunk of rows, and the pages that came with them: whole or not at all."""
+        try:
+            for row in rows:
+                for name, content in row.pop("files", {}).items():
+                    row.setdefault("files", {})[name] = self._page(row["key"], name, content)
+            name = _name(sorted(row["key"] for row in rows))[:16]
+            lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows]
+            write_whole(
+                self.folder / "rows" / name[:2] / f"{name}.jsonl", "".join(lines).encode("utf-8", "surrogatepass")
+            )
+            with (self.folder / "log.jsonl").open("a", encoding="utf-8") as log:
+                log.write(
+                    json.dumps({"time": time.time(), "chunk": name, "rows": len(rows), "seconds": seconds}) + "\n"
+                )
+        except OSError as error:
+            raise _refused(error, self.folder) from None
+        for row in rows:
+            self._note(bytes.fromhex(row["key"][:32]), row["status"], _budget_in(row))
+
+    def _page(self, key: str, name: str, content: str) -> str:
+        """Write a page and return its place in the folder."""
+        from symobs.result import format_named  # noqa: PLC0415 - only with pages
+
+        place = f"files/{key[:2]}/{key}{format_named(name).suffix}"
+        write_whole(self.folder / place, content.encode("utf-8", "surrogatepass"))
+        return place
+
+    def close(self, kinds: Sequence[str], aliases: dict[str, list[str]]) -> None:
+        """Write what the folder holds: the index of keys, and the manifest last."""
+        records = [_RECORD.pack(key, STATUSES.index("done"), 0, 0) for key in sorted(self.final)]
+        for key, (status, budget) in sorted(self.others.items()):
+            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
+        chunks = self.chunks()
+        manifest = {
+            "schema": SCHEMA,
+            "fingerprint": fingerprint(),
+            "kinds": sorted(kinds),
+            "counts": self.counts,
+            "names": aliases,
+            "index": "keys.bin",
+        }
+        try:
+            head = _name(chunk.stem for chunk in chunks).encode() + b"\n"
+            write_whole(self.folder / "keys.bin", head + b"".join(records))
+            text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+            write_whole(self.folder / "manifest.json", text.encode())
+        except OSError as error:
+            raise _refused(error, self.folder) from None
+
+
+def write_whole(place: Path, data: bytes) -> None:
+    """Write a file that is there whole or not at all, also after a loss of power."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    temporary = place.with_name(f"{place.name}.tmp")
+    try:
+        with temporary.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(place)
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink()
+        raise
+    if os.name == "posix":
+        folder = os.open(place.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+
+
+def _locked(stream: Any) -> bool:
+    """Lock a file until its process ends, however it does; return whether nobody else holds it."""
+    try:
+        if os.name == "posix":
+            import fcntl  # noqa: PLC0415 - not on every system
+
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        else:
+            import msvcrt  # noqa: PLC0415 - on Windows only
+
+            lock: Any = msvcrt
+            lock.locking(stream.fileno(), lock.LK_NBLCK, 1)
+    except OSError:
+        return False
+    return True
+
+
+def _settled(rows: Sequence[dict[str, Any]], folder: Path) -> dict[str, Any]:
+    """Return the outcome of a job that was tried several times."""
+    final = [row for row in rows if row["status"] in FINAL]
+    texts = {json.dumps([row["status"], row.get("result"), row.get("error")], sort_keys=True) for row in final}
+    if len(texts) > 1:
+        first, second, *_ = sorted(texts)
+        message = f"two results of one job: {first[:200]} and {second[:200]}"
+        raise CertificateRejected(message, where=str(folder), repair="please report this: it is a bug of symobs")
+    return (final or sorted(rows, key=lambda row: json.dumps(row.get("budget"))))[-1]
+
+
+def _name(parts: Any) -> str:
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _budget_of(line: bytes) -> Budget:
+    """Return the budget that a row's text tells."""
+    found = _BUDGET.search(line)
+    return (
+        Budget(None, None)
+        if found is None
+        else Budget(*(None if part == b"null" else float(part) for part in found.groups()))
+    )
+
+
+def _budget_in(row: dict[str, Any]) -> Budget:
+    told = row.get("budget")
+    return Budget(None, None) if told is None else Budget(told["seconds"], told["megabytes"])
+
+
+def _refused(error: OSError, folder: Path) -> InputError:
+    repair = "make room there, or name a folder that can be written with --out; what is stored stays"
+    return InputError(reason_of(error), where=str(folder), repair=repair)

@@ -1,0 +1,88 @@
+"""The work of a sweep: a block of consecutive points, each checked exactly."""
+
+from __future__ import annotations
+
+import json
+import random
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from symobs.batching.jobs import canonical, read_payload
+from symobs.batching.recheck import Beyond, fault_at
+from symobs.batching.solving import given_for
+from symobs.batching.sweep.grid import Axis, Grid
+from symobs.batching.sweep.program import Program
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from fractions import Fraction
+
+#: Points of a block that are looked at again.
+_LOOKED_AT = 3
+
+
+def run(payload: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a block: how each point went, its case, and the columns as exact texts."""
+    grid, program = grid_of(payload), _program(canonical(payload["program"]))
+    chosen = [place for place, name in enumerate(program.columns()) if name in set(payload["columns"])]
+    outer: tuple[Fraction, ...] | None = None
+    rows = []
+    for index in range(payload["first"], payload["first"] + payload["count"]):
+        point = grid.point(index)
+        if point[:-1] != outer:
+            outer = point[:-1]
+            program.line(outer)
+        rows.append(program.at(point))
+    columns = {name: [row.values[k] for row in rows] for name, k in zip(payload["columns"], chosen, strict=True)}
+    result = {"status": [row.status for row in rows], "case": [row.case for row in rows], "columns": columns}
+    return {"status": "undecided" if "undecided" in result["status"] else "done", "result": result}
+
+
+def grid_of(payload: Mapping[str, Any]) -> Grid:
+    """Return the grid of a block's data."""
+    return Grid(tuple(Axis.of(axis) for axis in payload["over"]))
+
+
+@lru_cache(maxsize=4)
+def _program(text: str) -> Program:
+    """Return the program of all blocks of a sweep: read once by a process."""
+    data = read_payload(text)
+    return Program(data["problem"], data["names"], data["answer"], with_F=data["with_F"])
+
+
+def recheck(payload: Mapping[str, Any], row: Mapping[str, Any]) -> str | None:
+    """Return what does not hold at some points of a block, in plain fractions; None where all that is looked at does."""
+    if "result" not in row:
+        return None
+    result, grid = row["result"], grid_of(payload)
+    program = _program(canonical(payload["program"]))
+    given = given_for(program.problem, program.task.name)
+    places = [k for k, status in enumerate(result["status"]) if status == "done"]
+    drawn = random.Random(row["key"])  # noqa: S311 - no secret
+    for place in drawn.sample(places, min(_LOOKED_AT, len(places))):
+        point = grid.point(payload["first"] + place)
+        here = dict(zip(grid.names, point, strict=True))
+        answer = _answer(program, {name: column[place] for name, column in result["columns"].items()})
+        try:
+            found = fault_at(here, program.task.name, given, answer)
+        except Beyond:
+            continue
+        if found is not None:
+            return f"{found}, at {json.dumps({name: str(value) for name, value in here.items()})}"
+    return None
+
+
+def _answer(program: Program, cells: Mapping[str, str]) -> dict[str, Any]:
+    """Return the matrices and F of a row of the table."""
+    shapes = {"K": (program.m, program.n), "L": (program.n, program.p)}
+    answer: dict[str, Any] = {}
+    for gain in program.gains:
+        rows, columns = shapes[gain]
+        names = [[f"{gain}[{i + 1},{j + 1}]" for j in range(columns)] for i in range(rows)]
+        if all(name in cells for row in names for name in row):
+            answer[gain] = [[cells[name] for name in row] for row in names]
+    parts = [[cells.get(f"F.{part}[{k}]") for k in range(program.n + 1)] for part in ("num", "den")]
+    if all(entry is not None for part in parts for entry in part):
+        above, below = (" + ".join(f"({c})*{program.variable}**{k}" for k, c in enumerate(part)) for part in parts)
+        answer["F"] = f"({above})/({below})"
+    return answer

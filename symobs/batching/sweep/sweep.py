@@ -1,0 +1,226 @@
+"""Sweeps: one problem at the points of a grid, solved once with symbols where that is possible, else point by point."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symobs.batching.engine import Settings
+from symobs.batching.jobs import Budget, job, read_payload, solve_job
+from symobs.batching.kept import Child
+from symobs.batching.run import Batch, texts_of
+from symobs.batching.sweep.grid import Grid, read_grid
+from symobs.batching.sweep.program import GAINS, Program
+from symobs.batching.sweep.table import check_target, write_table
+from symobs.errors import InputError, SymobsError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from concurrent.futures import Executor
+
+    from symobs.batching.jobs import Job
+
+#: Consecutive points of one job.
+BLOCK = 1024
+#: What the one solution with symbols may take.
+_ONCE = Budget(60.0, 2000.0)
+
+
+class Plan:
+    """What a sweep is about to do: the grid, the way, the columns, and the jobs."""
+
+    def __init__(
+        self,
+        problem: str | Path,
+        over: str | Mapping[str, Any],
+        columns: str | None = None,
+        *,
+        way: str = "auto",
+        unbounded: bool = False,
+    ) -> None:
+        """Read problem and grid, and solve the problem with the names as symbols.
+
+        Raises `ProblemErrors` with all that is wrong with either, and `InputError` for a task that is no design of gains.
+        """
+        ((text, name, folder),) = texts_of(problem)
+        payload = read_payload(solve_job(text, name, folder).payload)
+        if "problem" not in payload:
+            from symobs.problem import parse  # noqa: PLC0415 - it raises what is wrong
+
+            parse(text, name)
+        self.tables = {key: value for key, value in payload["problem"].items() if key != "expect"}
+        bare = Program(self.tables, (), None)
+        if bare.task.name not in GAINS or bare.problem.specification.get("observer") == "minimal":
+            message = f"a sweep is of {', '.join(sorted(GAINS))} with an observer of full order"
+            raise InputError(message, where="task", repair="name one of these tasks")
+        self.grid: Grid = read_grid(over, bare.problem.plant.symbols.signs, unbounded=unbounded)
+        self.answer = self._once() if way != "each" else None
+        self.columns = _chosen(bare.columns(), columns)
+        self.name = name
+
+    @property
+    def way(self) -> str:
+        """`once` or `each`."""
+        return "each" if self.answer is None else "once"
+
+    def _once(self) -> dict[str, Any] | None:
+        """Return the answer with the swept names as symbols, None where there is none to evaluate."""
+        asked = job("solve", {"problem": self.tables, "fields": "cases", "formats": []})
+        child = Child("solve", _ONCE.megabytes)
+        try:
+            row = child.row(asked.kind, asked.payload, _ONCE.seconds)
+        except (TimeoutError, RuntimeError):
+            return None
+        finally:
+            child.end()
+        if row["status"] == "unreadable":
+            raise InputError("; ".join(row["error"]), where="the problem", repair="see that `symobs solve` works on it")
+        answer = row["result"][0] if "result" in row else {}
+        if any(answer.get(gain) is None for gain in GAINS[str(answer.get("task", "observer"))]):
+            return None
+        kept = {name: answer[name] for name in ("conditions", *GAINS[answer["task"]])}
+        kept["cases"] = [{"when": case["when"]} for case in answer["cases"]]
+        try:
+            Program(self.tables, self.grid.names, kept)
+        except (ValueError, SymobsError):  # roots or other functions in the answer, or other names
+            return None
+        return kept
+
+    def jobs(self) -> Iterator[Job]:
+        """Yield the blocks, in the order of their points."""
+        program = {"problem": self.tables, "names": list(self.grid.names), "answer": self.answer}
+        program["with_F"] = any(column.startswith("F.") for column in self.columns)
+        shared = {"program": program, "over": [axis.data for axis in self.grid.axes], "columns": self.columns}
+        for first in range(0, self.grid.size, BLOCK):
+            count = min(BLOCK, self.grid.size - first)
+            yield job(
+                "sweep-block", {**shared, "first": first, "count": count}, f"points {first + 1} to {first + count}"
+            )
+
+    @property
+    def blocks(self) -> int:
+        """How many jobs there are."""
+        return -(-self.grid.size // BLOCK)
+
+
+def _chosen(there: list[str], wanted: str | None) -> list[str]:
+    """Return the columns asked for: names of columns, or of what they are entries of."""
+    if wanted is None:
+        return there
+    names = [name.strip() for name in wanted.replace(";", ",").split(",") if name.strip()]
+    chosen = [column for column in there if column in names or column.partition("[")[0].partition(".")[0] in names]
+    strange = [name for name in names if not any(name in {c, c.partition("[")[0].partition(".")[0]} for c in there)]
+    if strange or not chosen:
+        known = ", ".join(dict.fromkeys(column.partition("[")[0].partition(".")[0] for column in there))
+        message = f"{', '.join(strange) or 'nothing'} is no column"
+        raise UsageError(message, where="--columns", repair=f"name some of {known}")
+    return chosen
+
+
+class SweepTable:
+    """The table of a sweep: iterate over it for rows of exact numbers, or take it to Arrow or pandas."""
+
+    def __init__(self, plan: Plan, run: Batch) -> None:
+        """Take the plan and the run whose store holds the blocks, or gives them as they come."""
+        self.plan, self.run = plan, run
+
+    @property
+    def grid(self) -> Grid:
+        """The grid of points."""
+        return self.plan.grid
+
+    def blocks(self) -> Iterator[tuple[int, dict[str, Any]]]:
+        """Yield the first index and the result of every block, in the order of the points."""
+        store = self.run.store
+        assert store is not None  # noqa: S101 - `sweep` gives it one
+        yield from store.in_order(self.plan.jobs())
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield the rows: the names and the columns as fractions, `status` and `case`."""
+        for first, result in self.blocks():
+            columns = result["columns"]
+            for place, (status, case) in enumerate(zip(result["status"], result["case"], strict=True)):
+                point = dict(zip(self.grid.names, self.grid.point(first + place), strict=True))
+                cells = {
+                    name: None if column[place] is None else Fraction(column[place]) for name, column in columns.items()
+                }
+                yield {
+                    "index": first + place,
+                    **point,
+                    **cells,
+                    "status": status,
+                    "case": case,
+                    "checked": status == "done",
+                }
+
+    def to_arrow(self, *, decimals: bool = False) -> Any:
+        """Return the table as an Arrow table, exact numbers as texts; needs the extra `table`."""
+        from symobs.batching.sweep.table import arrow_table  # noqa: PLC0415 - needs pyarrow
+
+        return arrow_table(self, decimals=decimals)
+
+    def to_pandas(self) -> Any:
+        """Return the table as a pandas frame, exact numbers as texts; needs pandas as well."""
+        return self.to_arrow().to_pandas()
+
+
+def sweep(
+    problem: str | Path,
+    over: str | Mapping[str, Any],
+    *,
+    columns: str | None = None,
+    out: str | Path | None = None,
+    decimals: bool = False,
+    way: str = "auto",
+    workers: int | None = None,
+    scheduler: str | None = None,
+    executor: Executor | None = None,
+    timeout: float | None = 600.0,
+    memory: float | None = 2000.0,
+) -> SweepTable:
+    """Design at every point of a grid: K, L and F as exact numbers, each checked at its point.
+
+    problem    the path or the text of a problem of state_feedback, observer or compensator
+    over       `"l=0.1:0.1:10, m=[1,2,5]"` (start:step:stop, lists, a:b/N, decade(a:b)), or names with their values; the
+               last name runs fastest
+    columns    `"K, L"`: those wanted, all without it
+    out        a .csv or .parquet file, or a folder of Parquet files; a run that was ended goes on
+    decimals   for every exact column a second one of the nearest binary numbers
+    way        `each` solves every point by itself; else the problem is solved once with symbols where that succeeds
+
+    Returns the table.  Raises `ProblemErrors` for the problem or the grid, `InputError` for another task, `Unfinished`
+    when nobody is left to do the work.
+    """
+    import tempfile  # noqa: PLC0415 - only without `out`
+
+    plan = Plan(problem, over, columns, way=way)
+    if out is not None:
+        check_target(Path(out))
+    folder = Path(tempfile.mkdtemp(prefix="symobs-sweep-")) if out is None else work_folder(Path(out))
+    who = {"workers": workers, "scheduler": scheduler, "executor": executor}
+    run = Batch(plan.jobs, folder, settings=Settings(Budget(timeout, memory)), **who).finish()  # type: ignore[arg-type]
+    table = SweepTable(plan, run)
+    if out is None:
+        import weakref  # noqa: PLC0415 - only without `out`
+
+        weakref.finalize(table, shutil.rmtree, folder, ignore_errors=True)
+    else:
+        write_table(table, Path(out), decimals=decimals)
+    return table
+
+
+def work_folder(out: Path) -> Path:
+    """Return where the blocks of a sweep wait for its table: beside it, so that a run that was ended goes on."""
+    return out.with_name(f"{out.name}.work")
+
+
+def discard_work(out: Path) -> None:
+    """Remove the blocks once the table is whole."""
+    with suppress(OSError):
+        shutil.rmtree(work_folder(out))
+
+
+__all__ = ["Plan", "SweepTable", "discard_work", "sweep", "work_folder"]

@@ -1,0 +1,205 @@
+"""The command `batch`: many problems, on the processors of this machine or on a cluster, into a folder."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from symobs.batching.engine import Settings
+from symobs.batching.executors import Unfinished
+from symobs.batching.jobs import Budget, solve_job
+from symobs.batching.run import Batch, files_of, require_texts, texts_of, verified
+from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
+from symobs.cli.shared.options import options
+from symobs.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.batching.jobs import Job
+
+_SPEAK_EVERY = 30.0
+#: What a job is allowed where nothing else is said: with many of them, one without an end must not hold up the rest.
+_SECONDS, _MEGABYTES = 60.0, 2000.0
+
+
+def of_a_run(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that say who does the work, and how long."""
+    given = [
+        click.option(
+            "--workers",
+            type=click.IntRange(1, 1024),
+            metavar="N",
+            help="Processes of this machine; default: as many as it has processors.",
+        ),
+        click.option(
+            "--scheduler", metavar="ADDRESS", help="Let the workers of a dask scheduler do the work: tcp://HOST:8786."
+        ),
+        click.option(
+            "--worker-timeout",
+            type=click.FloatRange(0.1),
+            default=60.0,
+            metavar="SECONDS",
+            help="Wait so long for a worker to come back (60).",
+        ),
+        click.option(
+            "--deadline",
+            type=click.FloatRange(0.001),
+            metavar="SECONDS",
+            help="Begin nothing after so many seconds; the same command goes on later.",
+        ),
+        click.option(
+            "--recheck",
+            type=click.FloatRange(0, 1),
+            default=0.01,
+            metavar="SHARE",
+            help="Check this share of the results again by other code (0.01; of the first 200 all).",
+        ),
+        click.option(
+            "--chunk-seconds",
+            type=click.FloatRange(0.01),
+            default=2.0,
+            metavar="SECONDS",
+            help="Hand over work in chunks of so many seconds (2).",
+        ),
+        click.option("--in-process", is_flag=True, help="Work in this process, without limits: for debuggers."),
+        click.option("--quiet", is_flag=True, help="Say nothing on the way."),
+    ]
+    for option in reversed(given):
+        command = option(command)
+    return command
+
+
+@click.command("batch")
+@click.argument("problems", nargs=-1, metavar="FOLDER|FILE...")
+@click.option("--out", metavar="FOLDER", help="Keep the results here; a run that was ended goes on from them.")
+@click.option(
+    "--format",
+    "formats",
+    default="",
+    metavar="NAMES",
+    help="Write pages as well: latex, html, markdown, text; with commas between.",
+)
+@click.option(
+    "--fields",
+    type=click.Choice(["all", "answer"]),
+    default="all",
+    help="answer: only what is asked for, not what follows from it.",
+)
+@options("timeout", "memory")
+@click.option("--retry", type=click.Choice(["failed", "undecided"]), multiple=True, help="Try these again.")
+@click.option("--fail-fast", is_flag=True, help="End at the first problem that fails.")
+@click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
+@click.option("--verify", metavar="FOLDER", help="Check the stored results of a run again, by other code.")
+@of_a_run
+def command(
+    problems: tuple[str, ...],
+    out: str | None,
+    formats: str,
+    fields: str,
+    timeout: float | None,
+    memory: float | None,
+    retry: tuple[str, ...],
+    fail_fast: bool,  # noqa: FBT001 - click's signature
+    dry_run: bool,  # noqa: FBT001
+    verify: str | None,
+    **run: Any,
+) -> None:
+    """Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.
+
+    Every problem has a process, 60 seconds and 2000 MB of its own unless --timeout and --memory say otherwise: one that
+    takes more is undecided and loses no other.  Run the same command again after a run that was ended.
+    """
+    if verify is not None:
+        write_message(f"{verified(Path(verify))} results hold")
+        return
+    if not problems:
+        raise UsageError("no problem is named", repair="write for example `symobs batch problems/ --out results`")
+    if out is None:
+        raise UsageError("no folder for the results is named", where="--out", repair="write --out results")
+    files = [file for each in problems for file in files_of(Path(each))]
+    pages = tuple(name for name in formats.replace(" ", "").split(",") if name)
+    require_texts(pages)
+
+    def jobs() -> Iterator[Job]:
+        for text, name, folder in texts_of(files):
+            yield solve_job(text, name, folder, formats=pages, fields=fields)
+
+    budget = Budget(timeout or _SECONDS, memory or _MEGABYTES)
+    work = batch_of(jobs, Path(out), budget, run, retry=retry, fail_fast=fail_fast)
+    if dry_run:
+        write_message(work.told(len(files)))
+        return
+    finish(work, len(files), quiet=run["quiet"])
+
+
+def batch_of(jobs: Callable[[], Iterator[Job]], out: Path, budget: Budget, run: dict[str, Any], **more: Any) -> Batch:
+    """Return the run that the options of a command ask for."""
+    settings = Settings(budget, run["chunk_seconds"], run["recheck"], run["deadline"])
+    who = {name: run[name] for name in ("workers", "scheduler", "in_process", "worker_timeout")}
+    return Batch(jobs, out, settings=settings, **who, **more)
+
+
+def finish(work: Batch, total: int, *, quiet: bool, done: Callable[[], None] = lambda: None) -> NoReturn:
+    """Do the work of a run, tell how far it has come, and end with its exit code; `done` is called when all is done."""
+    usual = signal.signal(signal.SIGTERM, _interrupt)
+    progress = _Progress(total, quiet=quiet)
+    try:
+        for _ in work:
+            progress.show(work)
+    except Unfinished as error:
+        progress.clear()
+        count = sum(work.counts.values())
+        write_message(f"{error}; {count} of {total} done, run the same command again to go on")
+        sys.exit(EXIT_UNDECIDED)
+    finally:
+        signal.signal(signal.SIGTERM, usual)
+        progress.clear()
+    done()
+    for place in work.store.torn if work.store else ():
+        write_message(f"{place} was torn and has been done again")
+    if not quiet:
+        write_message(
+            ", ".join(f"{count} {status}" for status, count in work.counts.items() if count) or "nothing to do"
+        )
+    failed = work.counts["failed"] + work.counts["unreadable"]
+    sys.exit(EXIT_NO if failed else EXIT_UNDECIDED if work.counts["undecided"] else 0)
+
+
+def _interrupt(_: int, __: object) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+class _Progress:
+    """How far a run has come: a line that is overwritten on a terminal, elsewhere one every 30 seconds."""
+
+    def __init__(self, total: int, *, quiet: bool) -> None:
+        self.total, self.quiet = total, quiet
+        self.began = self.said = time.monotonic()
+        self.shows = sys.stderr is not None and sys.stderr.isatty()
+        self.first: int | None = None
+
+    def show(self, work: Batch) -> None:
+        """Say how many jobs are done, how fast, and how long the rest takes at that pace."""
+        now, count = time.monotonic(), sum(work.counts.values())
+        if self.first is None:
+            self.first = count - 1
+        if self.quiet or now - self.said < (0.2 if self.shows else _SPEAK_EVERY):
+            return
+        self.said = now
+        pace = (count - self.first) / (now - self.began)
+        troubles = "".join(
+            f", {work.counts[name]} {name}" for name in ("undecided", "failed", "unreadable") if work.counts[name]
+        )
+        text = f"{count}/{self.total}, {pace:.1f} a second{troubles}, {max(0, self.total - count) / pace:.0f} s left"
+        click.echo(f"\r\x1b[K{text}" if self.shows else text, nl=not self.shows, err=True)
+
+    def clear(self) -> None:
+        """Erase the line."""
+        if self.shows and not self.quiet:
+            click.echo("\r\x1b[K", nl=False, err=True)

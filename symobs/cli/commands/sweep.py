@@ -1,0 +1,65 @@
+"""The command `sweep`: a design at every point of a grid, into a table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from symobs.batching.jobs import Budget
+from symobs.batching.sweep.sweep import Plan, SweepTable, discard_work, work_folder
+from symobs.batching.sweep.table import check_target, write_table
+from symobs.cli.commands.batch import batch_of, finish, of_a_run
+from symobs.cli.shared.common import write_message
+from symobs.cli.shared.options import options
+from symobs.errors import UsageError
+
+#: What a block of points is allowed where nothing else is said.
+_SECONDS, _MEGABYTES = 600.0, 2000.0
+
+
+@click.command("sweep")
+@click.argument("problem")
+@click.option(
+    "--over", required=True, metavar="GRID", help="l=0.1:0.1:10, m=[1,2,5], k=0:1/11 (11 points), g=decade(1e-3:1e3)"
+)
+@click.option("--out", metavar="PATH", help="The table: .csv, .parquet, or a folder of Parquet files.")
+@click.option("--columns", metavar="NAMES", help="K, L, F, or single entries such as K[1,2]; all without it.")
+@click.option("--decimals", is_flag=True, help="Beside every exact column one of the nearest binary numbers.")
+@click.option("--each", is_flag=True, help="Solve every point by itself, not once with symbols.")
+@click.option("--yes", is_flag=True, help="Take more than a hundred million points.")
+@options("timeout", "memory")
+@of_a_run
+def command(
+    problem: str,
+    over: str,
+    out: str | None,
+    columns: str | None,
+    decimals: bool,  # noqa: FBT001 - click's signature
+    each: bool,  # noqa: FBT001
+    yes: bool,  # noqa: FBT001
+    timeout: float | None,
+    memory: float | None,
+    **run: Any,
+) -> None:
+    """Design at every point of a grid, each exact and checked, into a table.
+
+    The problem is solved once with symbols where that succeeds, and the formulas are evaluated at every point, where all
+    claims are checked again.  --timeout and --memory are for 1024 points.  Run the same command again after a run that
+    was ended: it goes on.
+    """
+    if out is None:
+        raise UsageError("no table is named", where="--out", repair="write --out table.csv or --out table.parquet")
+    target = Path(out)
+    check_target(target)
+    plan = Plan(Path(problem), over, columns, way="each" if each else "auto", unbounded=yes)
+    if not run["quiet"]:
+        write_message(f"{plan.grid.told()}; solved {plan.way}")
+    work = batch_of(plan.jobs, work_folder(target), Budget(timeout or _SECONDS, memory or _MEGABYTES), run)
+
+    def write() -> None:
+        write_table(SweepTable(plan, work), target, decimals=decimals)
+        discard_work(target)
+
+    finish(work, plan.blocks, quiet=run["quiet"], done=write)

@@ -1,0 +1,133 @@
+"""Measure runs of many problems: `python -m tests.programs.batches [--jobs 400] [--points 40000] [--cluster tcp://…]`.
+
+The same designs in a plain loop, with joblib and with plain dask, none of which checks, stores or survives anything, and by
+`symobs batch`; processor time where the work is in one process, time by the clock beside it.  Then how time grows with jobs
+and points, and by that what a cluster would take, which is a model and no measurement.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import resource
+import shutil
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symobs.batching.engine import Settings
+from symobs.batching.jobs import Budget, read_payload, solve_job
+from symobs.batching.run import Batch
+from symobs.batching.store import Store
+from symobs.batching.sweep import block
+from symobs.batching.sweep.sweep import BLOCK, Plan
+from symobs.problem import read
+from symobs.render.formats.json import result_object
+from tests.support.problems.batches import design
+from tests.unit.batching.test_sweep import CART
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def solved(number: int) -> list[Any]:
+    """One design with its whole JSON, unchecked by others."""
+    return [result_object(result) for result in read(design(number)).solve()]
+
+
+def timed(work: Callable[[], object]) -> tuple[float, float]:
+    """Seconds by the clock, and of the processor with all children that have ended."""
+
+    def used() -> float:
+        return sum(
+            getattr(resource.getrusage(who), part)
+            for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+            for part in ("ru_utime", "ru_stime")
+        )
+
+    began, before = time.perf_counter(), used()
+    work()
+    return time.perf_counter() - began, used() - before
+
+
+def by_batch(count: int, folder: Path, **who: Any) -> None:
+    """All designs into a store."""
+    shutil.rmtree(folder, ignore_errors=True)
+    settings = Settings(Budget())
+    Batch(lambda: (solve_job(design(n), f"p{n}") for n in range(count)), folder, settings=settings, **who).finish()
+
+
+def by_joblib(count: int) -> None:
+    """All designs by two processes of joblib."""
+    import joblib  # noqa: PLC0415
+
+    joblib.Parallel(n_jobs=2)(joblib.delayed(solved)(n) for n in range(count))
+
+
+def by_dask(count: int) -> None:
+    """All designs by two processes of dask."""
+    import distributed  # noqa: PLC0415
+
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        client.gather(client.map(solved, range(count)))
+
+
+def exponent(measured: list[tuple[int, float]]) -> float:
+    """The p of time ~ sizeᵖ that fits best."""
+    logs = [(math.log(size), math.log(seconds)) for size, seconds in measured]
+    mean = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
+    return sum((x - mean[0]) * (y - mean[1]) for x, y in logs) / sum((x - mean[0]) ** 2 for x, _ in logs)
+
+
+def main() -> None:
+    """Print what was measured."""
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--jobs", type=int, default=400)
+    asked.add_argument("--points", type=int, default=40_000)
+    options = asked.parse_args()
+    folder = Path(tempfile.mkdtemp()) / "out"
+    count = options.jobs
+    solved(0)
+    rows = {
+        "plain loop": timed(lambda: [solved(n) for n in range(count)]),
+        "joblib, 2": timed(lambda: by_joblib(count)),
+        "dask, 2": timed(lambda: by_dask(count)),
+        "batch, 1 worker": timed(lambda: by_batch(count, folder, workers=1)),
+        "batch, 2 workers": timed(lambda: by_batch(count, folder, workers=2)),
+    }
+    plain, plain_processor = rows["plain loop"]
+    for name, (clock, processor) in rows.items():
+        print(
+            f"{name:18} {clock:7.2f} s ({clock / plain:4.2f})   processor {processor:7.2f} s ({processor / plain_processor:4.2f})"
+        )
+    began = time.process_time()
+    store = Store(folder)
+    (folder / "keys.bin").unlink()
+    store.load()
+    print(f"reading {len(store.final)} rows again: {time.process_time() - began:.3f} s")
+    growth = [(n, timed(lambda n=n: by_batch(n, folder, workers=2))[1]) for n in (count // 4, count // 2, count)]  # type: ignore[misc]
+    print(f"processor time grows with jobs as their number to the power {exponent(growth):.2f}: {growth}")
+    points = []
+    for number in (options.points // 4, options.points // 2, options.points):
+        jobs = list(Plan(CART, f"l=1:1:{number // 100}, m=1:1:100", "K, L").jobs())
+        began = time.process_time()
+        for job in jobs:
+            block.run(read_payload(job.payload))
+        points.append((number, time.process_time() - began))
+    each = points[-1][1] / points[-1][0]
+    print(f"points: {each * 1e3:.3f} ms each, growing to the power {exponent(points):.2f}")
+    print(f"largest memory of this process: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
+    design_seconds = rows["batch, 1 worker"][1] / count
+    print(
+        "by this model (no measurement), 100 processors as fast as this one, blocks of "
+        f"{BLOCK} points, 15 µs a row for the table on one of them: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
+        f"10^8 points {max(10**8 * each / 100, 10**8 * 15e-6) / 60:.0f} min"
+    )
+
+
+if __name__ == "__main__":
+    main()
