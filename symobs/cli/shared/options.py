@@ -43,7 +43,7 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "--detail",
         default="full",
         metavar="NAME",
-        help="How much of the derivation is told: full (default), outline or answer.",
+        help="Level of detail of the derivation: full (default), outline or answer.",
     ),
     "templates": click.option(
         "--templates", metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."

@@ -17,6 +17,8 @@ import symobs
 from symobs.exact import Scalar
 from tests.support.claims.claims import applicable
 
+pytestmark = pytest.mark.slow
+
 s = sympy.Symbol("s")
 VALUES = tuple(map(Fraction, (-2, -1, 0, 1, 3)))
 

@@ -37,6 +37,8 @@ from tests.support.independent_algebra.plain import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+pytestmark = pytest.mark.slow
+
 
 POINTS, ON_EACH = 1_000, 25
 Point = dict[str, Fraction]

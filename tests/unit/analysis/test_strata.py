@@ -16,6 +16,8 @@ import symobs
 from symobs.exact.ideals import ideal
 from symobs.render.formats.json import result_object
 
+pytestmark = pytest.mark.slow
+
 s = sympy.Symbol("s")
 
 

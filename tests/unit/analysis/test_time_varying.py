@@ -30,6 +30,8 @@ from tests.support.tampering.mutations import answer_changes, changes, lines_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = pytest.mark.slow
+
 t, t0, t1, T, a, b = sympy.symbols("t t0 t1 T a b")
 EXAMPLE = ROOT / "worked_examples" / "time_varying_integrator.toml"
 
