@@ -295,7 +295,8 @@ class OutputFeedback(Result):
         An unstable pole may cancel: where that is no case of its own, nothing is said.
         """
         F, found = self.answer["F"], self._own_stability
-        untold = self.plant.equations or (not self.is_single and F.names != {self.plant.variable})
+        names = F.names.difference(F.field.numbers.names)
+        untold = self.plant.equations or (not self.is_single and names != {self.plant.variable})
         return "undecided" if untold and self._may_lose_poles else found
 
     @cached_property

@@ -54,10 +54,8 @@ def added(left: Rows, right: Rows) -> Rows:
 
 
 def normal_table(field: Field, rows: Rows, denominator: fmpz_mpoly) -> tuple[Rows, fmpz_mpoly]:
-    """Return the same matrix with its entries in normal form and no root in the denominator."""
-    factor, denominator = field.rationalised(field.one, denominator)
-    entries = rows if factor.is_one() else tuple(tuple(entry * factor for entry in row) for row in rows)
-    return tuple(tuple(map(field.normal, row)) for row in entries), denominator
+    """Return the same matrix with its entries and its denominator in normal form; roots may stay in the denominator."""
+    return tuple(tuple(map(field.normal, row)) for row in rows), field.normal(denominator)
 
 
 def transpose(rows: Rows) -> Rows:

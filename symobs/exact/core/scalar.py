@@ -267,7 +267,7 @@ class Scalar:
 
     def each_term(self) -> Iterator[tuple[int, tuple[tuple[str, int], ...]]]:
         """Yield the terms one by one."""
-        for powers, coefficient in self.numerator_part.terms():
+        for powers, coefficient in self.numerator.numerator_part.terms():
             pairs = zip(self.field.names, powers, strict=True)
             yield int(coefficient), tuple((name, int(power)) for name, power in pairs if power)
 
@@ -318,10 +318,10 @@ class Scalar:
         relevant = {name: value for name, value in values.items() if name in self.field.position}
         if not relevant:
             return self
-        above = _compose(self.numerator_part, self.field, relevant)
+        above = _compose(self.numerator.numerator_part, self.field, relevant)
         if self.denominator_part.is_one():
             return above
-        return above / _compose(self.denominator_part, self.field, relevant)
+        return above / _compose(self.denominator.numerator_part, self.field, relevant)
 
 
 def _plain_terms(polynomial: fmpz_mpoly) -> tuple[tuple[tuple[int, ...], int], ...]:

@@ -73,7 +73,7 @@ class Ideal:
         field = self.field | value.field
         if field is not self.field:
             return self.within(field).remainder(value)
-        moved = field.lift(value.numerator_part, value.field).project_to_context(self.home)
+        moved = field.lift(value.numerator.numerator_part, value.field).project_to_context(self.home)
         return self._back(moved.reduction_primitive_part(self.basis))  # type: ignore[attr-defined]
 
     def within(self, field: Field) -> Ideal:

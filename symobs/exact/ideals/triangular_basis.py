@@ -27,7 +27,7 @@ def triangular(equations: Sequence[Scalar], unknowns: Sequence[str]) -> tuple[Sc
         field = field | equation.field
     others = [name for name in field.names if name not in unknowns]
     home = context_of((*unknowns, *others), Ordering.lex)
-    moved = [field.lift(e.numerator_part, e.field).project_to_context(home) for e in equations if e]
+    moved = [field.lift(e.numerator.numerator_part, e.field).project_to_context(home) for e in equations if e]
     if any(polynomial.is_constant() for polynomial in moved):
         return (Scalar.of(1),)
     moved += [square.project_to_context(home) for square in field.relations]

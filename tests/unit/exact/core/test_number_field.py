@@ -11,7 +11,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symobs.exact import Matrix, Scalar, kernel, product_of, rank
+from symobs.exact import Ideal, Matrix, Scalar, kernel, product_of, rank
 from symobs.exact.algebraic.conjugates import root_in_field
 from symobs.exact.core.generators import square_root
 from symobs.exact.core.modular import Point, VanishingDenominator
@@ -55,6 +55,12 @@ def test_lowest_terms_show_where_a_denominator_vanishes() -> None:
     assert (value.numerator, value.denominator) == (1, k - R2)
     assert str(value) == "1/(k - sqrt(2))"
     assert ((k**2 - 2) * value).denominator.is_one
+    assert value.substitute({"k": -R2}) == -R2 / 4  # 1/(−2 √2), though k² − 2 vanishes there
+    with pytest.raises(ZeroDivisionError):
+        value.substitute({"k": R2})
+    assert value not in Ideal.of([k + R2])
+    assert value - 1 / (-2 * R2) in Ideal.of([k + R2])
+    assert [c for c, _ in value.terms()] == [1]
 
 
 _POLYNOMIALS = [
