@@ -124,7 +124,7 @@ def main() -> None:
     design_seconds = rows["batch, 1 worker"][1] / count
     print(
         "by this model (no measurement), 100 processors as fast as this one, blocks of "
-        f"{BLOCK} points, 15 µs a row for the table on one of them: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
+        f"{BLOCK} points, 15 µs a row on one: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
         f"10^8 points {max(10**8 * each / 100, 10**8 * 15e-6) / 60:.0f} min"
     )
 

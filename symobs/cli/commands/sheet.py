@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 _LONGEST_TITLE = 300
 #: So many problems are worth starting processes for.
-_WORTH_CHILDREN = 12
+_WORTH_CHILDREN = 24
 _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 
 
