@@ -19,7 +19,7 @@ from symobs.batching.recheck import determinant, minus, pencil, times
 from symobs.batching.store import Store
 from symobs.batching.sweep import block
 from symobs.batching.sweep.grid import read_grid
-from symobs.batching.sweep.sweep import Plan, work_folder
+from symobs.batching.sweep.plan import Plan, work_folder
 from symobs.errors import CertificateRejected, InputError, ProblemErrors
 from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import environment, inside
