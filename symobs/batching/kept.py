@@ -77,6 +77,7 @@ def _row_text(key: str, kind: str, row: dict[str, Any]) -> str:
 
 def _row(kind: str, payload: str, limits: Budget) -> dict[str, Any]:
     """Return the row of one job; what ends its process is tried once more, in a fresh one."""
+    found: dict[str, Any] = {}
     told = {"seconds": limits.seconds, "megabytes": limits.megabytes}
     for attempt in range(1, _ATTEMPTS + 1):
         child = _own_child(kind, limits, fresh=attempt > 1)

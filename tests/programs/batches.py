@@ -21,7 +21,7 @@ from symobs.batching.jobs import Budget, read_payload, solve_job
 from symobs.batching.run import Batch
 from symobs.batching.store import Store
 from symobs.batching.sweep import block
-from symobs.batching.sweep.sweep import BLOCK, Plan
+from symobs.batching.sweep.plan import BLOCK, Plan
 from symobs.problem import read
 from symobs.render.formats.json import result_object
 from tests.support.problems.batches import design
@@ -41,7 +41,7 @@ def timed(work: Callable[[], object]) -> tuple[float, float]:
 
     def used() -> float:
         return sum(
-            getattr(resource.getrusage(who), part)
+            float(getattr(resource.getrusage(who), part))
             for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
             for part in ("ru_utime", "ru_stime")
         )
@@ -60,7 +60,7 @@ def by_batch(count: int, folder: Path, **who: Any) -> None:
 
 def by_joblib(count: int) -> None:
     """All designs by two processes of joblib."""
-    import joblib  # noqa: PLC0415
+    import joblib  # type: ignore[import-not-found,unused-ignore]  # noqa: PLC0415
 
     joblib.Parallel(n_jobs=2)(joblib.delayed(solved)(n) for n in range(count))
 
@@ -80,7 +80,8 @@ def exponent(measured: list[tuple[int, float]]) -> float:
     """The p of time ~ sizeᵖ that fits best."""
     logs = [(math.log(size), math.log(seconds)) for size, seconds in measured]
     mean = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
-    return sum((x - mean[0]) * (y - mean[1]) for x, y in logs) / sum((x - mean[0]) ** 2 for x, _ in logs)
+    slope: float = sum((x - mean[0]) * (y - mean[1]) for x, y in logs) / sum((x - mean[0]) ** 2 for x, _ in logs)
+    return slope
 
 
 def main() -> None:
@@ -101,9 +102,8 @@ def main() -> None:
     }
     plain, plain_processor = rows["plain loop"]
     for name, (clock, processor) in rows.items():
-        print(
-            f"{name:18} {clock:7.2f} s ({clock / plain:4.2f})   processor {processor:7.2f} s ({processor / plain_processor:4.2f})"
-        )
+        ratios = clock / plain, processor / plain_processor
+        print(f"{name:18} {clock:7.2f} s ({ratios[0]:4.2f})   processor {processor:7.2f} s ({ratios[1]:4.2f})")
     began = time.process_time()
     store = Store(folder)
     (folder / "keys.bin").unlink()
@@ -124,7 +124,7 @@ def main() -> None:
     design_seconds = rows["batch, 1 worker"][1] / count
     print(
         "by this model (no measurement), 100 processors as fast as this one, blocks of "
-        f"{BLOCK} points, 15 µs a row for the table on one of them: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
+        f"{BLOCK} points, 15 µs a row on one: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
         f"10^8 points {max(10**8 * each / 100, 10**8 * 15e-6) / 60:.0f} min"
     )
 

@@ -34,7 +34,11 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
             program.line(outer)
         rows.append(program.at(point))
     columns = {name: [row.values[k] for row in rows] for name, k in zip(payload["columns"], chosen, strict=True)}
-    result = {"status": [row.status for row in rows], "case": [row.case for row in rows], "columns": columns}
+    result: dict[str, Any] = {
+        "status": [row.status for row in rows],
+        "case": [row.case for row in rows],
+        "columns": columns,
+    }
     return {"status": "undecided" if "undecided" in result["status"] else "done", "result": result}
 
 

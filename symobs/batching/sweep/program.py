@@ -159,11 +159,12 @@ class Program:
     def _checked(self, values: Sequence[Any]) -> list[str] | None:
         """Return the entries of a point as texts, None where a claim does not hold."""
         get = self.places
+        K: Any = None
+        L: Any = None
         A = numbers(self.n, self.n, values[get["A"]])
-        B = numbers(self.n, self.m, values[get["B"]]) if "B" in get else None
-        C = numbers(self.p, self.n, values[get["C"]]) if "C" in get else None
+        B: Any = numbers(self.n, self.m, values[get["B"]]) if "B" in get else None
+        C: Any = numbers(self.p, self.n, values[get["C"]]) if "C" in get else None
         found: list[str] = []
-        K = L = None
         for gain in self.gains:
             if gain == "K":
                 K = numbers(self.m, self.n, values[get["K"]])

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 _LONGEST_TITLE = 300
 #: So many problems are worth starting processes for.
-_WORTH_CHILDREN = 12
+_WORTH_CHILDREN = 24
 _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 
 
@@ -194,7 +194,8 @@ def _by_children(
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     """Return the row of one problem of a sheet, as a child process works it out."""
     with warnings.catch_warnings(record=True) as warned:
-        entry, code, messages = _entry(*_unpacked(payload["asked"]), lambda _: None)
+        number, file, text, wanted = _unpacked(payload["asked"])
+        entry, code, messages = _entry(number, file, text, wanted, lambda _: None)
     told = [f"{each.category.__name__}: {each.message}" for each in warned]
     return {"status": "done", "result": _packed((entry, code, [*told, *messages]))}
 

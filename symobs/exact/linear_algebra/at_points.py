@@ -55,7 +55,7 @@ class Evaluator:
         found: list[fmpq | None] = []
         for above, below in self._line:
             under = below if isinstance(below, fmpq) else below(x)
-            if not under:
+            if under == 0:
                 found.append(None)
                 continue
             over = above if isinstance(above, fmpq) else above(x)

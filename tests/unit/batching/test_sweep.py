@@ -5,7 +5,10 @@ from __future__ import annotations
 import csv
 import json
 import random
+import subprocess
+import sys
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,11 +16,13 @@ import pytest
 import symobs
 from symobs.batching.jobs import read_payload
 from symobs.batching.recheck import determinant, minus, pencil, times
+from symobs.batching.store import Store
 from symobs.batching.sweep import block
 from symobs.batching.sweep.grid import read_grid
-from symobs.batching.sweep.sweep import Plan, work_folder
+from symobs.batching.sweep.plan import Plan, work_folder
 from symobs.errors import CertificateRejected, InputError, ProblemErrors
-from tests.support.tools.command_line import inside
+from tests.support.problems.batches import eventually
+from tests.support.tools.command_line import environment, inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -182,6 +187,28 @@ def test_tables_say_exactly_what_was_found(tmp_path: Path) -> None:
     assert (rows[4]["l"], rows[4]["m"]) == (Fraction(1, 5), Fraction(2))
     assert held.to_arrow()["L[2,1]"].to_pylist() == table["L[2,1]"].to_pylist()
     assert json.loads(table.schema.metadata[b"over"])[0][:2] == ["l", 40]
+
+
+@pytest.mark.slow
+def test_a_sweep_killed_on_the_way_is_the_one_that_was_not(tmp_path: Path) -> None:
+    pq = pytest.importorskip("pyarrow.parquet")
+    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    words = ["sweep", "cart.toml", "--over", "l=0.1:0.1:20, m=0.1:0.1:10", "--columns", "K,L", "--chunk-seconds", "0.1"]
+    assert inside(*words, "--out", "whole.parquet", "--quiet", folder=tmp_path).code == 0
+    command = [sys.executable, "-m", "symobs", *words, "--out", "killed.parquet"]
+    store = Store(work_folder(tmp_path / "killed.parquet"))
+    for wanted in (2, 7):
+        with subprocess.Popen(command, cwd=tmp_path, env=environment(), stderr=subprocess.DEVNULL) as process:
+            assert eventually(partial(_has_chunks, store, wanted))
+            process.kill()
+    assert inside(*words, "--out", "killed.parquet", "--quiet", folder=tmp_path).code == 0
+    whole, killed = (pq.read_table(tmp_path / f"{name}.parquet") for name in ("whole", "killed"))
+    assert whole.num_rows == 20_000
+    assert killed.equals(whole)
+
+
+def _has_chunks(store: Store, wanted: int) -> bool:
+    return len(store.chunks()) >= wanted
 
 
 # -- grids and what cannot be done --------------------------------------------------------------------------------------

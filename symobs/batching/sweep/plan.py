@@ -91,7 +91,7 @@ class Plan:
 
     def jobs(self) -> Iterator[Job]:
         """Yield the blocks, in the order of their points."""
-        program = {"problem": self.tables, "names": list(self.grid.names), "answer": self.answer}
+        program: dict[str, Any] = {"problem": self.tables, "names": list(self.grid.names), "answer": self.answer}
         program["with_F"] = any(column.startswith("F.") for column in self.columns)
         shared = {"program": program, "over": [axis.data for axis in self.grid.axes], "columns": self.columns}
         for first in range(0, self.grid.size, BLOCK):
