@@ -46,6 +46,8 @@ PHRASES: dict[str, str] = {
     "assembled": "and the whole state is estimated by",
     "reduced_impossible": "The poles of $A_22 - L A_12$ are to be placed. No $L$ moves the <mode|modes> "
     "{modes}, and <it is not|they are not all> among the poles asked for: there is no such observer.",
+    "outputs_dependent": "With {row} the product {vanishes}: one output is a combination of the others. Whatever rows complete $C$ to a square "
+    "matrix, it has no inverse, and there is no such observer.",
     "reduced_all_fixed": "No $L$ moves the <mode|modes> {modes}, and <it is the pole|they are the poles> asked for: every gain serves, for example",
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the poles asked for. A gain that places the others is",
 }
