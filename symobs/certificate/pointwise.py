@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
 from symobs.formula import Restricted
 
@@ -31,18 +31,22 @@ def never_together_zero(
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
     an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
-    relations are reduced by what follows from the values alone, which keeps long ones short.
+    equations among the relations are reduced by what follows from the values, and what is kept from 0 by what follows from
+    both, which keeps long ones short.
     """
     values = list(values)
     relations = _without_other_roots(tuple(relations), values)
+    apart = [relation for relation in relations if any(is_inverse(name) for name in relation.names)]
+    equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
-    if known is None:
-        return True
-    for part in _parts(known, signs, nonzero):
-        together = [*(part.remainder(relation) for relation in relations), *part.generators]
-        if _implied(together, signs, nonzero) is not None:
-            return False
-    return True
+    for further in (equations, apart):
+        known = [
+            part
+            for ideal in known
+            for reduced in _implied([*map(ideal.remainder, further), *ideal.generators], signs, nonzero)
+            for part in _parts(reduced, signs, nonzero)
+        ]
+    return not known
 
 
 def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
@@ -57,8 +61,7 @@ def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) 
         if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
             continue
         for factor in factors:
-            part = _implied([*ideal.generators, factor], signs, nonzero)
-            if part is not None:
+            for part in _implied([*ideal.generators, factor], signs, nonzero):
                 yield from _parts(part, signs, nonzero)
         return
     yield ideal
@@ -74,19 +77,19 @@ def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]
     return tuple(relation for relation in relations if others.isdisjoint(relation.names))
 
 
-def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Ideal | None:
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> list[Ideal]:
     """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
 
-    None where that is nowhere.
+    There is none in the list where that is nowhere.
     """
     ideal = Ideal.of(equations)
     while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
         implied = (c for g in ideal.generators for c in (_stripped(g, signs, nonzero), *real_consequences(g, signs)))
         news = [value for value in implied if value not in ideal]
         if not news:
-            return ideal
+            return [ideal]
         ideal = ideal.having(*news)
-    return None
+    return []
 
 
 def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Scalar:

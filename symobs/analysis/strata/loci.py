@@ -166,11 +166,11 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         return
     try:
         ideal = Ideal.of(simple)
+        if ideal.is_whole or any(value in ideal for value in region.nonzero):
+            return
         news = _news(ideal, region)
     except TooLarge:
         yield Locus(tuple(simple))
-        return
-    if ideal.is_whole:
         return
     if news:
         yield from _branches((*news, *ideal.generators), region, budget)

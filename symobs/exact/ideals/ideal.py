@@ -35,6 +35,8 @@ _FEW = 6
 
 #: What the names of the coordinates of a vector begin with; no parameter's name begins so.
 _UNIT = "_e"
+#: What the name of the inverse of a polynomial begins with.
+_INVERSE = "1/"
 
 
 class TooLarge(ArithmeticError):
@@ -185,7 +187,12 @@ def _divides(lead: tuple[int, ...], powers: tuple[int, ...]) -> bool:
 
 def apart_from_zero(value: Scalar) -> Scalar:
     """Return the polynomial 1 − w p, which has zeros exactly where p is not 0; w is a generator that belongs to p alone."""
-    return 1 - Scalar.symbol(f"1/({value.numerator})") * value.numerator
+    return 1 - Scalar.symbol(f"{_INVERSE}({value.numerator})") * value.numerator
+
+
+def is_inverse(name: str) -> bool:
+    """Tell whether a generator stands for the inverse of a polynomial."""
+    return name.startswith(_INVERSE)
 
 
 def _home(field: Field) -> fmpz_mpoly_ctx:
