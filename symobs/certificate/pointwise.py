@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows, is_inverse
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
 from symobs.formula import Restricted
 
@@ -111,6 +111,14 @@ class Pointwise(Restricted):
         super().__init__(environment)
         self.signs = environment.signs
         self.nonzero = (*environment.assumed, *environment.domain)
+
+    def _meaningful(self, value: Scalar | Matrix) -> None:
+        """Accept a denominator that vanishes nowhere, too, where the relations are too long to be taken together."""
+        try:
+            super()._meaningful(value)
+        except TooLarge:
+            if not never_together_zero([value.common_denominator()], self.relations, self.signs, self.nonzero):
+                raise
 
     def apply(self, function: str, value: Matrix) -> Any:
         """Return det, adj, or the rank: r where r×r minors never vanish together and none is higher.

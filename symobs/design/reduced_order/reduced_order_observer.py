@@ -64,12 +64,12 @@ def partition(plant: StateSpace, T: Matrix) -> Partition:
     return Partition(T, A11, A12, A21, A22, B1, B2)
 
 
-def completed(C: Matrix) -> Matrix:
+def completed(C: Matrix, ideal: Ideal | None = None) -> Matrix:
     """Return T = [C; R], R the unit rows of the columns without a pivot; constant pivots are preferred.
 
-    Raises `InputError` where the rows of C depend on each other.
+    What lies in `ideal` is 0.  Raises `InputError` where the rows of C depend on each other.
     """
-    pivots = _pivots(C)
+    pivots = _pivots(C, ideal)
     if len(pivots) < C.shape[0]:
         message = "the rows of C depend on each other: one output is a combination of the others"
         raise InputError(message, where="plant.C", repair="leave that output out")
@@ -77,12 +77,12 @@ def completed(C: Matrix) -> Matrix:
     return Matrix.block([[C], [unit_rows(C.shape[1], others)]]) if others else C
 
 
-def _pivots(C: Matrix) -> list[int]:
+def _pivots(C: Matrix, ideal: Ideal | None) -> list[int]:
     """Return the pivot columns of C, row by row: the first with a constant entry, else the first with an entry."""
     rows = [list(row) for row in C.rows]
     found: list[int] = []
     for index, row in enumerate(rows):
-        candidates = [j for j, entry in enumerate(row) if not entry.is_zero]
+        candidates = [j for j, entry in enumerate(row) if not entry.is_zero and (ideal is None or entry not in ideal)]
         if not candidates:
             continue
         pivot = next((j for j in candidates if row[j].is_constant), candidates[0])
@@ -327,7 +327,7 @@ def observer_of(
         w = modulo(rows.select(range(rows.shape[0]), [0]).T, ideal)
         return DependentOutputs(plant, method_name, dict.fromkeys("LTFGHM") | {"w": w}, desired)
     usable = T is not None and not plant.simplified(T.determinant()).is_zero
-    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else completed(C), method_name)
+    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else completed(C, ideal), method_name)
 
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
