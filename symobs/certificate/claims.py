@@ -154,26 +154,25 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
 
 
 def _in_general(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> tuple[str, float]:
-    """Return how a long equation is shown without the relations; ("", 0) where it does not hold so, or is not long.
+    """Return how an equation is shown without the relations; ("", 0) where it does not hold so.
 
     An equation that holds in general holds where the relations do, if everything in it has a meaning there: no denominator
     of a value vanishes, and nothing is divided by what does.
     """
-    if set(relation.operators) != {"="} or sum(leaf.size for leaf in leaves) <= EXACT_UP_TO:
-        return "", 0.0
     general = replace(environment, relations=())
-    if _needs_values(relation, general, leaves) or not _has_meaning(relation, environment, leaves):
+    if set(relation.operators) != {"="} or environment.coefficients or environment.signals:
         return "", 0.0
-    return _holds_at_points(relation, general, leaves)
+    if not all(map(is_rational, relation.members)) or _needs_values(relation, general, leaves):
+        return "", 0.0  # a rank, say, may be another on a stratum than in general
+    if sum(leaf.size for leaf in leaves) <= EXACT_UP_TO:
+        found = ("exact", 0.0) if _holds_exactly(relation, general) else ("", 0.0)
+    else:
+        found = _holds_at_points(relation, general, leaves)
+    return found if found[0] and _has_meaning(relation, environment, leaves) else ("", 0.0)
 
 
 def _has_meaning(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
-    """Return whether a formula is rational, and no denominator of a value and no divisor vanishes with the relations.
-
-    A rank is no rational function: on a stratum it may be another than in general.
-    """
-    if environment.coefficients or environment.signals or not all(map(is_rational, relation.members)):
-        return False
+    """Return whether no denominator of a value, and nothing that is divided by, vanishes where the relations hold."""
     arithmetic = Restricted(environment)
     below = [leaf.common_denominator() for leaf in leaves]
     for divisor in (part for member in relation.members for part in divisors(member)):

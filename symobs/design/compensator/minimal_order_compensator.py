@@ -142,6 +142,12 @@ class MinimalOrderCompensator(OutputFeedback):
         """K₂."""
         return self.split[1]
 
+    @property
+    def error_input(self) -> tuple[Matrix, Matrix]:
+        """G and I − N D."""
+        direct = Matrix.identity(self.plant.inputs) - self.split[0] @ self.plant.matrices.D
+        return self.estimator.answer["G"], direct.normal()
+
     @cached_property
     def realisation(self) -> Realisation:
         """F − G W K₂, H − G W N, W K₂, W N, with W = (I − N D)⁻¹."""
