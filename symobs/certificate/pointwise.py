@@ -39,14 +39,27 @@ def never_together_zero(
     apart = [relation for relation in relations if any(is_inverse(name) for name in relation.names)]
     equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
-    for further in (equations, apart):
-        known = [
-            part
-            for ideal in known
-            for reduced in _implied([*map(ideal.remainder, further), *ideal.generators], signs, nonzero)
-            for part in _parts(reduced, signs, nonzero)
-        ]
-    return not known
+    known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
+    return not any(_is_met(part, apart, signs, nonzero) for part in known)
+
+
+def _is_met(ideal: Ideal, apart: Sequence[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> bool:
+    """Return whether points of an ideal are left where some relations hold; one of these alone may leave none."""
+    for relation in sorted(apart, key=lambda each: each.size) if len(apart) > 1 else ():
+        try:
+            if not _within(ideal, [relation], signs, nonzero):
+                return False
+        except TooLarge:
+            continue
+    return bool(_within(ideal, apart, signs, nonzero))
+
+
+def _within(
+    ideal: Ideal, relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]
+) -> list[Ideal]:
+    """Return ideals of the real points of an ideal where relations hold, none where there is none."""
+    found = _implied([*map(ideal.remainder, relations), *ideal.generators], signs, nonzero)
+    return [part for reduced in found for part in _parts(reduced, signs, nonzero)]
 
 
 def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
