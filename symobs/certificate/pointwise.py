@@ -40,18 +40,7 @@ def never_together_zero(
     equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
-    return not any(_is_met(part, apart, signs, nonzero) for part in known)
-
-
-def _is_met(ideal: Ideal, apart: Sequence[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> bool:
-    """Return whether points of an ideal are left where some relations hold; one of these alone may leave none."""
-    for relation in sorted(apart, key=lambda each: each.size) if len(apart) > 1 else ():
-        try:
-            if not _within(ideal, [relation], signs, nonzero):
-                return False
-        except TooLarge:
-            continue
-    return bool(_within(ideal, apart, signs, nonzero))
+    return not any(_within(part, apart, signs, nonzero) for part in known)
 
 
 def _within(
