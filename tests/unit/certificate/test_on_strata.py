@@ -82,7 +82,9 @@ def test_values_meet_a_curve_at_points_that_are_not_real_only() -> None:
     apart = [apart_from_zero(value) for value in (a, b, a + b)]
     curve = a**4 - a**3 * b - 2 * a**3 - 2 * a**2 * b**2 - 2 * a**2 * b + a**2 - a * b**3 + 2 * a * b + b**2
     assert never_together_zero([a * b * (b + 1)], [*apart, curve], REAL)
-    assert not never_together_zero([a * b * (b - 1)], [*apart, curve], REAL)  # there a⁴ − 3a³ − 3a² + a + 1 = 0 has real roots
+    assert not never_together_zero(
+        [a * b * (b - 1)], [*apart, curve], REAL
+    )  # there a⁴ − 3a³ − 3a² + a + 1 = 0 has real roots
 
 
 def test_points_on_a_locus_are_left_out_one_locus_at_a_time() -> None:
