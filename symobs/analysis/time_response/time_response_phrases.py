@@ -83,6 +83,7 @@ PHRASES: dict[str, str] = {
     "parts_of_covariance": "Between two inverse Gramians these are the two parts of the covariance, the one from the output noise",
     "input_part": "and the one from the input noise",
     "covariance_is": "Together,",
+    "horizon_called_t": "The time in the integrals is $t$. So their end, which the question calls $t$, is written $T$.",
     "horizon_tradeoff": "A longer horizon averages the output noise and gathers the input noise.",
     "inverse_too_long": "The inverse of this Gramian is longer than what is computed here. The covariance is not decided.",
     "gramian_is": "The Gramian over the horizon is",
