@@ -86,9 +86,14 @@ def solved(
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
 
+    def rendered(results: tuple[Any, ...]) -> str | bytes:
+        return render(replace(found.document(results, convention), **page), format_name)
+
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
             report_progress(partial(_as_far_as, found, so_far, convention, target))
+        elif so_far and format_name != "pdf":  # which would take TeX's time for every task
+            report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 
     results = found.solve(begins)
@@ -96,7 +101,7 @@ def solved(
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
     report_progress("the page")
-    outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
+    outputs = [(rendered(results), target)]
     if plot is not None:
         from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
 
