@@ -28,8 +28,12 @@ SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"
 FACTORED_UP_TO = 1_500
 
 #: The part of the line that a sign leaves to a parameter, by its ends.
-_LINE = dict.fromkeys(("positive", "nonnegative"), (Fraction(0), None))
-_LINE |= dict.fromkeys(("negative", "nonpositive"), (None, Fraction(0)))
+_LINE: dict[str, tuple[Fraction | None, Fraction | None]] = {
+    "positive": (Fraction(0), None),
+    "nonnegative": (Fraction(0), None),
+    "negative": (None, Fraction(0)),
+    "nonpositive": (None, Fraction(0)),
+}
 _NEVER_ZERO = {"positive", "negative", "nonzero"}
 _OPPOSITE = {
     "positive": "negative",
@@ -122,7 +126,8 @@ def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
     (name,) = names if len(names) == 1 else ("",)
     if name not in signs or factor.degree(name) < 2:
         return "real"
-    polynomial, low, high = integer_factor(factor, name), *_LINE.get(signs[name], (None, None))
+    low, high = _LINE.get(signs[name], (None, None))
+    polynomial = integer_factor(factor, name)
     if (polynomial.degree() % 2 and low is high) or count_roots(polynomial, low, high):
         return "real"
     return "positive" if polynomial(-1 if high is not None else 1) > 0 else "negative"

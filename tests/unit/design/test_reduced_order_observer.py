@@ -309,8 +309,7 @@ def test_a_row_that_shows_nothing_is_no_proof_that_outputs_depend_on_each_other(
 
 
 def test_a_compensator_of_minimal_order_needs_independent_outputs() -> None:
-    asked = {"control_poles": [-1, -2, -3], "observer_poles": [-4], "observer": "minimal"}
-    found = symobs.compensator(DEPENDENT, **asked)
+    found = symobs.compensator(DEPENDENT, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
     (there,) = (case.result for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
     assert there is not None
     assert (there.verdict, there.answer["F"], there.answer["L"]) == ("no", None, None)
