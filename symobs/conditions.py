@@ -9,11 +9,13 @@ not repeated.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.real_algebraic import count_roots, integer_factor
 from symobs.exact.core.generators import PI, function_named
 from symobs.exact.core.polynomial import by_monomial
 
@@ -26,6 +28,13 @@ SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"
 #: A polynomial with more terms than this is not factored: it counts as one factor.
 FACTORED_UP_TO = 1_500
 
+#: The part of the line that a sign leaves to a parameter, by its ends.
+_LINE: dict[str, tuple[Fraction | None, Fraction | None]] = {
+    "positive": (Fraction(0), None),
+    "nonnegative": (Fraction(0), None),
+    "negative": (None, Fraction(0)),
+    "nonpositive": (None, Fraction(0)),
+}
 _NEVER_ZERO = {"positive", "negative", "nonzero"}
 _OPPOSITE = {
     "positive": "negative",
@@ -115,6 +124,27 @@ def _signed_terms(polynomial: Scalar) -> Iterator[tuple[str, tuple[tuple[str, in
         yield sign_of_number(number), monomial
 
 
+def _sign_of_factor(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the certain sign of an irreducible polynomial."""
+    found = _sum_of_terms(factor, signs)
+    if found == "real":
+        found = sign_of_number(factor)
+    return _sign_without_roots(factor, signs) if found == "real" else found
+
+
+def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the sign of an irreducible polynomial in one parameter that has no root where its sign lets the parameter be."""
+    names = factor.names
+    (name,) = names if len(names) == 1 else ("",)
+    if name not in signs or factor.degree(name) < 2:
+        return "real"
+    low, high = _LINE.get(signs[name], (None, None))
+    polynomial = integer_factor(factor, name)
+    if (polynomial.degree() % 2 and low is high) or count_roots(polynomial, low, high):
+        return "real"
+    return "positive" if polynomial(-1 if high is not None else 1) > 0 else "negative"
+
+
 def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     """Return the certain sign of a value: one of `SIGNS`, or `zero`.
 
@@ -128,9 +158,7 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
     unit, factors = value.factors()
     sign = sign_of_number(unit)
     for factor, power in factors:
-        of_factor = _sum_of_terms(factor, signs)
-        of_factor = sign_of_number(factor) if of_factor == "real" else of_factor
-        sign = _product_sign(sign, _power_sign(of_factor, power))
+        sign = _product_sign(sign, _power_sign(_sign_of_factor(factor, signs), power))
     return whole if sign == "real" else sign
 
 
@@ -161,7 +189,7 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
             found[value.numerator] = None
             continue
         for factor, _ in value.numerator.factors()[1]:
-            if _sum_of_terms(factor, signs) not in _NEVER_ZERO:
+            if _sign_of_factor(factor, signs) not in _NEVER_ZERO:
                 found[factor] = None
     return tuple(found)
 

@@ -35,12 +35,15 @@ from symobs.formula import (
     Literal,
     Modular,
     Relation,
+    Restricted,
     agree,
     children,
     contains,
     derived_by,
     differ,
+    divisors,
     evaluate,
+    is_rational,
 )
 from symobs.formula.calculus import TIME
 from symobs.formula.plain_text import plain_relation
@@ -136,6 +139,8 @@ def can_be_shown(relation: Relation, environment: Environment) -> bool:
 
 def _verified(relation: Relation, environment: Environment) -> tuple[str, float]:
     leaves = _distinct(relation, environment)
+    if environment.relations and (found := _in_general(relation, environment, leaves))[0]:
+        return found
     if _needs_values(relation, environment, leaves):
         return ("exact", 0.0) if _holds_exactly(relation, environment) else ("", 0.0)
     free = replace(environment, coefficients={}) if environment.coefficients else environment
@@ -146,6 +151,34 @@ def _verified(relation: Relation, environment: Environment) -> tuple[str, float]
     if exactly and (pointwise or not environment.coefficients):
         return "", 0.0
     return _holds_at_points(relation, environment, leaves)
+
+
+def _in_general(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> tuple[str, float]:
+    """Return how an equation is shown without the relations; ("", 0) where it does not hold so.
+
+    An equation that holds in general holds where the relations do, if everything in it has a meaning there: no denominator
+    of a value vanishes, and nothing is divided by what does.
+    """
+    general = replace(environment, relations=())
+    if set(relation.operators) != {"="} or environment.coefficients or environment.signals:
+        return "", 0.0
+    if not all(map(is_rational, relation.members)) or _needs_values(relation, general, leaves):
+        return "", 0.0  # a rank, say, may be another on a stratum than in general
+    if sum(leaf.size for leaf in leaves) <= EXACT_UP_TO:
+        found = ("exact", 0.0) if _holds_exactly(relation, general) else ("", 0.0)
+    else:
+        found = _holds_at_points(relation, general, leaves)
+    return found if found[0] and _has_meaning(relation, environment, leaves) else ("", 0.0)
+
+
+def _has_meaning(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
+    """Return whether no denominator of a value, and nothing that is divided by, vanishes where the relations hold."""
+    arithmetic = Restricted(environment)
+    below = [leaf.common_denominator() for leaf in leaves]
+    for divisor in (part for member in relation.members for part in divisors(member)):
+        value = evaluate(divisor, environment, arithmetic)
+        below.append(value.determinant() if isinstance(value, Matrix) else value)
+    return all(value.is_constant or value not in arithmetic.ideal for value in below)
 
 
 def _needs_values(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:

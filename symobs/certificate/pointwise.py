@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, echelon, independent_rows
+from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
 from symobs.formula import Restricted
 
@@ -31,18 +31,24 @@ def never_together_zero(
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
     an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
-    relations are reduced by what follows from the values alone, which keeps long ones short.
+    equations among the relations are reduced by what follows from the values, and what is kept from 0 by what follows from
+    both, which keeps long ones short.
     """
     values = list(values)
     relations = _without_other_roots(tuple(relations), values)
+    apart = [relation for relation in relations if any(is_inverse(name) for name in relation.names)]
+    equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
-    if known is None:
-        return True
-    for part in _parts(known, signs, nonzero):
-        together = [*(part.remainder(relation) for relation in relations), *part.generators]
-        if _implied(together, signs, nonzero) is not None:
-            return False
-    return True
+    known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
+    return not any(_within(part, apart, signs, nonzero) for part in known)
+
+
+def _within(
+    ideal: Ideal, relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]
+) -> list[Ideal]:
+    """Return ideals of the real points of an ideal where relations hold, none where there is none."""
+    found = _implied([*map(ideal.remainder, relations), *ideal.generators], signs, nonzero)
+    return [part for reduced in found for part in _parts(reduced, signs, nonzero)]
 
 
 def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
@@ -57,8 +63,7 @@ def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) 
         if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
             continue
         for factor in factors:
-            part = _implied([*ideal.generators, factor], signs, nonzero)
-            if part is not None:
+            for part in _implied([*ideal.generators, factor], signs, nonzero):
                 yield from _parts(part, signs, nonzero)
         return
     yield ideal
@@ -74,19 +79,19 @@ def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]
     return tuple(relation for relation in relations if others.isdisjoint(relation.names))
 
 
-def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Ideal | None:
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> list[Ideal]:
     """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
 
-    None where that is nowhere.
+    There is none in the list where that is nowhere.
     """
     ideal = Ideal.of(equations)
     while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
         implied = (c for g in ideal.generators for c in (_stripped(g, signs, nonzero), *real_consequences(g, signs)))
         news = [value for value in implied if value not in ideal]
         if not news:
-            return ideal
+            return [ideal]
         ideal = ideal.having(*news)
-    return None
+    return []
 
 
 def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Scalar:
@@ -108,6 +113,14 @@ class Pointwise(Restricted):
         super().__init__(environment)
         self.signs = environment.signs
         self.nonzero = (*environment.assumed, *environment.domain)
+
+    def _meaningful(self, value: Scalar | Matrix) -> None:
+        """Accept a denominator that vanishes nowhere, too, where the relations are too long to be taken together."""
+        try:
+            super()._meaningful(value)
+        except TooLarge:
+            if not never_together_zero([value.common_denominator()], self.relations, self.signs, self.nonzero):
+                raise
 
     def apply(self, function: str, value: Matrix) -> Any:
         """Return det, adj, or the rank: r where r×r minors never vanish together and none is higher.

@@ -13,7 +13,7 @@ from symobs._dataclass import dataclass
 from symobs.exact.core.generators import all_roots
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from symobs.exact import Matrix, Root, Scalar
     from symobs.exact.core.generators import Function
@@ -284,6 +284,24 @@ def with_children(formula: Formula, parts: tuple[Formula, ...]) -> Formula:
 def contains(formula: Formula, kinds: tuple[type, ...]) -> bool:
     """Return whether a formula has a node of one of these kinds."""
     return isinstance(formula, kinds) or any(contains(part, kinds) for part in children(formula))
+
+
+def is_rational(formula: Formula) -> bool:
+    """Return whether a value is made of those of the leaves by arithmetic, inverses, determinants and adjugates alone."""
+    if isinstance(formula, (At, Derivative, Integral)) or (isinstance(formula, Apply) and formula.function == "rank"):
+        return False
+    return all(map(is_rational, children(formula)))
+
+
+def divisors(formula: Formula) -> Iterator[Formula]:
+    """Yield what a formula divides by."""
+    match formula:
+        case Quotient(_, below):
+            yield below
+        case Power(base, exponent) if exponent < 0:
+            yield base
+    for part in children(formula):
+        yield from divisors(part)
 
 
 def derived_by(formula: Formula) -> frozenset[str]:

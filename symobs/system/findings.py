@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
 
-#: What may be spent on the strata of one problem: an answer costs one, and one for each of the first terms of its equations.
-_BUDGET = 800
+#: What may be spent on the strata of one problem: an elimination of a rank costs one, an answer one and one for each of the
+#: first terms of its equations.  The same is spent on every machine; what is left of the strata then is undecided.
+_BUDGET = 2_000
 
 
 class _Failed(NamedTuple):
@@ -33,11 +34,15 @@ class Findings:
         """Whether nothing more may be found: what is left of the strata is undecided."""
         return self.left <= 0
 
+    def spend(self, cost: int) -> None:
+        """Take away what something cost."""
+        self.left -= cost
+
     def once(self, key: Hashable, cost: int, find: Callable[[], Any]) -> Any:
         """Return what was found under a key, or what is found now at this cost; what failed fails again in the same way."""
         known = self._found.get(key)
         if known is None:
-            self.left -= cost
+            self.spend(cost)
             try:
                 known = find()
             except Exception as error:  # noqa: BLE001 - it is raised again

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from symobs._dataclass import dataclass
 from symobs.analysis.modes.modes import ModeResult, polynomial_of
-from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of, too_long
+from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.conditions import Condition
 from symobs.errors import InputError
 from symobs.exact import Scalar, product_of
@@ -127,7 +127,6 @@ class HiddenStability(ModeResult):
         """The cases of the rank test, where eigenvalues meet, and the boundary where the weaker reading leaves it open."""
         strict = [c.expression for c in self.hidden.where if c.operator == ">"]
         found = (*self.rank_cases, *self.meeting_cases)
-        found += tuple(Case((Condition("existence", value, "=="),), {}, None) for value in self._left_open)
         if self.meaning == "asymptotic" or not strict:
             return found
         return (*found, Case((Condition("existence", product_of(strict), "=="),), {}, None))
@@ -139,10 +138,9 @@ class HiddenStability(ModeResult):
             return (*self.domain, *self._only_there)
         if self.hidden.verdict == "undecided":
             return self.domain
-        left = [(value,) for value in self._left_open]
-        lost = distances([*(system for system in self._lost if not too_long([system])), *left])
         listed = {c.expression for c in self.domain}
-        others = (Condition("existence", expression) for expression in lost if expression not in listed)
+        lost = (value for value in distances(self._lost) if value not in listed)
+        others = (Condition("existence", value) for value in lost)
         return (*self.domain, *self.hidden.where, *others)
 
     @cached_property
@@ -150,11 +148,6 @@ class HiddenStability(ModeResult):
         """The equations of the strata on which another verdict may hold."""
         differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
         return systems_of(differing) or ()
-
-    @cached_property
-    def _left_open(self) -> tuple[Scalar, ...]:
-        """What has to be kept from 0, and is left undecided where it is, since the strata in it take too long to tell."""
-        return too_long(self._lost) if self.hidden.verdict in {"yes", "conditional"} else ()
 
     @property
     def grows_where(self) -> tuple[Condition, ...]:

@@ -228,9 +228,11 @@ class RankResult(Result):
         answer, (A, _) = self.answer, self.pair(self.plant)
         kernel = Kernel(answer["kernel"], answer["restricted"], answer["free"])
         try:
-            return rank_tree(matrix, A, self._region, (answer["rows"], answer["columns"]), kernel)
+            tree = rank_tree(matrix, A, self._region, (answer["rows"], answer["columns"]), kernel)
         except TooLarge:  # on which part of the parameters it is not even known
             return None
+        self.plant.findings.spend(tree.eliminations)
+        return tree
 
     @cached_property
     def _checked_cases(self) -> tuple[tuple[Case, ...], tuple[Certificate, ...]]:

@@ -26,6 +26,8 @@ _TERMS = 1_000
 _WORK = 30_000
 #: The most terms of a sum of squares, before it is multiplied out.
 _SQUARED = 2_000
+#: How many linear forms are tried to tell points apart, and the name one goes by.
+_FORMS, _FORM = 6, "_form"
 
 
 class Work:
@@ -164,11 +166,11 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         return
     try:
         ideal = Ideal.of(simple)
+        if ideal.is_whole or any(value in ideal for value in region.nonzero):
+            return
         news = _news(ideal, region)
     except TooLarge:
         yield Locus(tuple(simple))
-        return
-    if ideal.is_whole:
         return
     if news:
         yield from _branches((*news, *ideal.generators), region, budget)
@@ -195,13 +197,30 @@ def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
 def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
     """Return, of finitely many points, polynomials in one parameter each that tell them apart or are simpler.
 
-    Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.
+    Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.  Points
+    that no coordinate tells apart a sum of multiples of two does.
     """
-    if EIGENVALUE in ideal.field.position or ideal.dimension is None:
+    if EIGENVALUE in ideal.field.position or not ideal.dimension:
         return ()
     for name in ideal.field.names:
         found = ideal.minimal_polynomial(name)
         stripped = math.prod(region.vanishing(found), start=Scalar.of(1))
         if stripped not in ideal or len(region.vanishing(found)) > 1:
             return (stripped,)
+        if found.degree(name) == ideal.dimension:
+            return ()
+    return _apart(ideal)
+
+
+def _apart(ideal: Ideal) -> tuple[Scalar, ...]:
+    """Return, of points that no coordinate tells apart, a polynomial in a linear form that has several factors, if any has."""
+    names = ideal.field.names
+    for multiple in range(1, _FORMS + 1):
+        form = sum((multiple**k * Scalar.symbol(name) for k, name in enumerate(names)), Scalar.of(0))
+        found = ideal.minimal_polynomial(_FORM, form)
+        factors = vanishing_factors([found], {_FORM: "real"})
+        if len(factors) != 1 or factors[0].degree(_FORM) < found.degree(_FORM):
+            return (math.prod((factor.substitute({_FORM: form}) for factor in factors), start=Scalar.of(1)),)
+        if found.degree(_FORM) == ideal.dimension:
+            return ()
     return ()

@@ -67,11 +67,15 @@ class Node:
 
 @dataclass(frozen=True)
 class Tree:
-    """What holds in general, the strata where something else does, and the loci about which nothing is known."""
+    """What holds in general, the strata where something else does, and the loci about which nothing is known.
+
+    `eliminations` is how many it took.
+    """
 
     generic: Node
     strata: tuple[Node, ...]
     undecided: tuple[Locus, ...]
+    eliminations: int
 
 
 class _Exhausted(Exception):
@@ -85,7 +89,12 @@ class _Search:
         self.matrix = matrix
         self.region = region
         self.generic = generic
-        self.left = _ELIMINATIONS if matrix.size <= _TERMS else 0
+        self.left = self.allowed = _ELIMINATIONS if matrix.size <= _TERMS else 0
+
+    @property
+    def spent(self) -> int:
+        """How many eliminations there were."""
+        return self.allowed - self.left
 
     def eliminated(self, locus: Locus) -> tuple[int, Minor, Scalar]:
         """Return the rank on a locus, a minor of that order and its value, 0 where that vanishes on the locus."""
@@ -242,8 +251,8 @@ def _with_kernels(search: _Search, A: Matrix, nodes: list[Node], undecided: list
     done = [_with_covers(node, known, undecided) for node in done]
     if search.region.work.left < 0:
         drops = tuple(Locus(each.equations) for each in nodes[0].below)
-        return Tree(replace(nodes[0], below=drops, covers=drops), (), drops)
-    return Tree(done[0], tuple(done[1:]), tuple(undecided))
+        return Tree(replace(nodes[0], below=drops, covers=drops), (), drops, search.spent)
+    return Tree(done[0], tuple(done[1:]), tuple(undecided), search.spent)
 
 
 def _with_covers(node: Node, known: list[Locus], undecided: list[Locus]) -> Node:

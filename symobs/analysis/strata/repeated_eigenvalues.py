@@ -55,17 +55,6 @@ def _locus_of(system: System) -> Locus:
         return Locus(system)
 
 
-def too_long(systems: Iterable[System]) -> tuple[Scalar, ...]:
-    """Return, for each stratum that is cut out by no polynomial short enough to be written, its shortest equation."""
-    found: dict[Scalar, None] = {}
-    for system in systems:
-        try:
-            distances([system])
-        except TooLarge:
-            found[min(system, key=lambda equation: equation.size)] = None
-    return tuple(found)
-
-
 def systems_of(cases: Iterable[Case]) -> tuple[System, ...] | None:
     """Return the equations of cases; None where one of them is everywhere."""
     found = tuple(tuple(c.expression for c in case.when if c.operator == "==") for case in cases)

@@ -67,10 +67,10 @@ class InitialStateCovariance(OfTheInitialState):
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds Q (None: no input noise), R and horizon."""
+        """Return the result for a plant; `asked` holds Q (None: no input noise), R, horizon, and whether that is called t."""
         m = plant.matrices
         test = rank_answer(m.A, m.C)
-        data = {name: asked[name] for name in ("Q", "R", "horizon")}
+        data = {name: asked[name] for name in ("Q", "R", "horizon", "called_t")}
         shared = {**data, "rank": test, "taken": taken, "chosen": {}, "covariance": None}
         if test["rank"] < plant.order:
             return cls(plant, method_name, shared)
@@ -158,15 +158,20 @@ class InitialStateCovariance(OfTheInitialState):
         found = self.answer["covariance"]
         if found is None or self.answer["horizon"] != END:
             return []
-        signs = {**self.plant.symbols.signs, "T": "positive"}
-        return [stationary(found[i, i], "T", signs) for i in range(self.plant.order)]
+        name = "t" if self.answer["called_t"] else "T"
+        signs = {**self.plant.symbols.signs, name: "positive"}
+        return [stationary(self._as_called(found[i, i]), name, signs) for i in range(self.plant.order)]
+
+    def _as_called(self, value: Any) -> Any:
+        """Return a value in the name that the horizon was given."""
+        return substitute(value, {"T": TIME}) if value is not None and self.answer["called_t"] else value
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The covariance, its two parts, the best horizon."""
         asked = self.answer.get("question")
         names = ("covariance", "input_part", "output_part")
-        found: dict[str, Any] = {name: self.answer.get(name) for name in names}
+        found: dict[str, Any] = {name: self._as_called(self.answer.get(name)) for name in names}
         found["best_horizon"] = self.best_horizon
         return {**found, **({"question": asked} if asked else {})}
 
@@ -316,7 +321,7 @@ def initial_state_covariance(
 
     plant    n ≤ 3 states, p outputs; B where Q is given; continuous time
     Q, R     intensities: symmetric m×m and p×p, or one value for a multiple of I; Q left out: no input noise
-    horizon  T > 0, a symbol or a number, "T" if left out
+    horizon  T > 0, a symbol or a number, "T" if left out; called t, it stands so in the answers, and as T in the derivation
     Returns covariance, input_part, output_part, best_horizon (for each component the equation of its least variance).
     Verdict no where the pair (C, A) is not observable.
 
@@ -333,8 +338,10 @@ def initial_state_covariance(
     end = read_horizon(plant, horizon)
     if end == INFINITE:
         raise InputError("the horizon is finite here", where="specification.horizon", repair='write "T", or a number')
-    if end == TIME:
-        message = "the horizon cannot be called t here, where integrands contain both"
-        raise InputError(message, where="specification.horizon", repair='write "T"')
-    asked = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity, "horizon": end}
+    asked: dict[str, Any] = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity}
+    called_t = end == TIME  # the integrands contain the time, too: beside it the end of the horizon is T
+    if called_t and any("T" in part.field.names for part in (plant, intensity, asked["Q"]) if part is not None):
+        message = "the horizon cannot be called t where T is a parameter: t is the time, and T stands for its end"
+        raise InputError(message, where="specification.horizon", repair="give the parameter another name")
+    asked |= {"horizon": END if called_t else end, "called_t": called_t}
     return over_horizon(lambda: choose("initial_state_covariance", method, "gramian").solve(plant, asked))

@@ -34,6 +34,8 @@ def write_covariance(page: Page, result: InitialStateCovariance) -> None:
     page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
     result.state(page)
     with page.section("covariance"):
+        if result.answer["called_t"]:
+            page.remark("horizon_called_t")
         tell_polynomial(page)
         result.write_branches(page, _write_branch)
 

@@ -74,6 +74,7 @@ PHRASES: dict[str, str] = {
     "parts_of_covariance": "Multiplying by the inverse Gramian on both sides gives the two contributions to the covariance, that of the output noise",
     "input_part": "and that of the input noise",
     "covariance_is": "Together,",
+    "horizon_called_t": "The time in the integrals is $t$; the horizon, called $t$ in the question, is therefore written $T$.",
     "horizon_tradeoff": "A longer horizon averages out output noise but accumulates input noise.",
     "inverse_too_long": "The inverse of this Gramian is too long to be computed here, so the covariance is not given.",
     "gramian_is": "The Gramian over the horizon is",

@@ -88,9 +88,17 @@ def solved(
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
 
+    def document_of(results: tuple[Any, ...]) -> Any:
+        return replace(found.document(results, convention), **page)
+
+    def rendered(results: tuple[Any, ...]) -> str | bytes:
+        return render(document_of(results), format_name)
+
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
             report_progress(partial(_as_far_as, found, so_far, convention, target))
+        elif so_far and format_name != "pdf":  # which would take TeX's time for every task
+            report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 
     results = found.solve(begins)
@@ -98,12 +106,11 @@ def solved(
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
     report_progress("the page")
-    document = replace(found.document(results, convention), **page)
-    outputs = [(render(document, format_name), target)]
+    outputs = [(rendered(results), target)]
     if bibliography is not None:
         from symobs.render.page.citations import bibliography_of  # noqa: PLC0415 - only with --bibliography
 
-        outputs.append((bibliography_of(document), bibliography))
+        outputs.append((bibliography_of(document_of(results)), bibliography))
     if plot is not None:
         from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
 

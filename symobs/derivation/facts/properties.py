@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.certificate.claims import as_scalar
 from symobs.conditions import never_zero, sign_of
 from symobs.errors import WrongKind
-from symobs.exact import Ideal, Matrix, Scalar, TooLarge, remainder
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, from_coefficients, remainder
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
 from symobs.stability.criteria.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
 
@@ -21,7 +21,20 @@ if TYPE_CHECKING:
 def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
     """Return a polynomial, and what is one where the relations hold, and of another rational function the denominator."""
     found = _divided(value, environment)
-    return found[0] if found is not None and found[1].is_zero else value.denominator
+    return found[0] if found is not None and found[1].is_zero else _lowered(value.denominator, environment)
+
+
+def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial without the leading coefficients that vanish where the relations hold."""
+    if not environment.relations:
+        return polynomial
+    try:
+        ideal = Ideal.of(environment.relations)
+        coefficients = polynomial.coefficients(environment.variable)
+        kept = next((k for k, c in enumerate(coefficients) if c.numerator not in ideal), 0)
+    except TooLarge:
+        return polynomial
+    return from_coefficients(coefficients[kept:], environment.variable) if kept else polynomial
 
 
 def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:

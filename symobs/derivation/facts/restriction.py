@@ -98,7 +98,10 @@ def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: En
     if known.is_whole:
         reject(f"that {' and '.join(plain_relation(r, environment.variable) for r in when.relations)} can be")
     for name, value in substitution.items():
-        solved = (Scalar.symbol(name) * value.denominator - value.numerator) in known
+        rest = Scalar.symbol(name) * value.denominator - value.numerator
+        solved = rest in known or never_together_zero(
+            equations, (apart_from_zero(rest), *relations, *environment.relations), environment.signs
+        )
         if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):
             reject(f"{name} = {value}")
     left_over = [equation.substitute(substitution).numerator for equation in equations]

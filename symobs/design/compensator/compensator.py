@@ -83,6 +83,12 @@ class CompensatorDesign(OutputFeedback):
         K: Matrix = self.answer["K"]
         return K
 
+    @property
+    def error_input(self) -> tuple[Matrix, Matrix]:
+        """B − LD and I."""
+        m, L = self.plant.matrices, self.answer["L"]
+        return (m.B - L @ m.D).normal(), Matrix.identity(self.plant.inputs)
+
     @cached_property
     def realisation(self) -> Realisation:
         """A − BK − LC + LDK, L, K, 0."""

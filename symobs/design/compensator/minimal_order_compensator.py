@@ -17,7 +17,7 @@ from symobs.design.compensator.output_feedback import OutputFeedback, Realisatio
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.gain_cases import design_of
 from symobs.design.gain.gain_design import letters_of
-from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, completed, require_rank
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, observer_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, transfer
 from symobs.formula import Environment
@@ -44,9 +44,7 @@ class MinimalOrderCompensator(OutputFeedback):
     @classmethod
     def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
         """Return the compensator for these polynomials, in the coordinates [C; R]."""
-        feedback = design_of(StateFeedbackDesign, plant, control)
-        estimator = ReducedOrderObserver.of(plant, observer, completed(plant.matrices.C), "partition")
-        return cls.of(feedback, estimator, name)
+        return cls.of(design_of(StateFeedbackDesign, plant, control), observer_of(plant, observer), name)
 
     @classmethod
     def of(cls, feedback: StateFeedbackDesign, estimator: ReducedOrderObserver, method_name: str) -> Self:
@@ -97,11 +95,6 @@ class MinimalOrderCompensator(OutputFeedback):
         """det(I − N D): where it is 0 the control law cannot be solved for u."""
         return well_posedness(self.plant, self.answer["K"], self.estimator)
 
-    def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
-        """Return the compensator on a stratum; raises `NotWritten` where an output is a combination of the others."""
-        require_rank(plant)
-        return super().on(plant, values)
-
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """What decides, besides the two gains, where there is a compensator."""
@@ -148,6 +141,12 @@ class MinimalOrderCompensator(OutputFeedback):
     def coupling(self) -> Matrix:
         """K₂."""
         return self.split[1]
+
+    @property
+    def error_input(self) -> tuple[Matrix, Matrix]:
+        """G and I − N D."""
+        direct = Matrix.identity(self.plant.inputs) - self.split[0] @ self.plant.matrices.D
+        return self.estimator.answer["G"], direct.normal()
 
     @cached_property
     def realisation(self) -> Realisation:

@@ -51,20 +51,6 @@ class Realisation(NamedTuple):
         return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
 
 
-def closed(plant: Realisation, returned: Realisation) -> Realisation:
-    """Return the plant with another system in the return path, negative feedback: u = v − (C₂ x₂ + D₂ y)."""
-    A, B, C, D = plant
-    through = (Matrix.identity(B.shape[1]) + returned.D @ D).inverse()
-    v, state, own = through, through @ returned.D @ C, through @ returned.C
-    output, fed = C - D @ state, D @ own
-    return Realisation(
-        Matrix.block([[A - B @ state, -(B @ own)], [returned.B @ output, returned.A - returned.B @ fed]]).normal(),
-        Matrix.block([[B @ v], [returned.B @ D @ v]]).normal(),
-        Matrix.block([[output, -fed]]).normal(),
-        (D @ v).normal(),
-    )
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class OutputFeedback(Result):
     """U = −F(s) Y from a state feedback and an observer, each with its own claims.
@@ -97,6 +83,11 @@ class OutputFeedback(Result):
     @property
     def coupling(self) -> Matrix:
         """What multiplies the estimation error in u: K, or K₂ with an observer of minimal order."""
+        raise NotImplementedError
+
+    @property
+    def error_input(self) -> tuple[Matrix, Matrix]:
+        """What v moves the error by where it is added to u = −F y, and what of it is left in u."""
         raise NotImplementedError
 
     @cached_property
@@ -242,9 +233,18 @@ class OutputFeedback(Result):
 
     @cached_property
     def loop_of_several(self) -> tuple[tuple[Factored, ...], ...]:
-        """The entries of (I + PF)⁻¹ P, from the loop in state space."""
-        m, variable = self.plant.matrices, self.plant.variable
-        whole = closed(Realisation(m.A, m.B, m.C, m.D), self.realisation).function(variable)
+        """The entries of (I + PF)⁻¹ P = [(C − DK)(sI − A + BK)⁻¹B + D] [W + K₂(sI − E)⁻¹V], E and V those of the error.
+
+        What is added to u moves the error, too: ė = E e + V v, u = −K x + K₂ e + W v.
+        """
+        m, variable, K = self.plant.matrices, self.plant.variable, self.answer["K"]
+        V, W = self.error_input
+        first, second = range(m.A.shape[0]), range(m.A.shape[0], self.error_coordinates.shape[0])
+        A, E = (self.error_coordinates.select(part, part).normal() for part in (first, second))
+        above, below = transfer_matrix(A, m.B, (m.C - m.D @ K).normal(), m.D, variable)
+        further, own = transfer_matrix(E, V, self.coupling, W, variable)
+        product, characteristic = above @ further, below * own
+        whole = Matrix.of([[entry / characteristic for entry in row] for row in product.rows])
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
         P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))

@@ -5,6 +5,7 @@ In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  Wi
 
 from __future__ import annotations
 
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -17,8 +18,7 @@ from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_cases import chosen, design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, echelon, unit_rows
-from symobs.exact.core.generators import NotWritten
+from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, kernel, modulo, unit_rows
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.result import Case, Result, choose, method, task
@@ -64,12 +64,12 @@ def partition(plant: StateSpace, T: Matrix) -> Partition:
     return Partition(T, A11, A12, A21, A22, B1, B2)
 
 
-def completed(C: Matrix) -> Matrix:
+def completed(C: Matrix, ideal: Ideal | None = None) -> Matrix:
     """Return T = [C; R], R the unit rows of the columns without a pivot; constant pivots are preferred.
 
-    Raises `InputError` where the rows of C depend on each other.
+    What lies in `ideal` is 0.  Raises `InputError` where the rows of C depend on each other.
     """
-    pivots = _pivots(C)
+    pivots = _pivots(C, ideal)
     if len(pivots) < C.shape[0]:
         message = "the rows of C depend on each other: one output is a combination of the others"
         raise InputError(message, where="plant.C", repair="leave that output out")
@@ -77,12 +77,12 @@ def completed(C: Matrix) -> Matrix:
     return Matrix.block([[C], [unit_rows(C.shape[1], others)]]) if others else C
 
 
-def _pivots(C: Matrix) -> list[int]:
+def _pivots(C: Matrix, ideal: Ideal | None) -> list[int]:
     """Return the pivot columns of C, row by row: the first with a constant entry, else the first with an entry."""
     rows = [list(row) for row in C.rows]
     found: list[int] = []
     for index, row in enumerate(rows):
-        candidates = [j for j, entry in enumerate(row) if not entry.is_zero]
+        candidates = [j for j, entry in enumerate(row) if not entry.is_zero and (ideal is None or entry not in ideal)]
         if not candidates:
             continue
         pivot = next((j for j in candidates if row[j].is_constant), candidates[0])
@@ -227,10 +227,7 @@ class ReducedOrderObserver(Result):
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
-            T = self.answer["T"].substitute(values)
-            require_rank(plant)
-            usable = not plant.simplified(T.determinant()).is_zero
-            return type(self).of(plant, desired, T if usable else completed(plant.matrices.C), self.method)
+            return observer_of(plant, desired, self.answer["T"].substitute(values), self.method)
 
         return solved(self.plant, self.places, solve)
 
@@ -276,11 +273,61 @@ def _meets(place: Place, value: Scalar) -> bool:
         return True
 
 
-def require_rank(plant: StateSpace) -> None:
-    """Raise `NotWritten` on a stratum where an output is a combination of the others: fewer are to be kept there."""
-    if len(echelon(plant.matrices.C, plant.ideal)[0]) < plant.outputs:
-        message = "an output is a combination of the others here"
-        raise NotWritten(message)
+@dataclass(frozen=True, eq=False, repr=False)
+class DependentOutputs(ReducedOrderObserver):
+    """No observer of order n − p on a stratum: w C = 0 with w ≠ 0, so no [C; P] with n rows has an inverse."""
+
+    #: There are no coordinates [C; R], and no pair (A₁₂, A₂₂) in them.
+    inner: ObserverDesign = field(default=None, init=False)  # type: ignore[assignment]
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield w C = 0 and w ≠ 0."""
+        e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
+        w, m = letter("w", e), self.plant.matrices
+        yield Claim(relation(w @ letter("C", e), Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
+        yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
+        if any(self.answer[name] is not None for name in "LTFGHM"):
+            message = "outputs that depend on each other leave no observer of order n - p"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates that outputs depend on each other."""
+        return self.certificates
+
+    @property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Everywhere on the stratum: the rank of C is nowhere higher there."""
+        return self.domain
+
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """None that is spoken of."""
+        return ()
+
+    @property
+    def gain_family(self) -> None:
+        """None: there is no gain."""
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """None: nothing else is true anywhere on the stratum."""
+        return ()
+
+
+def observer_of(
+    plant: StateSpace, desired: DesiredPolynomial, T: Matrix | None = None, method_name: str = "partition"
+) -> ReducedOrderObserver:
+    """Return the observer in the coordinates T, or in others where these are singular; the negative result on a stratum.
+
+    Raises `InputError` where the outputs of a plant that is no stratum depend on each other.
+    """
+    C, ideal = plant.matrices.C, plant.ideal
+    if plant.is_stratum and (rows := kernel(C.T, ideal)).shape[1]:
+        w = modulo(rows.select(range(rows.shape[0]), [0]).T, ideal)
+        return DependentOutputs(plant, method_name, dict.fromkeys("LTFGHM") | {"w": w}, desired)
+    usable = T is not None and not plant.simplified(T.determinant()).is_zero
+    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else completed(C, ideal), method_name)
 
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:

@@ -18,7 +18,12 @@ from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.time_responses import plot_error
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
-from symobs.design.reduced_order.reduced_order_observer import Partition, ReducedOrderObserver, partition
+from symobs.design.reduced_order.reduced_order_observer import (
+    DependentOutputs,
+    Partition,
+    ReducedOrderObserver,
+    partition,
+)
 from symobs.design.reduced_order.undetermined_matrices_page import write_undetermined
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
@@ -38,6 +43,16 @@ def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
     if design.answer["L"] is not None:
         draw_minimal_order(page)
         plot_error(page, "e_2", page["A_22"] - page["L"] @ page["A_12"])
+
+
+@page_of(DependentOutputs)
+def write_dependent_outputs(page: Page, design: DependentOutputs) -> None:
+    """Write data, and the combination of outputs that vanishes."""
+    given(page, ("observer", design.desired))
+    with page.section("reduced_order_observer"):
+        w = page.set("w_0", design.answer["w"])
+        zero = Matrix.zeros(1, page.plant.order)
+        page.conclude("outputs_dependent", row=relation(w, w.shown), vanishes=relation(w @ page["C"], zero))
 
 
 def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:

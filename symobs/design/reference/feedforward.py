@@ -6,7 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import places, solved
+from symobs.analysis.strata.rank_stratification import maximal_minors
+from symobs.analysis.strata.strata import common_places, places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
@@ -22,6 +23,7 @@ from symobs.result import Case, Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.analysis.strata.strata import Place
     from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
@@ -151,8 +153,19 @@ class FeedforwardDesign(Result):
             )
             return found
 
-        own = places(self.plant, [value.numerator for value in self.existence])
-        return solved(self.plant, {place.when: place for place in (*own, *self.loop.gain_places)}.values(), on)
+        asked = {place.when: place for place in (*self._own_places, *self.loop.gain_places)}
+        return solved(self.plant, asked.values(), on)
+
+    @property
+    def _own_places(self) -> tuple[Place, ...]:
+        """The strata where nothing comes to rest, or G loses its rank, its minors of the highest order being 0 together."""
+        if self.answer["F"] is None:
+            return ()
+        moving = self.existence[0].numerator
+        lost = [minor.numerator for minor in maximal_minors(self.gain_at_rest.T)]
+        if len(lost) == 1:
+            return places(self.plant, [moving, *lost])
+        return (*places(self.plant, [moving]), *common_places(self.plant, lost))
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

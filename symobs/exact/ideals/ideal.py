@@ -35,6 +35,8 @@ _FEW = 6
 
 #: What the names of the coordinates of a vector begin with; no parameter's name begins so.
 _UNIT = "_e"
+#: What the name of the inverse of a polynomial begins with.
+_INVERSE = "1/"
 
 
 class TooLarge(ArithmeticError):
@@ -142,9 +144,15 @@ class Ideal:
         monomials = product(*map(range, self._bounds))
         return sum(not any(_divides(lead, powers) for lead in leading) for powers in monomials)
 
-    def minimal_polynomial(self, name: str) -> Scalar:
-        """Return the polynomial of least degree in one generator alone that lies in an ideal with finitely many zeros."""
-        return self._dependence([Scalar.symbol(name) ** k for k in range((self.dimension or 0) + 1)])
+    def minimal_polynomial(self, name: str, form: Scalar | None = None) -> Scalar:
+        """Return the polynomial p(name) of least degree that lies in an ideal with finitely many zeros.
+
+        Where `form` is given, p(form) lies in the ideal.
+        """
+        variable = Scalar.symbol(name)
+        powers = range((self.dimension or 0) + 1)
+        values = [(variable if form is None else form) ** k for k in powers]
+        return self._dependence(values, [variable**k for k in powers])
 
     @cached_property
     def triangular(self) -> tuple[Scalar, ...] | None:
@@ -157,14 +165,15 @@ class Ideal:
                 return (below, *(self._dependence([*powers, other]) for other in others))
         return None
 
-    def _dependence(self, values: Sequence[Scalar]) -> Scalar:
-        """Return the first rational linear combination of the values that lies in the ideal."""
+    def _dependence(self, values: Sequence[Scalar], written: Sequence[Scalar] | None = None) -> Scalar:
+        """Return the first rational linear combination of the values that lies in the ideal, written with others if given."""
         forms = [{part: coefficient for coefficient, part in form.each_term()} for form in self.reduced_column(values)]
         parts = list(dict.fromkeys(part for form in forms for part in form))
         reduced, below, rank = fmpz_mat([[int(form.get(part, 0)) for form in forms] for part in parts]).rref()
         last = next(k for k in range(len(forms)) if k >= rank or reduced[k, k] == 0)
-        rest = (Scalar.of(int(reduced[k, last])) * values[k] for k in range(last))
-        found = sum((-term for term in rest), Scalar.of(int(below)) * values[last])
+        written = written or values
+        rest = (Scalar.of(int(reduced[k, last])) * written[k] for k in range(last))
+        found = sum((-term for term in rest), Scalar.of(int(below)) * written[last])
         return found / found.factors()[0]
 
     def having(self, *others: Scalar) -> Ideal:
@@ -186,7 +195,12 @@ def _divides(lead: tuple[int, ...], powers: tuple[int, ...]) -> bool:
 
 def apart_from_zero(value: Scalar) -> Scalar:
     """Return the polynomial 1 − w p, which has zeros exactly where p is not 0; w is a generator that belongs to p alone."""
-    return 1 - Scalar.symbol(f"1/({value.numerator})") * value.numerator
+    return 1 - Scalar.symbol(f"{_INVERSE}({value.numerator})") * value.numerator
+
+
+def is_inverse(name: str) -> bool:
+    """Tell whether a generator stands for the inverse of a polynomial."""
+    return name.startswith(_INVERSE)
 
 
 def _home(field: Field) -> fmpz_mpoly_ctx:
@@ -205,9 +219,8 @@ def _home(field: Field) -> fmpz_mpoly_ctx:
 
 @lru_cache(maxsize=512)
 def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
-    for generator in generators:
-        field = generator.field if field is None else field | generator.field
-    field = field or Field.of(())
+    if field is None:  # only of what occurs: with an idle generator there are never finitely many zeros
+        field = Field.of({name for generator in generators for name in generator.names})
     home = _home(field)
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):

@@ -19,12 +19,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
+from symobs.analysis.strata.repeated_eigenvalues import distances
 from symobs.certificate.claims import Claim, verify
 from symobs.derivation import Case, Derivation, Equal, Section
 from symobs.derivation.builder import relation
 from symobs.derivation.facts.properties import PREDICATES
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import EIGENVALUE, Scalar
+from symobs.exact.ideals import ideal
 from symobs.formula import Conjunction, Environment
 from symobs.stability.criteria.stability import meetings
 from tests.programs.campaign.points import answer_at, holds
@@ -253,6 +255,33 @@ def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
     # The first of them alone was given as the condition: a ≠ 0, though (0, b) sees the mode as well.
     found = symobs.detectability(symobs.StateSpace("[1]", None, "[a; b]"))
     assert [str(c) for c in found.holds_where] == ["a**2 + b**2 != 0"]
+
+
+def test_a_system_beyond_the_limits_is_kept_apart_as_it_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    a, b, c = (Scalar.symbol(name) for name in "abc")
+    system, point = (a * b - 17, a**2 - b + 19), (c - 1,)
+    within = distances([system, point])
+    monkeypatch.setattr(ideal, "TERMS", 1)
+    ideal._ideal.cache_clear()
+    assert set(distances([system, point])) == {(a * b - 17) ** 2 + (a**2 - b + 19) ** 2, c - 1}
+    assert within != distances([system, point])  # a basis of it is another system
+
+
+@pytest.mark.parametrize("meaning", ["asymptotic", "lyapunov"])
+def test_no_limit_leaves_a_verdict_as_an_exception(monkeypatch: pytest.MonkeyPatch, meaning: str) -> None:
+    plants = [
+        symobs.StateSpace("[0 a 0; 0 b^2-a 0; 0 a b]", None, "[0 b a+b]"),
+        symobs.StateSpace("[0 a; 0 b]", None, "[0 0]"),
+    ]
+    monkeypatch.setattr(ideal, "TERMS", 1)
+    ideal._ideal.cache_clear()
+    for plant in plants:
+        found = symobs.detectability(plant, meaning=meaning)
+        assert found.verdict in {"no", "conditional", "undecided"}
+        _ = found.conditions, found.cases, found.grows_where
+        endless = symobs.gramian(plant, horizon="inf")
+        assert endless.verdict in {"yes", "no", "conditional", "undecided"}
+        _ = endless.conditions, endless.cases
 
 
 # -- the claims ----------------------------------------------------------------------------------------------------------

@@ -240,17 +240,38 @@ def test_json_says_undecided_of_every_task(hard: Path) -> None:
         assert result.keys() <= decided.keys()
 
 
-def test_json_keeps_the_tasks_that_were_finished(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The time is over in the second of three tasks: the first keeps its answer, the others are undecided."""
-    tasks = '["observability", "observer", "detectability"]'
-    text = NOT_OBSERVABLE.replace('task = "observability"', f"tasks = {tasks}") + '[specification]\npoles = "-1, -2"\n'
-    alone = json.loads(inside("solve", "-", "--format", "json", stdin=NOT_OBSERVABLE.encode()).out)["results"]
+THREE_TASKS = (
+    NOT_OBSERVABLE.replace('task = "observability"', 'tasks = ["observability", "observer", "detectability"]')
+    + '[specification]\npoles = "-1, -2"\n'
+)
+
+
+@pytest.fixture
+def slow_observer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the time be over in the second of the three tasks."""
 
     def slow(*_: object, **__: object) -> Any:
         os.kill(os.getpid(), signal.SIGALRM)
 
     monkeypatch.setitem(registry._TASKS, "observer", replace(registry.tasks()["observer"], function=slow))
-    run = inside("solve", "-", "--format", "json", "--timeout", f"{LONG:g}", stdin=text.encode())
+
+
+@pytest.mark.usefixtures("slow_observer")
+@pytest.mark.parametrize("form", ["text", "latex", "html", "markdown"])
+def test_a_page_keeps_the_tasks_that_were_finished(form: str) -> None:
+    alone = inside("solve", "-", "--format", form, stdin=NOT_OBSERVABLE.encode()).out
+    run = inside("solve", "-", "--format", form, "--timeout", f"{LONG:g}", stdin=THREE_TASKS.encode())
+    assert run.code == 5
+    assert "at work on observer; " in run.err
+    assert run.out.splitlines()[-5:] == alone.splitlines()[-5:]
+    assert "detectab" not in run.out
+
+
+@pytest.mark.usefixtures("slow_observer")
+def test_json_keeps_the_tasks_that_were_finished() -> None:
+    """The first keeps its answer, the others are undecided."""
+    alone = json.loads(inside("solve", "-", "--format", "json", stdin=NOT_OBSERVABLE.encode()).out)["results"]
+    run = inside("solve", "-", "--format", "json", "--timeout", f"{LONG:g}", stdin=THREE_TASKS.encode())
     assert run.code == 5
     assert "at work on observer; " in run.err
     first, *others = json.loads(run.out)["results"]

@@ -625,6 +625,22 @@ def test_what_is_put_in_follows_from_the_equations() -> None:
     refused(case(Conjunction((said(b, 1),)), b=1, c=1), start=ON)
 
 
+def test_what_is_put_in_follows_for_real_parameters_of_their_signs() -> None:
+    for equation in ((b - 1) ** 2, a * (b - 1), (b - 1) * (b**2 + b + 1), (b - 1) ** 2 + (c - 2) ** 2):
+        checked(case(Conjunction((said(equation, 0),)), b=1), start=ON)
+    for equation in ((b - 1) * (b - 2), c * (b - 1), (b - 1) ** 2 - (c - 2) ** 2):
+        refused(case(Conjunction((said(equation, 0),)), b=1), start=ON)
+
+
+def test_a_polynomial_has_lost_roots_on_a_stratum_where_its_leading_coefficient_vanishes() -> None:
+    start = replace(ON, values={"F": 1 / ((c**2 - b) * s**2 + s + c)})
+    curve = Conjunction((said(c**2, b),))
+    checked(case(curve, Conclude(None, (Roots(F, roots_of(s + c, "s")),))), start=start)
+    checked(case(said(k, 1), Conclude(None, (Roots(F, roots_of((c**2 - b) * s**2 + s + c, "s")),))), start=start)
+    refused(case(curve, Conclude(None, (Roots(F, roots_of(s + b, "s")),))), start=start)
+    refused(case(said(k, 1), Conclude(None, (Roots(F, roots_of(s + c, "s")),))), start=start)
+
+
 def test_what_is_put_in_has_a_value_everywhere_there() -> None:
     product = said(b * c, h)
     refused(case(Conjunction((product,)), b=h / c), start=ON)

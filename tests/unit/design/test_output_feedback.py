@@ -11,7 +11,6 @@ import sympy
 
 import symobs
 from symobs import StateSpace
-from symobs.design.compensator.output_feedback import Realisation, closed
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix
 from tests.support.independent_algebra.plain import (
@@ -131,14 +130,6 @@ def rows_of(value: Any) -> Any:
 
 def entry_at(entry: Any, s: Fraction) -> Fraction:
     return matrix_at(Matrix.of([[entry.value]]), {"s": s})[0][0]
-
-
-def test_the_loop_in_state_space_has_feedthrough_on_both_sides() -> None:
-    """A static plant y = 2u behind a static return 3: y = 2/(1 + 6) v."""
-    nothing, column, row = Matrix.zeros(0, 0), Matrix.zeros(0, 1), Matrix.zeros(1, 0)
-    two, three = Matrix.of([[2]]), Matrix.of([[3]])
-    loop = closed(Realisation(nothing, column, row, two), Realisation(nothing, column, row, three))
-    assert str(loop.D) == "[2/7]"
 
 
 def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,7 +13,11 @@ from sympy import Matrix, Rational
 
 import symobs
 from symobs import StateSpace
+from symobs.design.reduced_order.reduced_order_observer import completed
 from symobs.errors import CertificateRejected, InputError
+from symobs.exact import Ideal, Scalar
+from symobs.exact import Matrix as Exact
+from symobs.render.formats.json import result_object
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -268,3 +273,51 @@ def test_why_the_mere_copy_fails() -> None:
     )
     with_b = StateSpace("[0 1; 0 b]", "[0; 1]", "[1 0]", symbols={"b": "positive"})
     assert "since A₂₂ is not stable." in " ".join(symobs.reduced_order_observer(with_b, poles=[-3]).to("text").split())
+
+
+DEPENDENT = StateSpace(
+    "[0 a-1 0; 0 a-1 -1; a*b 1 1]", "[1; 0; -1]", "[0 0 b; 0 b b+1]", symbols={"a": "real", "b": "real"}
+)
+
+
+def test_where_outputs_depend_on_each_other_there_is_no_observer_of_that_order() -> None:
+    """Rank C is 1 for b = 0 and 2 elsewhere; with any one row P the three rows of [C; P] depend on each other."""
+    found = symobs.reduced_order_observer(DEPENDENT, poles=[-4])
+    (case,) = (case for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert case.result is not None
+    there = result_object(case.result)
+    assert there["verdict"] == "no"
+    assert [there[name] for name in "LTFGHM"] == [None] * 6
+    assert there["cases"] == []
+    w = case.result.answer["w"]
+    assert not w.is_zero
+    assert (w @ case.result.plant.matrices.C).is_zero
+    assert "one output is a combination of the others" in " ".join(case.result.to("text").split())
+    assert pickle.loads(pickle.dumps(case.result)) == case.result  # noqa: S301 - our own
+
+
+def test_a_row_that_shows_nothing_is_no_proof_that_outputs_depend_on_each_other() -> None:
+    found = symobs.reduced_order_observer(DEPENDENT, poles=[-4])
+    (there,) = (case.result for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert there is not None
+    row = type(there.answer["w"]).of
+    for wrong in (row([[0, 0]]), row([[0, 1]])):
+        with pytest.raises(CertificateRejected):
+            there.with_answer("w", wrong)
+    with pytest.raises(CertificateRejected):
+        there.with_answer("M", row([[0, 0], [1, 0], [0, 1]]))
+
+
+def test_a_compensator_of_minimal_order_needs_independent_outputs() -> None:
+    found = symobs.compensator(DEPENDENT, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
+    (there,) = (case.result for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert there is not None
+    assert (there.verdict, there.answer["F"], there.answer["L"]) == ("no", None, None)
+
+
+def test_coordinates_on_a_stratum_are_regular_there() -> None:
+    """The first entry of C vanishes on the curve a² = a + 1: there another column is completed."""
+    a = Scalar.symbol("a")
+    curve, C = Ideal.of([a**2 - a - 1]), Exact.of([[a**2 - a - 1, a, 0]])
+    assert completed(C).determinant() in curve
+    assert completed(C, curve).determinant() not in curve
