@@ -59,7 +59,7 @@ def check_targets(target: str | None, plot: str | None) -> None:
     """Raise an error, before any work, if the result or its plot cannot be written."""
     check_target(target)
     if plot is not None:
-        from symobs.render.plots.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
+        from symobs.render.drawings.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
 
         check_picture(plot)
         check_target(plot)
@@ -98,7 +98,7 @@ def solved(
     report_progress("the page")
     outputs = [(render(replace(found.document(results, convention), **page), format_name), target)]
     if plot is not None:
-        from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
+        from symobs.render.drawings.plot_file import picture_file  # noqa: PLC0415
 
         report_progress("the picture")
         try:
