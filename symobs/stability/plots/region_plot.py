@@ -35,24 +35,24 @@ _PASSES, _STRAIGHT = 2, Fraction(1, 100)
 _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
 _FAR = 8
-#: What lies nearer than this part of the window cannot be seen apart.
-_UNSEEN = Fraction(1, 10**6)
+#: A dividing curve ends where the region is nearer than this part of the window: there it could not be told from a boundary.
+_THICK = Fraction(1, 10_000)
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
     """Return the plot of a region of two parameters."""
     window = _window(region)
-    areas, curves = [], []
+    areas, curves, seen = [], [], []
     for number, slab in enumerate(region.plane.slabs):
-        stable = [cell for cell in region.cells if cell.slab == number and cell.allowed]
         found = _nodes(region, slab, window)
         if len(found) < 2:
             continue
+        allowed = [cell for cell in region.cells if cell.slab == number and cell.allowed]
+        seen += [cell for cell in allowed if min(found) < cell.sample[0] < max(found) and _inside(cell.sample, window)]
         nodes, rows = list(found), list(found.values())
-        areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
+        areas += [a for cell in allowed if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
     curves += _verticals(region, window)
-    seen = [cell for cell in region.cells if cell.allowed and _is_seen(region, cell, window)]
     shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
     marks = [MarkedPoint(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
     marks += [MarkedPoint(hole.near, "excluded") for hole in region.holes]
@@ -146,16 +146,6 @@ def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
     return all(low <= value <= high for value, (low, high) in zip(place, window, strict=True))
 
 
-def _is_seen(region: PlaneRegion, cell: Cell, window: tuple[Interval, Interval]) -> bool:
-    """Whether the sample of a cell lies in the window and can be seen apart from the walls beside it."""
-    slab, x = region.plane.slabs[cell.slab], cell.sample[0]
-    near = (window[0][1] - window[0][0]) * _UNSEEN
-    apart = (slab.left is None or slab.left < RealNumber.of(x - near)) and (
-        slab.right is None or RealNumber.of(x + near) < slab.right
-    )
-    return apart and _inside(cell.sample, window)
-
-
 # -- branches ---------------------------------------------------------------------------------------------------------
 
 
@@ -180,6 +170,10 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
     rounded = {round(x / grid) * grid for x in found}
     inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
     within = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    if within and left < slab.x < right:  # its samples stand there, in the area that is drawn
+        within += [] if within[0] < slab.x else [(low + slab.x) / 2]
+        within += [] if slab.x < within[-1] else [(slab.x + high) / 2]
+        within.sort()
     nodes = {x: _heights(region, x) for x in within}
     for _ in range(_PASSES):
         nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)
@@ -258,7 +252,29 @@ def _branches(
         if len(piece) > 1:
             found.append((piece, equation, stable[place] or stable[place + 1]))
     curves = [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
-    return [curve for curve in curves if len(curve.points) > 1]
+    parts = [curve if curve.boundary else _without_ends(region, curve, window) for curve in curves]
+    return [curve for curve in parts if len(curve.points) > 1]
+
+
+def _without_ends(region: PlaneRegion, curve: Curve, window: tuple[Interval, Interval]) -> Curve:
+    """Return a dividing curve without the ends at which the region is too near."""
+    points = curve.points
+    for _ in range(2):
+        while len(points) > 2 and _is_near_region(region, points[:3], window):
+            points = points[1:]
+        points = points[::-1]
+    return replace(curve, points=points)
+
+
+def _is_near_region(region: PlaneRegion, points: Sequence[Place], window: tuple[Interval, Interval]) -> bool:
+    """Return whether the region reaches to a thick line at the second of three points."""
+    (x0, y0), (x, y), (x1, y1) = points
+    width, height = (high - low for low, high in window)
+    across = (y0 - y1) / height, (x1 - x0) / width
+    size = _THICK / (max(map(abs, across)) or 1)
+    dx, dy = across[0] * size * width, across[1] * size * height
+    places = ({region.names[0]: x + k * dx, region.names[1]: y + k * dy} for k in (1, -1))
+    return any(region.critical.allows(place) and region.critical.is_stable(place) for place in places)
 
 
 def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[Curve]:
