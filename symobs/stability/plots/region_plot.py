@@ -37,6 +37,8 @@ _GRID = 1 << 20
 _FAR = 8
 #: A dividing curve ends where the region is nearer than this part of the window: there it could not be told from a boundary.
 _THICK = Fraction(1, 10_000)
+#: Where along a dividing curve this is asked for: at so many points, on a segment at these parts of it.
+_ASKED, _ON_SEGMENT = 8, (Fraction(0), Fraction(2, 7), Fraction(5, 9), Fraction(3, 4), Fraction(1))
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
@@ -48,7 +50,7 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
         if len(found) < 2:
             continue
         allowed = [cell for cell in region.cells if cell.slab == number and cell.allowed]
-        seen += [cell for cell in allowed if min(found) < cell.sample[0] < max(found) and _inside(cell.sample, window)]
+        seen += [cell for cell in allowed if _inside(cell.sample, window) and _holds_sample(cell, found, window)]
         nodes, rows = list(found), list(found.values())
         areas += [a for cell in allowed if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
@@ -144,6 +146,16 @@ def _middle(number: RealNumber) -> Fraction:
 
 def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
     return all(low <= value <= high for value, (low, high) in zip(place, window, strict=True))
+
+
+def _holds_sample(cell: Cell, nodes: dict[Fraction, list[Fraction]], window: tuple[Interval, Interval]) -> bool:
+    """Return whether the sample of a cell lies between the rounded chords that stand for its branches."""
+    (x, y), (dx, dy) = cell.sample, ((high - low) / _GRID for low, high in window)
+    if not min(nodes) + dx < x < max(nodes) - dx:
+        return False
+    (a, before), (b, after) = next((left, right) for left, right in pairwise(nodes.items()) if left[0] <= x <= right[0])
+    heights = [low + (x - a) / (b - a) * (high - low) for low, high in zip(before, after, strict=True)]
+    return all(h + dy < y for h in heights[: cell.height]) and all(y < h - dy for h in heights[cell.height :])
 
 
 # -- branches ---------------------------------------------------------------------------------------------------------
@@ -252,18 +264,23 @@ def _branches(
         if len(piece) > 1:
             found.append((piece, equation, stable[place] or stable[place + 1]))
     curves = [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
-    parts = [curve if curve.boundary else _without_ends(region, curve, window) for curve in curves]
-    return [curve for curve in parts if len(curve.points) > 1]
+    return [seen for curve in curves if (seen := _seen_apart(region, curve, window))]
 
 
-def _without_ends(region: PlaneRegion, curve: Curve, window: tuple[Interval, Interval]) -> Curve:
-    """Return a dividing curve without the ends at which the region is too near."""
+def _seen_apart(region: PlaneRegion, curve: Curve, window: tuple[Interval, Interval]) -> Curve | None:
+    """Return a curve, a dividing one without ends too near to the region, and not if it runs along a boundary."""
     points = curve.points
+    if curve.boundary or len(points) < 2:
+        return curve if len(points) > 1 else None
     for _ in range(2):
         while len(points) > 2 and _is_near_region(region, points[:3], window):
             points = points[1:]
         points = points[::-1]
-    return replace(curve, points=points)
+    (x0, y0), (x1, y1) = points[0], points[-1]
+    along = points if len(points) > 2 else [(x0 + (x1 - x0) * t, y0 + (y1 - y0) * t) for t in _ON_SEGMENT]
+    asked = range(1, len(along) - 1, max(1, len(along) // _ASKED))
+    is_near = any(_is_near_region(region, along[k - 1 : k + 2], window) for k in asked)
+    return None if is_near else replace(curve, points=points)
 
 
 def _is_near_region(region: PlaneRegion, points: Sequence[Place], window: tuple[Interval, Interval]) -> bool:
@@ -273,7 +290,8 @@ def _is_near_region(region: PlaneRegion, points: Sequence[Place], window: tuple[
     across = (y0 - y1) / height, (x1 - x0) / width
     size = _THICK / (max(map(abs, across)) or 1)
     dx, dy = across[0] * size * width, across[1] * size * height
-    places = ({region.names[0]: x + k * dx, region.names[1]: y + k * dy} for k in (1, -1))
+    beside = (place for k in (1, -1) if _inside(place := (x + k * dx, y + k * dy), window))
+    places = (dict(zip(region.names, place, strict=True)) for place in beside)
     return any(region.critical.allows(place) and region.critical.is_stable(place) for place in places)
 
 
@@ -293,7 +311,7 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
                 points = ({region.names[0]: place, region.names[1]: (low + high) / 2} for place in beside)
                 stable = any(region.critical.allows(p) and region.critical.is_stable(p) for p in points)
                 found.append(Curve(_rounded([(x, low), (x, high)], window), equation, stable))
-    return found
+    return [seen for curve in found if (seen := _seen_apart(region, curve, window))]
 
 
 def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:

@@ -74,6 +74,8 @@ def test_holes_are_where_they_are() -> None:
         "s + h1 h2 (h1 - h2) (h1 + h2)",
         "(s + h2) (s + 1 - h1^2 h2) (s + 1 - h1^2)",  # curves that end in a corner of the region
         "s + h1^2 - 2*10^24",
+        "(s + h1) (s + 2 h1) (s + 1/1000 - h1^2 + 3 h1) (s + 1 - h2)",  # curves that run along a boundary
+        "(s + h2^2 - 3 h1) (s + h2^2 - 2 h1 h2 + 2) (s + 1000 + h2 + 3 h2^2)",  # a sample too near to its wall
     ],
 )
 def test_the_picture_of_a_region_with_narrow_corners_is_on_its_page(text: str) -> None:
