@@ -150,11 +150,12 @@ def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
 
 def _holds_sample(cell: Cell, nodes: dict[Fraction, list[Fraction]], window: tuple[Interval, Interval]) -> bool:
     """Return whether the sample of a cell lies between the rounded chords that stand for its branches."""
-    (x, y), (dx, dy) = cell.sample, ((high - low) / _GRID for low, high in window)
-    if not min(nodes) + dx < x < max(nodes) - dx:
+    (x, y), (dx, dy) = cell.sample, (cell.stable * (high - low) / (2 * _GRID) for low, high in window)
+    if not min(nodes) + dx <= x <= max(nodes) - dx:
         return False
     (a, before), (b, after) = next((left, right) for left, right in pairwise(nodes.items()) if left[0] <= x <= right[0])
-    heights = [low + (x - a) / (b - a) * (high - low) for low, high in zip(before, after, strict=True)]
+    ends = ((_clipped(low, window[1]), _clipped(high, window[1])) for low, high in zip(before, after, strict=True))
+    heights = [low + (x - a) / (b - a) * (high - low) for low, high in ends]
     return all(h + dy < y for h in heights[: cell.height]) and all(y < h - dy for h in heights[cell.height :])
 
 
