@@ -238,6 +238,8 @@ def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
         return depends_on_time(name, by) if by else found is not None and found.kind != "sqrt"
 
     meanings, _ = identities([value])
+    if not any(name.startswith(("cos(", "sin(")) for name in value.denominator.names):
+        meanings = {name: meaning for name, meaning in meanings.items() if not name.startswith(("cos(", "sin("))}
     value = value.substitute({name: meaning for name, meaning in meanings.items() if counts(name)})
     below, lowered = value.denominator, ZERO
     for name in value.denominator.names:
