@@ -211,7 +211,7 @@ class _Arranging:
         names = [TextLabel(_given(self.shown(node)), self.at(node)) for node in ends]
         over = [self.label(wire, label, begins) for wire, (label, begins) in self.over.items()]
         return Scene(
-            frame=None,
+            frame=Rectangle(0.0, 0.0, *self.ends),
             whole=Rectangle(0.0, 0.0, *self.ends),
             strokes=tuple(
                 Stroke(self.corners(wire), "arrow" if self.is_drawn(wire.end) else "wire") for wire in self.figure.wires
@@ -219,6 +219,7 @@ class _Arranging:
             boxes=tuple(Box(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
             signs=(*junctions, *branches, *self.signs()),
             texts=(*names, *over),
+            is_diagram=True,
         )
 
     def is_drawn(self, node: str) -> bool:

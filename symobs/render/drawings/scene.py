@@ -132,9 +132,9 @@ ARROW = 5.0
 
 @dataclass(frozen=True)
 class Scene:
-    """A plot or, without a frame, a block diagram; `numbered` are the equations of curves labelled by numbers."""
+    """A plot in its frame, or a block diagram; `numbered` are the equations of curves labelled by numbers."""
 
-    frame: Rectangle | None
+    frame: Rectangle
     whole: Rectangle
     shades: tuple[tuple[Point, ...], ...] = ()
     strokes: tuple[Stroke, ...] = ()
@@ -142,6 +142,7 @@ class Scene:
     signs: tuple[Sign, ...] = ()
     texts: tuple[TextLabel, ...] = ()
     numbered: tuple[Formula | Relation, ...] = ()
+    is_diagram: bool = False
 
 
 def coordinate(value: float) -> str:

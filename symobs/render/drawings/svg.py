@@ -55,8 +55,8 @@ def svg_scene(item: Drawing | Picture, printer: TextPrinter) -> Scene:
 def svg(scene: Scene, printer: TextPrinter, title: str = "") -> str:
     """Return a scene as an `svg` element of a page; `title` is its text alternative."""
     writer = _Writer(scene, printer)
-    whole = scene.whole if scene.frame else scene.whole.grown(_MARGIN * _EM)
-    return writer.element(whole, writer.drawn(), title, _STYLE if scene.frame else "")
+    whole = scene.whole.grown(_MARGIN * _EM) if scene.is_diagram else scene.whole
+    return writer.element(whole, writer.drawn(), title, "" if scene.is_diagram else _STYLE)
 
 
 def svg_file(picture: Picture, printer: TextPrinter) -> str:
@@ -122,7 +122,7 @@ class _Writer:
 
     def __init__(self, scene: Scene, printer: TextPrinter) -> None:
         self.scene, self.letters = scene, Letters.of(printer, flat=True)
-        self.down, self.size = (-1, FONT_SIZE) if scene.frame else (1, _EM)
+        self.down, self.size = (1, _EM) if scene.is_diagram else (-1, FONT_SIZE)
 
     def element(self, whole: Rectangle, parts: Iterable[str], title: str, style: str) -> str:
         """Return the whole element."""
@@ -130,7 +130,7 @@ class _Writer:
         top = min(self.down * whole.top, self.down * whole.bottom)
         box = " ".join(map(coordinate, (whole.left, top, width, height)))
         head = (
-            f'<svg xmlns="http://www.w3.org/2000/svg" class="symobs-{"picture" if self.scene.frame else "diagram"}" '
+            f'<svg xmlns="http://www.w3.org/2000/svg" class="symobs-{"diagram" if self.scene.is_diagram else "picture"}" '
             f'role="img" viewBox="{box}" width="{coordinate(_PIXELS * width)}" '
             f'height="{coordinate(_PIXELS * height)}" font-family="{FONTS}" font-size="{self.size:g}" fill="none" '
             'stroke-linejoin="round">'
@@ -162,7 +162,7 @@ class _Writer:
         attributes += ['stroke-opacity=".35"'] if style.colour == "pale" else []
         yield f'<path {" ".join(attributes)} d="{"".join(self.path(stroke.points) for stroke in strokes)}"/>'
         if style.has_head:
-            long = {"long": _HEAD * _EM} if not self.scene.frame else {}
+            long = {"long": _HEAD * _EM} if self.scene.is_diagram else {}
             heads = "".join(f"{self.path(head_of(stroke, **long))}Z" for stroke in strokes)
             yield f'<path fill="currentColor" d="{heads}"/>'
 
@@ -213,7 +213,7 @@ class _Writer:
         """Yield a label at its anchor."""
         across, down = _OFFSETS.get(text.anchor, (0.0, 0.0))
         place = text.place[0] + across * self.size, text.place[1] + self.down * down * self.size
-        rows = rows_of(text.content, self.letters, stacked=not self.scene.frame)
+        rows = rows_of(text.content, self.letters, stacked=self.scene.is_diagram)
         yield from self.rows(rows, place, _ANCHORS.get(text.anchor, "middle"))
 
     def rows(self, rows: Sequence[Row], centre: Point, anchor: str = "middle") -> Iterator[str]:

@@ -89,7 +89,7 @@ def rows_of(content: Content, printer: TextPrinter, *, stacked: bool = False) ->
         return [Row(_run(relation, printer)) for relation in content.relations]
     if not stacked:
         return [Row(TextRun(text_of(content, printer), is_math=True))]
-    negative, body = without_sign(content)  # type: ignore[call-overload]
+    negative, body = without_sign(content)  # type: ignore[arg-type]
     if isinstance(body, Literal) and isinstance(body.value, Scalar):
         is_written_negative, body = without_sign(formula_of(body.value, printer.variable))
         negative = negative != is_written_negative

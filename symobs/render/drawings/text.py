@@ -221,7 +221,7 @@ def _diagram(drawing: Drawing, printer: TextPrinter, width: int) -> str:
 def _lines(label: Content, printer: TextPrinter) -> list[str]:
     if isinstance(label, Conjunction):
         return [printer.inline(relation) for relation in label.relations]
-    return [printer.inline(label)]  # type: ignore[arg-type] - a diagram has no plain text
+    return [printer.inline(label)]  # type: ignore[arg-type]  # a diagram has no plain text
 
 
 def cells_of(printer: TextPrinter, gap: int) -> Metrics:

@@ -47,13 +47,13 @@ def tikz_scene(item: Drawing | Picture, printer: LatexPrinter) -> Scene:
 def tikz(scene: Scene, printer: LatexPrinter) -> str:
     """Return a scene as a `tikzpicture`; requires tikz, for diagrams with its library arrows.meta."""
     lines = [
-        rf"\begin{{tikzpicture}}[{_PLOT if scene.frame else _DIAGRAM}]",
-        *([r"\providecolor{ink}{RGB}{30,60,110}"] if scene.frame else []),
+        rf"\begin{{tikzpicture}}[{_DIAGRAM if scene.is_diagram else _PLOT}]",
+        *([r"\providecolor{ink}{RGB}{30,60,110}"] if not scene.is_diagram else []),
         *_shades(scene.shades),
         *map(_stroke, scene.strokes),
         *(line for box in scene.boxes for line in _box(box, printer)),
         *(_sign(sign) for sign in scene.signs if sign.kind not in {"+", "-"}),
-        *(_text(text, printer, is_plot=scene.frame is not None) for text in scene.texts),
+        *(_text(text, printer, is_plot=not scene.is_diagram) for text in scene.texts),
         *(_sign(sign) for sign in scene.signs if sign.kind in {"+", "-"}),
         r"\end{tikzpicture}",
     ]
@@ -89,7 +89,7 @@ def measure_for(printer: LatexPrinter) -> Measure:
     def measure(content: Content) -> Point:
         if isinstance(content, str):
             return 0.5 * FONT_SIZE * len(content), _LINE_HEIGHT
-        box = printer.running_box(content)  # type: ignore[arg-type] - a plot has no systems of equations
+        box = printer.running_box(content)  # type: ignore[arg-type]  # a plot has no systems of equations
         return box.width * FONT_SIZE, _FRACTION_HEIGHT if box.height else _LINE_HEIGHT
 
     return measure
