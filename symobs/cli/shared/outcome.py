@@ -60,7 +60,7 @@ def check_targets(target: str | None, plot: str | None, bibliography: str | None
     check_target(target)
     check_target(bibliography)
     if plot is not None:
-        from symobs.render.plots.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
+        from symobs.render.drawings.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
 
         check_picture(plot)
         check_target(plot)
@@ -112,7 +112,7 @@ def solved(
 
         outputs.append((bibliography_of(document_of(results)), bibliography))
     if plot is not None:
-        from symobs.render.plots.plot_file import picture_file  # noqa: PLC0415
+        from symobs.render.drawings.plot_file import picture_file  # noqa: PLC0415
 
         report_progress("the picture")
         try:

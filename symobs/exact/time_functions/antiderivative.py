@@ -13,7 +13,8 @@ from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.polynomial import from_coefficients
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.linear_algebra.elimination import kernel
-from symobs.exact.time_functions.trigonometric_sums import antiderivative_of_waves, depends_on_time
+from symobs.exact.time_functions.quasipolynomial import depends_on_time
+from symobs.exact.time_functions.trigonometric_sums import antiderivative_of_waves
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,12 +13,13 @@ from symobs._dataclass import dataclass
 from symobs.exact.core.generators import (
     ONE,
     ZERO,
-    derivative,
     function,
     function_named,
+    identities,
     leads_with_minus,
     normal_form,
     roots_in,
+    symbols_in,
     with_roots,
 )
 from symobs.exact.core.matrix import Matrix
@@ -205,81 +206,65 @@ def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
 
 def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
     """Return the quasipolynomial of a scalar; raises ValueError if it is none, such as exp(t²) or 1/t."""
-    below = Quasipolynomial.constant(ONE)
-    for name, power in _monomial_below(value, time):
-        below = below * _power(_inverse(name, time), power)
-    rest = _polynomial(value.numerator, time) * below
-    constant = value.denominator
-    for name, power in _monomial_below(value, time):
-        constant = constant / Scalar.symbol(name) ** power
-    return rest.scaled(1 / constant)
-
-
-def _monomial_below(value: Scalar, time: str) -> list[tuple[str, int]]:
-    """Return the exponentials of the denominator; raises ValueError if it has other functions of time."""
-    moving = [name for name in value.denominator.names if _moves(name, time)]
-    found = [(name, min(dict(powers).get(name, 0) for _, powers in value.denominator.terms())) for name in moving]
-    rest = value.denominator
-    for name, power in found:
-        rest = rest / Scalar.symbol(name) ** power
-    if any(_moves(name, time) for name in rest.names):
+    waves, found = waves_of(value, time), list[tuple[Key, Scalar]]()
+    for key, c in waves.terms.items() if waves else ():
+        rate, frequency = (part / Scalar.symbol(time) for part in (key.rate, key.frequency))
+        if time in symbols_in(rate) | symbols_in(frequency) | symbols_in(c.denominator):
+            waves = None
+            break
+        for power, coefficient in enumerate(reversed(c.coefficients(time))):
+            found += _key(power, rate, key.wave, frequency, coefficient)
+    if waves is None:
         message = f"{value} is not a sum of exponentials, sines and cosines times powers of {time}"
         raise ValueError(message)
-    return found
+    return Quasipolynomial.of(found)
 
 
-def _moves(name: str, time: str) -> bool:
+def depends_on_time(name: str, by: str) -> bool:
+    """Return whether a generator is a function of the generator `by`."""
     found = function_named(name)
-    return name == time or (found is not None and not derivative(found.argument, time).is_zero)
+    return found is not None and found.kind != "sqrt" and by in found.symbols
 
 
-def _inverse(name: str, time: str) -> Quasipolynomial:
-    found = function_named(name)
-    if found is None or found.kind != "exp":
-        message = f"1/{name} is not a sum of exponentials, sines and cosines times powers of {time}"
-        raise ValueError(message)
-    return quasi_of(function("exp", -found.argument), time)
+def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
+    """Return a value as a sum of functions of the generator `by`, of all generators where none is named.
 
+    Rates and frequencies are the exponents and arguments themselves, and powers are 0.  None where a denominator, or
+    something that is no exponential, cosine or sine, stands in the way.
+    """
 
-def _polynomial(value: Scalar, time: str) -> Quasipolynomial:
-    total = Quasipolynomial.constant(ZERO)
-    for coefficient, powers in value.terms():
-        term = Quasipolynomial.constant(Scalar.of(coefficient))
+    def counts(name: str) -> bool:
+        found = function_named(name)
+        return depends_on_time(name, by) if by else found is not None and found.kind != "sqrt"
+
+    meanings, _ = identities([value])
+    if not any(name.startswith(("cos(", "sin(")) for name in value.denominator.names):
+        meanings = {name: meaning for name, meaning in meanings.items() if not name.startswith(("cos(", "sin("))}
+    value = value.substitute({name: meaning for name, meaning in meanings.items() if counts(name)})
+    below, lowered = value.denominator, ZERO
+    for name in value.denominator.names:
+        if counts(name):
+            found, power = function_named(name), below.degree(name)
+            below = below / Scalar.symbol(name) ** power
+            if found is None or found.kind != "exp" or name in below.names:
+                return None
+            lowered = lowered - found.argument * power
+    total: list[tuple[Key, Scalar]] = []
+    for coefficient, powers in value.numerator.terms():
+        constant, exponent, waves = Scalar.of(coefficient) / below, lowered, Quasipolynomial.constant(ONE)
         for name, power in powers:
-            term = term * _power(_generator(name, time), power)
-        total = total + term
-    return total
-
-
-def _power(base: Quasipolynomial, exponent: int) -> Quasipolynomial:
-    value = Quasipolynomial.constant(ONE)
-    for _ in range(exponent):
-        value = value * base
-    return value
-
-
-def _generator(name: str, time: str) -> Quasipolynomial:
-    if name == time:
-        return Quasipolynomial({Key(1, ZERO, "", ZERO): ONE})
-    if not _moves(name, time):
-        return Quasipolynomial.constant(Scalar.symbol(name))
-    found = function_named(name)
-    assert found is not None  # noqa: S101 - only functions move
-    speed = derivative(found.argument, time)
-    if found.kind == "RootSum" or speed * Scalar.symbol(time) != found.argument or _depends(speed, time):
-        message = f"{name} is not a function of a multiple of {time}"
-        raise ValueError(message)
-    if found.kind == "exp":
-        return Quasipolynomial({Key(0, speed, "", ZERO): ONE})
-    if found.kind in {"cos", "sin"}:
-        return Quasipolynomial({Key(0, ZERO, found.kind, speed): ONE})
-    sign = 1 if found.kind == "cosh" else -1
-    half = Scalar.of(_HALF)
-    return Quasipolynomial.of([(Key(0, speed, "", ZERO), half), (Key(0, -speed, "", ZERO), half * sign)])
-
-
-def _depends(value: Scalar, time: str) -> bool:
-    return any(_moves(name, time) for name in value.names)
+            found = function_named(name)
+            if found is None or not counts(name):
+                constant = constant * Scalar.symbol(name) ** power
+            elif found.kind == "exp":
+                exponent = exponent + found.argument * power
+            elif found.kind in {"cos", "sin"}:
+                for _ in range(power):
+                    waves = waves * Quasipolynomial({Key(0, ZERO, found.kind, found.argument): ONE})
+            else:
+                return None
+        total += [(key._replace(rate=exponent), c * constant) for key, c in waves.terms.items()]
+    return Quasipolynomial.of(total)
 
 
 # -- tables ----------------------------------------------------------------------------------------------------------

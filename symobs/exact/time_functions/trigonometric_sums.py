@@ -1,61 +1,14 @@
 """Sums of c e^p cos q and c e^p sin q, with rational c and polynomials p and q of one generator: form and antiderivatives.
 
-A sum is held as a `Quasipolynomial` whose rates and frequencies are the exponents p and the arguments q themselves, and whose
-powers are 0.  An antiderivative of c e^p, if there is an elementary one, is r e^p with r' + p' r = c (Liouville), and
-where c is a polynomial so is r: its coefficients follow from the highest down.
+A sum is held as `waves_of` gives it.  An antiderivative of c e^p, if there is an elementary one, is r e^p with
+r' + p' r = c (Liouville), and where c is a polynomial so is r: its coefficients follow from the highest down.
 """
 
 from __future__ import annotations
 
-from symobs.exact.core.generators import ONE, ZERO, derivative, function, function_named, identities, symbols_in
+from symobs.exact.core.generators import ZERO, derivative, function, function_named, symbols_in
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial
-
-_WAVES = {"cos", "sin"}
-
-
-def depends_on_time(name: str, by: str) -> bool:
-    """Return whether a generator is a function of the generator `by`."""
-    found = function_named(name)
-    return found is not None and found.kind != "sqrt" and by in found.symbols
-
-
-def to_quasipolynomial(value: Scalar, by: str = "") -> Quasipolynomial | None:
-    """Return a value as a sum of functions of the generator `by`, of all generators where none is named.
-
-    None where a denominator, or something that is no exponential, cosine or sine, stands in the way.
-    """
-
-    def counts(name: str) -> bool:
-        found = function_named(name)
-        return depends_on_time(name, by) if by else found is not None and found.kind != "sqrt"
-
-    meanings, _ = identities([value])
-    value = value.substitute(meanings)
-    below, lowered = value.denominator, ZERO
-    for name in value.denominator.names:
-        if counts(name):
-            found, power = function_named(name), below.degree(name)
-            below = below / Scalar.symbol(name) ** power
-            if found is None or found.kind != "exp" or name in below.names:
-                return None
-            lowered = lowered - found.argument * power
-    total: list[tuple[Key, Scalar]] = []
-    for coefficient, powers in value.numerator.terms():
-        constant, exponent, waves = Scalar.of(coefficient) / below, lowered, Quasipolynomial.constant(ONE)
-        for name, power in powers:
-            found = function_named(name)
-            if found is None or not counts(name):
-                constant = constant * Scalar.symbol(name) ** power
-            elif found.kind == "exp":
-                exponent = exponent + found.argument * power
-            elif found.kind in _WAVES:
-                for _ in range(power):
-                    waves = waves * Quasipolynomial({Key(0, ZERO, found.kind, found.argument): ONE})
-            else:
-                return None
-        total += [(key._replace(rate=exponent), c * constant) for key, c in waves.terms.items()]
-    return Quasipolynomial.of(total)
+from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, waves_of
 
 
 def value_of(waves: Quasipolynomial) -> Scalar:
@@ -71,7 +24,7 @@ def collected(value: Scalar) -> Scalar:
     """Return a value with one exponential and at most one cosine or sine in each term, if possible."""
     if not any(function_named(name) for name in value.names):
         return value
-    waves = to_quasipolynomial(value)
+    waves = waves_of(value)
     return value if waves is None else value_of(waves)
 
 
@@ -80,7 +33,7 @@ def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] |
 
     None where a term has no elementary antiderivative, or is not treated here: exponents and coefficients are polynomials.
     """
-    waves = to_quasipolynomial(value, name)
+    waves = waves_of(value, name)
     if waves is None:
         return None
     groups: dict[tuple[Scalar, Scalar], dict[str, Scalar]] = {}

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
-from symobs.render.diagrams.writers import svg
 from symobs.render.page.blocks import (
     CaseBlock,
     Caution,
@@ -180,13 +179,11 @@ class HtmlWriter:
             case References(label, entries):
                 listed = "\n".join(f"<li>{plain(entry)}</li>" for entry in entries)
                 return f'<section class="references">\n<h2>{plain(label)}</h2>\n<ol>\n{listed}\n</ol>\n</section>'
-            case Drawing():
-                return f"<figure>\n{svg(block, self._text_printer())}\n</figure>"
             case TableBlock():
                 table, told = html_table(block, self.printer, self.sentence)
                 below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(told)}" if told else ""
                 return f'<div class="table">{table}</div>{below}'
-            case PictureBlock():
+            case Drawing() | PictureBlock():
                 return self._picture(block)
             case CaseBlock(label, blocks):
                 prefix = None if self.prefix is None else f"{self.prefix}case-"
@@ -233,24 +230,16 @@ class HtmlWriter:
     def _display(self, mathematics: str) -> str:
         return f'<div class="display">{mathematics}</div>'
 
-    def _picture(self, block: PictureBlock) -> str:
-        from symobs.render.plots.numbered_caption import below  # noqa: PLC0415 - only pages with pictures
-        from symobs.render.plots.svg import svg as plotted  # noqa: PLC0415
-        from symobs.render.plots.svg import svg_scene  # noqa: PLC0415
+    def _picture(self, block: Drawing | PictureBlock) -> str:
+        from symobs.render.drawings.captions import below  # noqa: PLC0415 - only pages with pictures
+        from symobs.render.drawings.svg import svg, svg_scene  # noqa: PLC0415
 
-        printer = self._text_printer()
+        printer = TextPrinter.of(self.printer)
+        if isinstance(block, Drawing):
+            return f"<figure>\n{svg(svg_scene(block, printer), printer, PHRASES['block_diagram'])}\n</figure>"
         scene = svg_scene(block.picture, printer)
         words = below(block.caption, scene)
         spoken = "".join(
             part if isinstance(part, str) else printer.inline(part) for part in words if not isinstance(part, Roots)
         )
-        return (
-            f"<figure>\n{plotted(scene, printer, spoken)}\n<figcaption>{self.sentence(words)}</figcaption>\n</figure>"
-        )
-
-    def _text_printer(self) -> TextPrinter:
-        """Return the printer of text inside plots."""
-        own = self.printer
-        printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete)
-        printer.letters = own.letters
-        return printer
+        return f"<figure>\n{svg(scene, printer, spoken)}\n<figcaption>{self.sentence(words)}</figcaption>\n</figure>"

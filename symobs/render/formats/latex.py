@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
-from symobs.render.diagrams.writers import tikz
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import (
     CaseBlock,
@@ -151,18 +150,12 @@ class LatexWriter:
             case References(label, entries):
                 listed = "\n".join(rf"\item {escape(entry)}" for entry in entries)
                 return f"\\begin{{references}}{{{escape(label)}}}\n{listed}\n\\end{{references}}"
-            case Drawing():
-                return tikz(block, self.printer)
             case TableBlock():
                 from symobs.render.tables.text_and_latex import latex_table  # noqa: PLC0415 - only pages with tables
 
                 return latex_table(block, self.printer, self.sentence)
-            case PictureBlock(picture, caption):
-                from symobs.render.plots.numbered_caption import below  # noqa: PLC0415 - only pages with pictures
-                from symobs.render.plots.tikz import figure, latex_scene  # noqa: PLC0415
-
-                scene = latex_scene(picture, self.printer)
-                return figure(scene, self.sentence(below(caption, scene)), self.printer)
+            case Drawing() | PictureBlock():
+                return self._picture(block)
             case CaseBlock(label, blocks):
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
                 body = LatexWriter(self.printer, inset=_INSET).body(blocks)
@@ -171,6 +164,15 @@ class LatexWriter:
                 return self._columns(block)
             case Title(text):
                 return escape(text)
+
+    def _picture(self, block: Drawing | PictureBlock) -> str:
+        from symobs.render.drawings.captions import below  # noqa: PLC0415 - only pages with pictures
+        from symobs.render.drawings.tikz import figure, tikz_scene  # noqa: PLC0415
+
+        if isinstance(block, Drawing):
+            return figure(tikz_scene(block, self.printer), self.printer)
+        scene = tikz_scene(block.picture, self.printer)
+        return figure(scene, self.printer, self.sentence(below(block.caption, scene)))
 
     def _columns(self, block: Columns) -> str:
         """Return rows of boxes with a continuous rule between the columns; a page may break between rows."""

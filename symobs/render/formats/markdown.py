@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
-from symobs.render.diagrams.writers import sketch
 from symobs.render.formats.text import printable
 from symobs.render.page.blocks import (
     CaseBlock,
@@ -43,6 +42,7 @@ from symobs.result import output_format
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symobs.figures.plot import Picture
     from symobs.formula import Relation
     from symobs.render.page.blocks import Block, Inline, Inlines
     from symobs.render.page.sheet import Sheet
@@ -155,16 +155,14 @@ class MarkdownWriter:
                 listed = (f"- \\[{number}\\] {plain(entry)}" for number, entry in enumerate(entries, 1))
                 return "\n".join([f"**{plain(label)}**", "", *listed])
             case Drawing():
-                return fenced(sketch(block, self._text_printer(), _SKETCH))
+                return self._sketch(block)
             case TableBlock():
                 table, told = markdown_table(block, self.printer, self.sentence, self.mathematics)
                 return "\n\n".join([table, self.sentence(block.where), self.display(told)]) if told else table
             case PictureBlock(picture):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
-                from symobs.render.plots.text import character_plot  # noqa: PLC0415 - only pages with pictures
 
-                plot = character_plot(picture, self._text_printer(), _SKETCH)
-                return f"{fenced(plot)}\n\n{self.sentence(caption(picture, sketched=True))}"
+                return f"{self._sketch(picture)}\n\n{self.sentence(caption(picture, sketched=True))}"
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")
@@ -206,12 +204,10 @@ class MarkdownWriter:
         """Return mathematics for a line of text."""
         return f"${portable(latex).strip()}$"
 
-    def _text_printer(self) -> TextPrinter:
-        """Return the printer of text in character drawings."""
-        own = self.printer
-        printer = TextPrinter(own.variable, own.symbols, discrete=own.discrete, width=_SKETCH)
-        printer.letters = own.letters
-        return printer
+    def _sketch(self, item: Drawing | Picture) -> str:
+        from symobs.render.drawings.text import sketch  # noqa: PLC0415 - only pages with pictures
+
+        return fenced(sketch(item, TextPrinter.of(self.printer, width=_SKETCH), _SKETCH))
 
 
 def fenced(text: str) -> str:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
-from symobs.render.diagrams.writers import sketch
 from symobs.render.page.blocks import (
     CaseBlock,
     Caution,
@@ -27,7 +26,6 @@ from symobs.render.page.blocks import (
     opened,
 )
 from symobs.render.page.narrator import narrate, printer_for
-from symobs.render.plots.text import character_plot
 from symobs.render.printers.root_lists import TEXT, listed
 from symobs.render.printers.text_columns import RULE, beside
 from symobs.render.printers.text_printer import TextPrinter, text_width
@@ -36,6 +34,7 @@ from symobs.result import output_format
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from symobs.figures.plot import Picture
     from symobs.render.page.blocks import Block, Inline, Inlines
     from symobs.render.page.sheet import Sheet
     from symobs.result import Document
@@ -114,7 +113,7 @@ class TextWriter:
                 listed = (wrapped(printable(entry), width, first=f"[{n}] ") for n, entry in enumerate(entries, 1))
                 return "\n".join([underlined(label, "-", width), *listed])
             case Drawing():
-                return indented(sketch(block, self.printer, width - len(INDENT)))
+                return indented(self._sketch(block))
             case TableBlock():
                 from symobs.render.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
 
@@ -124,7 +123,7 @@ class TextWriter:
             case PictureBlock(picture):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                plot = character_plot(picture, self.printer, width - len(INDENT))
+                plot = self._sketch(picture)
                 words = wrapped(self.sentence(caption(picture, sketched=True)), width - len(INDENT))
                 return f"{indented(plot)}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
@@ -136,6 +135,11 @@ class TextWriter:
                 titles = [underlined(wrapped(self.sentence(head), narrow), "-", narrow) for head in heads]
                 cells = [titles, *([writer.body(cell) for cell in row] for row in rows)]
                 return f"\n{beside([''] * len(heads), narrow)}\n".join(beside(row, narrow) for row in cells)
+
+    def _sketch(self, item: Drawing | Picture) -> str:
+        from symobs.render.drawings.text import sketch  # noqa: PLC0415 - only pages with pictures
+
+        return sketch(item, self.printer, self.width - len(INDENT))
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text with its mathematics."""

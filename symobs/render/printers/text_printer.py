@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from copy import copy
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 from symobs._dataclass import dataclass
 from symobs.formula import Formula, Relation
@@ -57,6 +57,13 @@ class TextPrinter(Printer[TextBox]):
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
         self.flat = flat
+
+    @classmethod
+    def of(cls, other: Printer[Any], *, width: int = 96, flat: bool = False) -> Self:
+        """Return a printer with the letters of another one."""
+        printer = cls(other.variable, other.symbols, discrete=other.discrete, width=width, flat=flat)
+        printer.letters = other.letters
+        return printer
 
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics on one line."""

@@ -100,20 +100,6 @@ def _is_equivalent(first: Sequence[Scalar], second: Sequence[Scalar], signs: Map
     return found is not None and found.holds(signs)
 
 
-def stability_conditions(
-    polynomial: Scalar,
-    variable: str,
-    signs: Mapping[str, str],
-    *,
-    discrete: bool = False,
-    margin: Scalar | None = None,
-    radius: Scalar | None = None,
-) -> list[Scalar]:
-    """Return the polynomials positive if and only if all roots lie in Re s < −margin (|z| < radius)."""
-    lists = condition_lists(polynomial, variable, signs, discrete=discrete, margin=margin, radius=radius)
-    return min(lists, key=_terms)
-
-
 def condition_lists(
     polynomial: Scalar,
     variable: str,

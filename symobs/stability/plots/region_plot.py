@@ -35,24 +35,26 @@ _PASSES, _STRAIGHT = 2, Fraction(1, 100)
 _GRID = 1 << 20
 #: What lies farther out than this many times the usual distance does not widen the window.
 _FAR = 8
-#: What lies nearer than this part of the window cannot be seen apart.
-_UNSEEN = Fraction(1, 10**6)
+#: A dividing curve ends where the region is nearer than this part of the window: there it could not be told from a boundary.
+_THICK = Fraction(1, 10_000)
+#: Where along a dividing curve this is asked for: at so many points, on a segment at these parts of it.
+_ASKED, _ON_SEGMENT = 8, (Fraction(0), Fraction(2, 7), Fraction(5, 9), Fraction(3, 4), Fraction(1))
 
 
 def picture_of_plane(region: PlaneRegion) -> RegionPicture:
     """Return the plot of a region of two parameters."""
     window = _window(region)
-    areas, curves = [], []
+    areas, curves, seen = [], [], []
     for number, slab in enumerate(region.plane.slabs):
-        stable = [cell for cell in region.cells if cell.slab == number and cell.allowed]
         found = _nodes(region, slab, window)
         if len(found) < 2:
             continue
+        allowed = [cell for cell in region.cells if cell.slab == number and cell.allowed]
+        seen += [cell for cell in allowed if _inside(cell.sample, window) and _holds_sample(cell, found, window)]
         nodes, rows = list(found), list(found.values())
-        areas += [a for cell in stable if cell.stable and (a := _area(cell, nodes, rows, window))]
+        areas += [a for cell in allowed if cell.stable and (a := _area(cell, nodes, rows, window))]
         curves += _branches(region, slab, number, nodes, rows, window)
     curves += _verticals(region, window)
-    seen = [cell for cell in region.cells if cell.allowed and _is_seen(region, cell, window)]
     shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
     marks = [MarkedPoint(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
     marks += [MarkedPoint(hole.near, "excluded") for hole in region.holes]
@@ -146,14 +148,15 @@ def _inside(place: Place, window: tuple[Interval, Interval]) -> bool:
     return all(low <= value <= high for value, (low, high) in zip(place, window, strict=True))
 
 
-def _is_seen(region: PlaneRegion, cell: Cell, window: tuple[Interval, Interval]) -> bool:
-    """Whether the sample of a cell lies in the window and can be seen apart from the walls beside it."""
-    slab, x = region.plane.slabs[cell.slab], cell.sample[0]
-    near = (window[0][1] - window[0][0]) * _UNSEEN
-    apart = (slab.left is None or slab.left < RealNumber.of(x - near)) and (
-        slab.right is None or RealNumber.of(x + near) < slab.right
-    )
-    return apart and _inside(cell.sample, window)
+def _holds_sample(cell: Cell, nodes: dict[Fraction, list[Fraction]], window: tuple[Interval, Interval]) -> bool:
+    """Return whether the sample of a cell lies between the rounded chords that stand for its branches."""
+    (x, y), (dx, dy) = cell.sample, (cell.stable * (high - low) / (2 * _GRID) for low, high in window)
+    if not min(nodes) + dx <= x <= max(nodes) - dx:
+        return False
+    (a, before), (b, after) = next((left, right) for left, right in pairwise(nodes.items()) if left[0] <= x <= right[0])
+    ends = ((_clipped(low, window[1]), _clipped(high, window[1])) for low, high in zip(before, after, strict=True))
+    heights = [low + (x - a) / (b - a) * (high - low) for low, high in ends]
+    return all(h + dy < y for h in heights[: cell.height]) and all(y < h - dy for h in heights[cell.height :])
 
 
 # -- branches ---------------------------------------------------------------------------------------------------------
@@ -180,6 +183,10 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
     rounded = {round(x / grid) * grid for x in found}
     inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
     within = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
+    if within and left < slab.x < right:  # its samples stand there, in the area that is drawn
+        within += [] if within[0] < slab.x else [(low + slab.x) / 2]
+        within += [] if slab.x < within[-1] else [(slab.x + high) / 2]
+        within.sort()
     nodes = {x: _heights(region, x) for x in within}
     for _ in range(_PASSES):
         nodes = _finer(region, nodes, (top - bottom) * _STRAIGHT)
@@ -258,7 +265,35 @@ def _branches(
         if len(piece) > 1:
             found.append((piece, equation, stable[place] or stable[place + 1]))
     curves = [Curve(_rounded(piece, window), equation, boundary) for piece, equation, boundary in found]
-    return [curve for curve in curves if len(curve.points) > 1]
+    return [seen for curve in curves if (seen := _seen_apart(region, curve, window))]
+
+
+def _seen_apart(region: PlaneRegion, curve: Curve, window: tuple[Interval, Interval]) -> Curve | None:
+    """Return a curve, a dividing one without ends too near to the region, and not if it runs along a boundary."""
+    points = curve.points
+    if curve.boundary or len(points) < 2:
+        return curve if len(points) > 1 else None
+    for _ in range(2):
+        while len(points) > 2 and _is_near_region(region, points[:3], window):
+            points = points[1:]
+        points = points[::-1]
+    (x0, y0), (x1, y1) = points[0], points[-1]
+    along = points if len(points) > 2 else [(x0 + (x1 - x0) * t, y0 + (y1 - y0) * t) for t in _ON_SEGMENT]
+    asked = range(1, len(along) - 1, max(1, len(along) // _ASKED))
+    is_near = any(_is_near_region(region, along[k - 1 : k + 2], window) for k in asked)
+    return None if is_near else replace(curve, points=points)
+
+
+def _is_near_region(region: PlaneRegion, points: Sequence[Place], window: tuple[Interval, Interval]) -> bool:
+    """Return whether the region reaches to a thick line at the second of three points."""
+    (x0, y0), (x, y), (x1, y1) = points
+    width, height = (high - low for low, high in window)
+    across = (y0 - y1) / height, (x1 - x0) / width
+    size = _THICK / (max(map(abs, across)) or 1)
+    dx, dy = across[0] * size * width, across[1] * size * height
+    beside = (place for k in (1, -1) if _inside(place := (x + k * dx, y + k * dy), window))
+    places = (dict(zip(region.names, place, strict=True)) for place in beside)
+    return any(region.critical.allows(place) and region.critical.is_stable(place) for place in places)
 
 
 def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[Curve]:
@@ -277,7 +312,7 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
                 points = ({region.names[0]: place, region.names[1]: (low + high) / 2} for place in beside)
                 stable = any(region.critical.allows(p) and region.critical.is_stable(p) for p in points)
                 found.append(Curve(_rounded([(x, low), (x, high)], window), equation, stable))
-    return found
+    return [seen for curve in found if (seen := _seen_apart(region, curve, window))]
 
 
 def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:

@@ -17,11 +17,11 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.formula import Conjunction, Exact, Letter, Literal, Negative, evaluate
-from symobs.render.diagrams.diagram_layout import arranged
-from symobs.render.diagrams.svg import metrics_of
-from symobs.render.diagrams.text import cells_of
-from symobs.render.diagrams.tikz import metrics_for
-from symobs.render.diagrams.writers import sketch, svg, tikz
+from symobs.phrases import PHRASES
+from symobs.render.drawings.diagram_layout import diagram_scene
+from symobs.render.drawings.svg import metrics_of, svg, svg_scene
+from symobs.render.drawings.text import cells_of, sketch
+from symobs.render.drawings.tikz import metrics_for, tikz, tikz_scene
 from symobs.render.page.blocks import Drawing
 from symobs.render.page.narrator import narrate
 from symobs.render.printers.latex_printer import LatexPrinter
@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from symobs.derivation import Step
     from symobs.figures.block_diagram import Figure, Label
     from symobs.formula import Environment
-    from symobs.render.diagrams.diagram_layout import Arrangement, Metrics
+    from symobs.render.drawings.diagram_layout import Metrics
+    from symobs.render.drawings.scene import Scene
     from symobs.result import Result
 
 s = sympy.Symbol("s")
@@ -328,26 +329,27 @@ def test_nothing_runs_through_anything(page: Callable[[], Result]) -> None:
     for step, _ in diagrams(result):
         drawing = Drawing(step.name, step.labels)
         for metrics in (metrics_for(latex), metrics_of(text), cells_of(text, 4), cells_of(text, 2)):
-            assert list(collisions(arranged(drawing, metrics, 1000, discrete=discrete), metrics)) == []
+            assert list(collisions(diagram_scene(drawing, metrics, 1000, discrete=discrete), metrics)) == []
 
 
-def collisions(found: Arrangement, metrics: Metrics) -> Iterator[str]:
+def collisions(found: Scene, metrics: Metrics) -> Iterator[str]:
     boxes = [(box.centre[0], box.centre[1], *box.size) for box in found.boxes]
-    boxes += [(*place, metrics.junction, metrics.junction) for place in found.junctions]
+    boxes += [(*sign.place, metrics.junction, metrics.junction) for sign in found.signs if sign.kind == "junction"]
     for one, other in combinations(boxes, 2):
         if all(abs(one[k] - other[k]) < (one[k + 2] + other[k + 2]) / 2 for k in (0, 1)):
             yield f"{one} and {other} overlap"
-    stretches = [(index, *pair) for index, line in enumerate(found.lines) for pair in pairwise(line.points)]
+    stretches = [(index, *pair) for index, line in enumerate(found.strokes) for pair in pairwise(line.points)]
     for _, begin, end in stretches:
         (left, right), (top, bottom) = sorted((begin[0], end[0])), sorted((begin[1], end[1]))
         for x, y, width, height in boxes:
             is_beside = left > x + width / 2 - 0.01 or right < x - width / 2 + 0.01
             if not is_beside and top < y + height / 2 - 0.01 and bottom > y - height / 2 + 0.01:
                 yield f"a wire from {begin} to {end} through the box at {x, y}"
+    branches = {sign.place for sign in found.signs if sign.kind == "branch"}
     for (i, *first), (j, *second) in combinations(stretches, 2):
-        if i != j and (place := crossing(first, second)) and place not in found.branches:
+        if i != j and (place := crossing(first, second)) and place not in branches:
             yield f"wires cross at {place}"
-    for x, y in ((mark.place[0], mark.place[1]) for mark in found.marks if mark.side == "above"):
+    for x, y in (text.place for text in found.texts if text.anchor == "above"):
         if any(abs(x - bx) < width / 2 and abs(y - by) < height / 2 for bx, by, width, height in boxes):
             yield f"something is written over the box at {x, y}"
 
@@ -391,7 +393,7 @@ def test_svg_is_well_formed_and_asks_for_nothing(page: Callable[[], Result]) -> 
     for block in narrate(symobs_document(result)):
         if not isinstance(block, Drawing):
             continue
-        written = svg(block, printer)
+        written = svg(svg_scene(block, printer), printer, PHRASES["block_diagram"])
         root = ET.fromstring(written)  # noqa: S314 - our own text
         tags = {element.tag.rpartition("}")[2] for element in root.iter()}
         assert tags <= {"svg", "title", "path", "rect", "circle", "text", "tspan"}
@@ -433,7 +435,8 @@ def one() -> Literal:
 
 def test_tikz_draws_every_wire_and_box() -> None:
     step, _ = drawn(symobs.compensator(servo(), **POLES), "observer_compensator")
-    written = tikz(Drawing(step.name, step.labels), LatexPrinter())
+    printer = LatexPrinter()
+    written = tikz(tikz_scene(Drawing(step.name, step.labels), printer), printer)
     figure = figure_of(step.name)
     assert written.count(r"\draw[->]") == heads(step)
     assert written.count("rectangle") == sum(is_box(node) or is_integrator(node) for node in figure.place)

@@ -10,7 +10,7 @@ import pytest
 
 from symobs.analysis.rank.observability import Observability
 from symobs.errors import DerivationRejected
-from symobs.render.plots.plot_file import picture_file
+from symobs.render.drawings.plot_file import picture_file
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.tools.command_line import inside
 

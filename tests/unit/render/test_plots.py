@@ -19,19 +19,19 @@ from symobs.errors import UsageError
 from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter, Relation, Roots
 from symobs.phrases import PHRASES
+from symobs.render.drawings.captions import below, words_of
+from symobs.render.drawings.clipping import chained, clipped, clipped_area, thinned
+from symobs.render.drawings.matplotlib_writer import drawn_by_matplotlib
+from symobs.render.drawings.plot_layout import ticks
+from symobs.render.drawings.scene import Rectangle, Scene
+from symobs.render.drawings.svg import measure_for as measure_svg
+from symobs.render.drawings.svg import svg, svg_file, svg_scene
+from symobs.render.drawings.text import sketch
+from symobs.render.drawings.tikz import measure_for as measure_latex
+from symobs.render.drawings.tikz import tikz_file, tikz_scene
 from symobs.render.formats.latex import LatexArticle, LatexFragment
 from symobs.render.formats.text import WIDTH, Text
 from symobs.render.page.plot_captions import caption
-from symobs.render.plots.caption_rows import words_of
-from symobs.render.plots.matplotlib_writer import drawn_by_matplotlib
-from symobs.render.plots.numbered_caption import below
-from symobs.render.plots.plot_layout import ticks
-from symobs.render.plots.scene import Rectangle, Scene, chained, clipped, clipped_area, thinned
-from symobs.render.plots.svg import measure_for as measure_svg
-from symobs.render.plots.svg import svg, svg_file, svg_scene
-from symobs.render.plots.text import character_plot
-from symobs.render.plots.tikz import latex_scene, tikz_file
-from symobs.render.plots.tikz import measure_for as measure_latex
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
 from tests.support.problems.render_examples import document, say
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.figures.plot import Picture
-    from symobs.render.plots.scene import Measure
+    from symobs.render.drawings.scene import Measure
 
 FAULTS = re.compile(r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|Overfull .*|Missing character.*)", re.MULTILINE)
 SVG = "{http://www.w3.org/2000/svg}"
@@ -67,7 +67,7 @@ def printers(name: str) -> tuple[LatexPrinter, TextPrinter]:
 def scenes(name: str) -> list[tuple[Scene, Measure]]:
     latex, text = printers(name)
     picture = ALL[name][0]()
-    return [(latex_scene(picture, latex), measure_latex(latex)), (svg_scene(picture, text), measure_svg(text))]
+    return [(tikz_scene(picture, latex), measure_latex(latex)), (svg_scene(picture, text), measure_svg(text))]
 
 
 # -- scenes -----------------------------------------------------------------------------------------------------------
@@ -122,7 +122,7 @@ def test_many_curves_carry_numbers() -> None:
     )
     window = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))
     crowded = RegionPicture(("h1", "h2"), window, (tuple(corners),), curves)
-    scene = latex_scene(crowded, LatexPrinter())
+    scene = tikz_scene(crowded, LatexPrinter())
     assert len(scene.numbered) >= 5
     told = [part for part in below(caption(crowded), scene) if isinstance(part, str)]
     assert any(part.endswith(f"{PHRASES['picture_curves']} (1) ") for part in told)
@@ -131,7 +131,7 @@ def test_many_curves_carry_numbers() -> None:
 def test_a_scene_shows_the_window_only() -> None:
     picture = hand.hyperbola()
     window = ((Fraction(1), Fraction(2)), (Fraction(1), Fraction(2)))
-    scene = latex_scene(replace(picture, window=window, marks=()), LatexPrinter())
+    scene = tikz_scene(replace(picture, window=window, marks=()), LatexPrinter())
     frame = scene.frame.grown(0.01)
     assert all(frame.holds(Rectangle(x, y, x, y)) for area in scene.shades for x, y in area)
     curves = [stroke for stroke in scene.strokes if stroke.style == "boundary"]
@@ -140,9 +140,9 @@ def test_a_scene_shows_the_window_only() -> None:
 
 def test_long_windows_are_not_strips() -> None:
     window = ((Fraction(0), Fraction(1000)), (Fraction(0), Fraction(1)))
-    scene = latex_scene(replace(hand.hyperbola(), window=window, marks=()), LatexPrinter())
+    scene = tikz_scene(replace(hand.hyperbola(), window=window, marks=()), LatexPrinter())
     assert scene.frame.top > 100
-    poles = latex_scene(replace(hand.second_order(), window=(window[0], (Fraction(-1), Fraction(1)))), LatexPrinter())
+    poles = tikz_scene(replace(hand.second_order(), window=(window[0], (Fraction(-1), Fraction(1)))), LatexPrinter())
     assert poles.frame.top >= 100
 
 
@@ -338,7 +338,7 @@ def test_the_sketch_of_a_line() -> None:
     assert shown[0].strip() == "━━━━━━━━━━━○──────────○━━━━○━━━━━━━━━━━━━━━━○○━━━━━━━━━━━━━━━ k"
     assert [line.split() for line in shown[1:3]] == [["-2", "0", "1", "4"], ["13/3"]]
     window = Fraction(-1), Fraction(1)
-    whole = character_plot(LinePicture("k", window, ((None, None),)), TextPrinter(), 80).splitlines()
+    whole = sketch(LinePicture("k", window, ((None, None),)), TextPrinter(), 80).splitlines()
     assert whole[0] == "━" * 61 + " k"
     assert whole[1].split() == ["-1.0", "-0.5", "0", "0.5", "1.0"]
 

@@ -18,9 +18,9 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.time_functions.state_response import spectral_abscissae, state_response
 from symobs.figures.plot import TimeResponse
 from symobs.formula import Exact, Literal, evaluate
-from symobs.render.plots.svg import svg, svg_scene
-from symobs.render.plots.text import character_plot
-from symobs.render.plots.tikz import latex_scene, tikz
+from symobs.render.drawings.svg import svg, svg_scene
+from symobs.render.drawings.text import sketch
+from symobs.render.drawings.tikz import tikz, tikz_scene
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
 from symobs.system import StateSpace
@@ -270,8 +270,8 @@ def numbers(table: Matrix) -> list[list[Fraction]]:
 def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -> None:
     ((_, picture),) = plots(page())
     text, latex = TextPrinter(), LatexPrinter()
-    sketched = character_plot(picture, text, 76)
-    drawn = tikz(latex_scene(picture, latex), latex)
+    sketched = sketch(picture, text, 76)
+    drawn = tikz(tikz_scene(picture, latex), latex)
     written = svg(svg_scene(picture, text), text)
     ET.fromstring(written)  # noqa: S314 - our own text
     assert max(map(len, sketched.splitlines())) <= 76

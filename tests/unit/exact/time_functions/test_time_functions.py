@@ -477,6 +477,24 @@ def test_sums_multiply_and_integrate_as_functions_do(left: Any, right: Any) -> N
     assert derivative(f.value_at(time)) == f.derivative().value_at(time)
 
 
+def test_functions_of_time_keep_their_frequencies() -> None:
+    """cos 900t is not written in cos t, e^{-900t} not in e^{-t}; cosh is two exponentials; cos a cos b is a sum."""
+    time, half = Scalar.symbol("t"), Scalar.of(Fraction(1, 2))
+    value = function("cos", time * 900) * function("cos", time) + time * function("cosh", time * 2) / function(
+        "exp", time * 900
+    )
+    zero, one = Scalar.of(0), Scalar.of(1)
+    assert quasi_of(value).terms == {
+        Key(0, zero, "cos", Scalar.of(899)): half,
+        Key(0, zero, "cos", Scalar.of(901)): half,
+        Key(1, Scalar.of(-898), "", zero): half,
+        Key(1, Scalar.of(-902), "", zero): half,
+    }
+    for text in (function("exp", time * time), one / time, function("cos", time) / function("cos", time * 2)):
+        with pytest.raises(ValueError, match="is not a sum of exponentials, sines and cosines times powers of t"):
+            quasi_of(text)
+
+
 def test_generators_know_each_other() -> None:
     time = Scalar.symbol("t")
     values = [

@@ -13,14 +13,15 @@ from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
 from symobs.formula import Conjunction, Derivative, Letter, Literal, Negative, Power, Quotient
+from symobs.render.drawings.scene import Box, Rectangle, Scene, Sign, Stroke, TextLabel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from symobs.figures.block_diagram import Label, Wire
+    from symobs.render.drawings.scene import Point
     from symobs.render.page.blocks import Drawing
 
-Point: TypeAlias = tuple[float, float]
 Measure: TypeAlias = "Callable[[Label], Point]"
 
 
@@ -49,63 +50,15 @@ class Metrics:
     rates: bool = True
 
 
-@dataclass(frozen=True)
-class DiagramBox:
-    """A box with its label in the middle."""
-
-    centre: Point
-    size: Point
-    label: Label
-
-
-@dataclass(frozen=True)
-class Line:
-    """A wire from corner to corner; with `is_arrow` it ends in an arrow head."""
-
-    points: tuple[Point, ...]
-    is_arrow: bool
-
-
-@dataclass(frozen=True)
-class DiagramMark:
-    """A label: centred at `place`, `above` it or to its `right`."""
-
-    label: Label
-    place: Point
-    side: str = ""
-
-
-@dataclass(frozen=True)
-class SignMark:
-    """A sign where a wire ends at a junction; `towards` is the direction of the wire there."""
-
-    is_negative: bool
-    place: Point
-    towards: Point
-
-
-@dataclass(frozen=True)
-class Arrangement:
-    """A block diagram with all positions."""
-
-    size: Point
-    boxes: tuple[DiagramBox, ...]
-    junctions: tuple[Point, ...]
-    branches: tuple[Point, ...]
-    lines: tuple[Line, ...]
-    marks: tuple[DiagramMark, ...]
-    signs: tuple[SignMark, ...]
-
-
-def arranged(drawing: Drawing, metrics: Metrics, width: float, *, discrete: bool) -> Arrangement:
+def diagram_scene(drawing: Drawing, metrics: Metrics, width: float, *, discrete: bool) -> Scene:
     """Return the layout of a diagram within a width; labels that are too wide are replaced by letters, widest first."""
     labels = dict(drawing.labels)
     figure = figure_of(drawing.name).without_missing(labels)
     letters = dict(figure.letters)
     while True:
-        arrangement = _Arranging(figure, labels, metrics, discrete=discrete).arrangement()
-        if arrangement.size[0] <= width or not letters:
-            return arrangement
+        scene = _Arranging(figure, labels, metrics, discrete=discrete).scene()
+        if scene.whole.right <= width or not letters:
+            return scene
         widest = max(letters, key=lambda name: metrics.measure(without_sign(labels[name])[1])[0])
         negative, _ = without_sign(labels[widest])
         letter = Letter(letters.pop(widest))
@@ -121,8 +74,9 @@ class _Arranging:
         self.integrator: Label = Power(variable, -1) if discrete else Quotient(one, variable)
         self.sizes = {node: self.size_of(node) for node in figure.place}
         self.over = dict(self.written_over())
-        self.columns = self.positions(0, self.widths_of_gaps())
-        self.rows = self.positions(1, {})
+        self.columns, width = self.positions(0, self.widths_of_gaps())
+        self.rows, height = self.positions(1, {})
+        self.ends = width, height
 
     # -- sizes --------------------------------------------------------------------------------------------------------
 
@@ -209,8 +163,8 @@ class _Arranging:
 
     # -- places -------------------------------------------------------------------------------------------------------
 
-    def positions(self, axis: int, gaps: dict[tuple[int, int], float]) -> dict[int, float]:
-        """Return the centre of every column (row) in use."""
+    def positions(self, axis: int, gaps: dict[tuple[int, int], float]) -> tuple[dict[int, float], float]:
+        """Return the centre of every column (row) in use, and where the last one ends."""
         used = sorted({place[axis] for place in self.figure.place.values()})
         middles: dict[int, float] = {}
         edge, last = 0.0, None
@@ -220,8 +174,7 @@ class _Arranging:
                 edge += max(self.metrics.gap[axis], gaps.get((last, index), 0.0))
             middles[index] = edge + thick / 2
             edge, last = edge + thick, index
-        self.ends = (*getattr(self, "ends", ()), edge)
-        return middles
+        return middles, edge
 
     def at(self, node: str) -> Point:
         """Return the centre of a node."""
@@ -247,36 +200,39 @@ class _Arranging:
 
     # -- the whole ----------------------------------------------------------------------------------------------------
 
-    def arrangement(self) -> Arrangement:
+    def scene(self) -> Scene:
         """Return the complete layout."""
         nodes = list(self.figure.place)
         boxes = [node for node in nodes if is_box(node) or is_integrator(node)]
         ends = [node for node in nodes if self.is_end(node)]
         plain = [node for node in nodes if not self.is_drawn(node)]
-        return Arrangement(
-            size=(self.ends[0], self.ends[1]),
-            boxes=tuple(DiagramBox(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
-            junctions=tuple(self.at(node) for node in nodes if self.figure.is_junction(node)),
-            branches=tuple(self.at(node) for node in plain if len(self.figure.out_of(node)) > 1),
-            lines=tuple(Line(self.corners(wire), self.is_drawn(wire.end)) for wire in self.figure.wires),
-            marks=(
-                *(DiagramMark(_given(self.shown(node)), self.at(node)) for node in ends),
-                *(self.mark(wire, label, begins) for wire, (label, begins) in self.over.items()),
+        junctions = [Sign("junction", self.at(node)) for node in nodes if self.figure.is_junction(node)]
+        branches = [Sign("branch", self.at(node)) for node in plain if len(self.figure.out_of(node)) > 1]
+        names = [TextLabel(_given(self.shown(node)), self.at(node)) for node in ends]
+        over = [self.label(wire, label, begins) for wire, (label, begins) in self.over.items()]
+        return Scene(
+            frame=Rectangle(0.0, 0.0, *self.ends),
+            whole=Rectangle(0.0, 0.0, *self.ends),
+            strokes=tuple(
+                Stroke(self.corners(wire), "arrow" if self.is_drawn(wire.end) else "wire") for wire in self.figure.wires
             ),
-            signs=tuple(self.signs()),
+            boxes=tuple(Box(self.at(node), self.sizes[node], _given(self.shown(node))) for node in boxes),
+            signs=(*junctions, *branches, *self.signs()),
+            texts=(*names, *over),
+            is_diagram=True,
         )
 
     def is_drawn(self, node: str) -> bool:
         """Return whether wires end at the border of a node: a box, a junction, or a label at an end of the figure."""
         return self.shown(node) is not None or self.figure.is_junction(node)
 
-    def mark(self, wire: Wire, label: Label, at_beginning: bool) -> DiagramMark:  # noqa: FBT001
+    def label(self, wire: Wire, label: Label, at_beginning: bool) -> TextLabel:  # noqa: FBT001
         """Return the label of a wire, in the middle of its first or last segment."""
         points = self.corners(wire)
         (x0, y0), (x1, y1) = points[:2] if at_beginning else points[-2:]
-        return DiagramMark(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
+        return TextLabel(label, ((x0 + x1) / 2, (y0 + y1) / 2), "above" if y0 == y1 else "right")
 
-    def signs(self) -> Iterator[SignMark]:
+    def signs(self) -> Iterator[Sign]:
         """Yield the signs at the junctions."""
         for wire in self.figure.wires:
             if not self.figure.is_junction(wire.end):
@@ -286,7 +242,7 @@ class _Arranging:
                 gain = self.labels[key(wire.begin)]
             (x0, y0), (x1, y1) = self.corners(wire)[-2:]
             towards = (_sign(x1 - x0), _sign(y1 - y0))
-            yield SignMark(gain is not None and without_sign(gain)[0], (x1, y1), towards)
+            yield Sign("-" if gain is not None and without_sign(gain)[0] else "+", (x1, y1), towards)
 
 
 def _sign(number: float) -> float:

@@ -8,13 +8,14 @@ from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs._dataclass import dataclass
-from symobs.render.plots.scene import Rectangle, TextLabel, segment_in
+from symobs.render.drawings.clipping import segment_in
+from symobs.render.drawings.scene import Rectangle, TextLabel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula import Formula, Relation
-    from symobs.render.plots.scene import Content, Measure, Point
+    from symobs.render.drawings.scene import Content, Measure, Point
 
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
 _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0

@@ -7,18 +7,16 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import UsageError
-from symobs.render.page.plot_captions import caption
-from symobs.render.plots.caption_rows import ABOVE, NARROWEST, ROW, rows_of, words_of
-from symobs.render.plots.numbered_caption import below
-from symobs.render.plots.plot_layout import scene_of
-from symobs.render.plots.scene import FONT_SIZE, RADIUS, STYLES, Rectangle, Scene, Sign, Stroke, arrow_head
+from symobs.render.drawings.captions import NARROWEST, caption_below
+from symobs.render.drawings.plot_layout import plot_scene
+from symobs.render.drawings.scene import FONT_SIZE, RADIUS, STYLES, arrow_head, head_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Sequence
 
     from symobs.figures.plot import Picture
     from symobs.formula import Formula, Relation
-    from symobs.render.plots.scene import Content, Point
+    from symobs.render.drawings.scene import Content, Point, Scene, Sign, Stroke
     from symobs.render.printers.latex_printer import LatexPrinter
     from symobs.render.printers.text_printer import TextPrinter
 
@@ -50,22 +48,29 @@ def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: 
     from matplotlib.figure import Figure
 
     write = _writer(latex, text)
-    scene = scene_of(picture, lambda content: _size(write(content)))
-    room = max(scene.whole.right - scene.whole.left, NARROWEST)
-    rows = [_joined(row) for row in _caption(picture, scene, write, room)]
-    box = scene.whole
-    right = max([box.right, *(box.left + 6 + _size(row)[0] for row in rows)])
-    whole = Rectangle(box.left, box.bottom - ABOVE - ROW * len(rows), right, box.top)
+    scene = plot_scene(picture, lambda content: _size(write(content)))
+    widest = max(scene.whole.right - scene.whole.left, NARROWEST) / 2
+
+    def mathematics(content: Formula | Relation) -> list[str]:
+        """Return mathematics whole, or broken after its signs if it is long."""
+        piece = write(content)
+        return [piece] if _size(piece)[0] <= widest else _broken(piece)
+
+    whole, rows = caption_below(picture, scene, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE)
     figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))
     axes.axis("off")
     _draw(scene, axes, write)
-    for place, row in enumerate(rows):
-        axes.text(box.left + 3, box.bottom - ABOVE - ROW * (place + 0.5), row, fontsize=FONT_SIZE, va="center", **_FONT)
+    for place, row in rows:
+        axes.text(*place, _joined(row), fontsize=FONT_SIZE, va="center", **_FONT)
     buffer = BytesIO()
     figure.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
     return buffer.getvalue()
+
+
+def _escaped(text: str) -> str:
+    return text.replace("$", r"\$")
 
 
 def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
@@ -76,12 +81,12 @@ def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
 
     def write(content: Content) -> str:
         if isinstance(content, str):
-            return content.replace("-", "−").replace("$", r"\$")
-        written = f"${latex.inline(content)}$"
+            return _escaped(content.replace("-", "−"))
+        written = f"${latex.inline(content)}$"  # type: ignore[arg-type]
         try:
             parser.parse(written)
         except ValueError:
-            return text.inline(content).replace("$", r"\$")
+            return _escaped(text.inline(content))  # type: ignore[arg-type]
         return written
 
     return write
@@ -96,17 +101,6 @@ def _size(written: str) -> tuple[float, float]:
     font = FontProperties(**_FONT, size=FONT_SIZE)
     extents = TextPath((0, 0), written, prop=font).get_extents()
     return float(extents.x1), max(float(extents.height) + 1.5, 0.9 * FONT_SIZE)
-
-
-def _caption(picture: Picture, scene: Scene, write: Callable[[Content], str], room: float) -> list[list[list[str]]]:
-    """Return the rows of the caption; mathematics too long for its row is broken after its signs."""
-
-    def mathematics(content: Formula | Relation) -> list[str]:
-        whole = write(content)
-        return [whole] if _size(whole)[0] <= room / 2 else _broken(whole)
-
-    words = words_of(below(caption(picture), scene), lambda word: word.replace("$", r"\$"), mathematics)
-    return rows_of(words, lambda piece: _size(piece)[0], _SPACE, room)
 
 
 def _broken(written: str) -> list[str]:
@@ -143,38 +137,30 @@ def _draw(scene: Scene, axes: Any, write: Callable[[Content], str]) -> None:
         axes.text(*text.place, write(text.content), fontsize=FONT_SIZE, **anchors, **_FONT)
 
 
-def _fill(axes: Any, areas: tuple[tuple[Point, ...], ...], colour: str) -> None:
+def _fill(axes: Any, areas: Sequence[Sequence[Point]], colour: str) -> None:
     """Fill areas as one path: two that touch show no seam."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    corners = [point for area in areas for point in (*area, area[0])]
-    codes = [code for area in areas for code in _codes(len(area), Path)]
-    axes.add_patch(PathPatch(Path(corners, codes), facecolor=colour, edgecolor="none", zorder=0))
-
-
-def _codes(corners: int, path: Any) -> Iterator[int]:
-    yield path.MOVETO
-    yield from (path.LINETO for _ in range(corners - 1))
-    yield path.CLOSEPOLY
+    paths = [Path([*area, area[0]], closed=True) for area in areas]
+    axes.add_patch(PathPatch(Path.make_compound_path(*paths), facecolor=colour, edgecolor="none", zorder=0))
 
 
 def _stroke(axes: Any, stroke: Stroke) -> None:
     style = STYLES[stroke.style]
     dashes: dict[str, Any] = {"linestyle": (0, tuple(d / style.width for d in style.dashes))} if style.dashes else {}
-    xs, ys = zip(*stroke.points, strict=True)
     colour = _COLOURS[style.colour]
-    axes.plot(xs, ys, color=colour, linewidth=style.width, solid_capstyle="butt", zorder=1, **dashes)
-    if stroke.style == "axis":
-        (x0, y0), (x1, y1) = stroke.points[-2:]
-        _fill(axes, (arrow_head(Sign("arrow", (x1, y1), (x1 - x0, y1 - y0))),), colour)
+    axes.plot(
+        *zip(*stroke.points, strict=True), color=colour, lw=style.width, solid_capstyle="butt", zorder=1, **dashes
+    )
+    if style.has_head:
+        _fill(axes, [head_of(stroke)], colour)
 
 
 def _sign(axes: Any, sign: Sign) -> None:
     from matplotlib.patches import Circle
 
-    ink = _COLOURS["ink"]
-    radius = RADIUS.get(sign.kind, 0.0)
+    ink, radius = _COLOURS["ink"], RADIUS.get(sign.kind, 0.0)
     x, y = sign.place
     match sign.kind:
         case "dot":
@@ -182,7 +168,7 @@ def _sign(axes: Any, sign: Sign) -> None:
         case "ring":
             axes.add_patch(Circle(sign.place, radius, facecolor="white", edgecolor=ink, linewidth=0.8, zorder=2))
         case "arrow":
-            _fill(axes, (arrow_head(sign),), ink)
+            _fill(axes, [arrow_head(sign.place, sign.direction)], ink)
         case _:
             for turn in (1, -1):
                 ends = (x - radius, x + radius), (y - turn * radius, y + turn * radius)

@@ -9,44 +9,34 @@ from typing import TYPE_CHECKING, assert_never
 
 from symobs._dataclass import dataclass
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
-from symobs.formula import Literal, Relation
+from symobs.formula import Letter, Literal, Relation
+from symobs.render.drawings.clipping import chained, clipped, clipped_area, segment_in, thinned
+from symobs.render.drawings.curve_labels import Surroundings, labelled, walk
+from symobs.render.drawings.scene import RADIUS, Rectangle, Scene, Sign, Stroke, TextLabel, whole_of
 from symobs.render.page.plot_captions import drawn, part, radius_of, symbol
-from symobs.render.plots import time_axis
-from symobs.render.plots.curve_labels import Surroundings, labelled, walk
-from symobs.render.plots.scene import (
-    RADIUS,
-    Rectangle,
-    Scene,
-    Sign,
-    Stroke,
-    TextLabel,
-    chained,
-    clipped,
-    clipped_area,
-    segment_in,
-    thinned,
-    whole_of,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import End, Interval, Picture
-    from symobs.render.plots.scene import Content, Measure, Point
+    from symobs.figures.plot import End, Interval, Picture, Response
+    from symobs.formula import Formula
+    from symobs.render.drawings.scene import Content, Measure, Point
 
 WIDEST, HIGHEST = 270.0, 205.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
+_TIME_HEIGHT = 90.0
 _SMALLEST_SIDE = 100.0
 #: Windows that are not much longer than high are drawn with equal scales.
 _EQUAL_UP_TO = 2.0
 _TICK, _BEYOND, _LETTER = 3.0, 11.0, 4.0
 _TICKS = 5
 _CURVES = {True: "boundary", False: "divider"}
+_CURVES_OF_TIME = {True: "estimate", False: "path"}
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
-def scene_of(picture: Picture, measure: Measure) -> Scene:
+def plot_scene(picture: Picture, measure: Measure) -> Scene:
     """Return the scene of a plot on paper; `measure` gives the size of text in a format."""
     match picture:
         case RegionPicture():
@@ -115,7 +105,7 @@ def _region(picture: RegionPicture, measure: Measure) -> Scene:
     zeros = [Stroke(piece, "zero") for line in pale for piece in _between(line, crossed)]
     texts = (*written, *labels)
     whole = whole_of(axes, texts, measure)
-    return Scene(frame.box, whole, shades, (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
+    return Scene(frame.box, whole, shades, (*zeros, *axes, *strokes), (), signs, texts, tuple(numbered))
 
 
 def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tuple[Point, Point]]:
@@ -217,7 +207,7 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
         if not any(box.grown(_LETTER).meets(other) for other in covered):
             texts.append(text)
     whole = whole_of([*strokes, Stroke(((0, 11.0), (0, -_TICK)), "tick")], texts, measure)
-    return Scene(frame.box, whole, (), tuple(strokes), tuple(signs), tuple(texts))
+    return Scene(frame.box, whole, (), tuple(strokes), (), tuple(signs), tuple(texts))
 
 
 def _label(end: End, measure: Measure) -> Content:
@@ -265,7 +255,7 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
         ends = ((kind, frame.at(*place)) for kind, place in (("cross", path[0]), ("ring", path[-1])))
         signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Rectangle(*place, *place))]
     whole = whole_of(strokes, texts, measure)
-    return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), tuple(signs), tuple(texts))
+    return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), (), tuple(signs), tuple(texts))
 
 
 # -- responses ----------------------------------------------------------------------------------------------------------
@@ -273,7 +263,7 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
 
 def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     """Return signals over time, each with its name beside it."""
-    frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, time_axis.HEIGHT)
+    frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, _TIME_HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
         tuple(replace(counted, horizontal=(0.0, len(response.heights) - 1.0)).lines(enumerate(response.heights)))
@@ -281,13 +271,13 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     ]
     pale = tuple(_zero_lines(frame))
     every = tuple(line for parts in lines for line in parts)
-    names = {time_axis.name_of(response): parts for response, parts in zip(picture.responses, lines, strict=True)}
+    names = {name_of(response): parts for response, parts in zip(picture.responses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
-    axes, written = _axes(frame, (symbol(time_axis.axis_of(picture)),), measure)
-    styles = ["zero" if picture.discrete else time_axis.style_of(response) for response in picture.responses]
+    axes, written = _axes(frame, (symbol(time_axis(picture)),), measure)
+    styles = ["zero" if picture.discrete else _CURVES_OF_TIME[response.dashed] for response in picture.responses]
     sampled = picture.responses if picture.discrete else ()
     signs = tuple(
-        Sign(time_axis.sign_of(response), frame.at(*place))
+        Sign("ring" if response.dashed else "dot", frame.at(*place))
         for response in sampled
         for place in picture.points(response)
     )
@@ -295,7 +285,17 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     texts = (*written, *labels)
     zeros = (Stroke(line, "zero") for line in pale)
     whole = whole_of(axes, texts, measure)
-    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), signs, texts, tuple(numbered))
+    return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), (), signs, texts, tuple(numbered))
+
+
+def name_of(response: Response) -> Formula:
+    """Return the name of a response: the letter of its signal, with the index of its component."""
+    return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
+
+
+def time_axis(picture: TimeResponse) -> str:
+    """Return the name of the time axis."""
+    return "k" if picture.discrete else "t"
 
 
 def _square_frame(window: tuple[Interval, Interval]) -> _Frame:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from symobs.derivation import Plot
 from symobs.errors import DerivationRejected, UsageError
+from symobs.render.drawings.matplotlib_writer import drawn_by_matplotlib, require_matplotlib
+from symobs.render.drawings.svg import svg_file
+from symobs.render.drawings.tikz import tikz_file
 from symobs.render.page.narrator import printer_for
-from symobs.render.plots.matplotlib_writer import drawn_by_matplotlib, require_matplotlib
-from symobs.render.plots.svg import svg_file
-from symobs.render.plots.tikz import tikz_file
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.text_printer import TextPrinter
 from symobs.result import Document

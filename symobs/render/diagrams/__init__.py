@@ -1,1 +1,0 @@
-"""Block diagrams: their layout, and a writer for each format."""

@@ -1,0 +1,1 @@
+"""Drawings: block diagrams and plots, laid out once as a `Scene`, and its writers."""
