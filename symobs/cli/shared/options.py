@@ -31,6 +31,19 @@ def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> 
     raise UsageError(f"{quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
 
 
+def _settings(_: click.Context, __: click.Parameter, entries: tuple[str, ...]) -> dict[str, str]:
+    """Return the values of --set by name; raises `UsageError` for what is no NAME=VALUE, or a name set twice."""
+    found: dict[str, str] = {}
+    for entry in entries:
+        name, separator, value = (part.strip() for part in entry.partition("="))
+        if not (name and separator and value):
+            raise UsageError(f"{quoted(entry)} gives no value", where="--set", repair="write for example --set k=4")
+        if name in found:
+            raise UsageError(f"{quoted(name)} is set twice", where="--set", repair="keep one of them")
+        found[name] = value
+    return found
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
@@ -58,6 +71,14 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "convention_name",
         metavar="NAME",
         help="Write the page in this convention: standard, S0 to S4, or the path of a TOML file.",
+    ),
+    "settings": click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Give a parameter a value, for example k=4; repeat it. The answers are those at these values.",
+        callback=_settings,
     ),
     "timeout": click.option(
         "--timeout",
