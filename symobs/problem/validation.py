@@ -51,8 +51,7 @@ class Problem:
     convention: Convention = STANDARD
     text: str = ""
     printed: tuple[Mapping[str, Any], ...] = ()
-    #: Values of symbols: the results are those at these values.
-    values: Mapping[str, Any] = field(default_factory=dict)
+    values: Mapping[str, Any] = field(default_factory=dict)  # of symbols: the results are those there
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.errors import CertificateRejected, InputError
+from symobs.errors import CertificateRejected, InputError, ProblemErrors, together
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.expression import parse_matrix, parse_polynomial
@@ -53,12 +54,15 @@ def at_values(result: Found, given: Mapping[Any, Any]) -> Found:
 def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dict[str, Scalar]:
     """Return exact values by name; raises `InputError` for what is no parameter, or what its sign excludes."""
     known = {*plant.field.names, *plant.symbols.signs, *asked} - {plant.variable, "t"}
+    symbols, names = plant.symbols.seen(list(given.values())), {name for name in known if name.isidentifier()}
     try:
-        return read_values(given, plant.symbols.seen(list(given.values())), {n for n in known if n.isidentifier()})
-    except InputError as error:
-        error.where = error.where.replace("substitute.", "values.")
-        error.message = error.message.replace("no parameter of the plant", "no parameter of the problem")
+        read = together(*(partial(read_values, {name: value}, symbols, names) for name, value in given.items()))
+    except InputError as raised:
+        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
+            error.where = error.where.replace("substitute.", "values.")
+            error.message = error.message.replace("no parameter of the plant", "no parameter of the problem")
         raise
+    return {name: value for one in read for name, value in one.items()}
 
 
 def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:

@@ -47,7 +47,7 @@ def evaluate(result: Result, points: Mapping[Any, Any]) -> dict[str, Any]:
         import numpy as np  # noqa: PLC0415 - only where arrays are asked for
     except ImportError:
         message = "evaluating at arrays of points needs NumPy, which is not installed"
-        raise UsageError(message, repair='pip install numpy, or use .at(...) for one point') from None
+        raise UsageError(message, repair="pip install numpy, or use .at(...) for one point") from None
     fields = _fields(result)
     given = _read(points, result, fields)
     arrays = np.broadcast_arrays(*given.values()) if given else [np.zeros(())]
@@ -90,7 +90,9 @@ def _read(points: Mapping[Any, Any], result: Result, fields: Mapping[str, Any]) 
     """Return arrays of doubles by name; raises `InputError` for a parameter without a value, or a value that is none."""
     import numpy as np  # noqa: PLC0415 - it is there
 
-    needed = set().union(*map(symbols_in, [*(e for field in fields.values() for e in _entries(field)), *_decisive(result)]))
+    needed = set().union(
+        *map(symbols_in, [*(e for field in fields.values() for e in _entries(field)), *_decisive(result)])
+    )
     needed -= {"pi"}
     found: dict[str, Any] = {}
     for key, value in points.items():

@@ -34,7 +34,9 @@ if TYPE_CHECKING:
 
 
 #: The formats that are texts.
-Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text"]
+Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text", "numpy", "csv"]
+#: The formats that are programs.
+Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
 
 
 @dataclass(frozen=True)
@@ -180,6 +182,11 @@ class Result(Faces):
         other.__dict__.pop("derivation", None)
         return other
 
+    @property
+    def told_method(self) -> str:
+        """The method whose page is written."""
+        return self.method if self.page_method == "auto" else self.page_method
+
     def specified(self, specification: Mapping[str, Any]) -> Self:
         """Return the same result, which knows what was asked for; its claims do not speak of that either."""
         return self._copied(specification=specification)
@@ -299,14 +306,28 @@ class Result(Faces):
     def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
 
     @overload
+    def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
+
+    @overload
     def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
 
-    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
+    def to(
+        self,
+        format_name: str,
+        *,
+        convention: str = "standard",
+        detail: str = "full",
+        period: object = None,
+        hold: str = "zoh",
+    ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer.
+        `detail` says how much of the derivation is told: full, outline or answer.  python, matlab, c and modelica are the
+        observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
+        bilinear map (tustin); numpy and csv the numbers alone.
         """
-        return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
+        document = Document("", "", (self,), convention_named(convention), detail=detail, period=period, hold=hold)
+        return render(document, format_name)
 
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
@@ -343,6 +364,11 @@ class Document:
     text: str = ""
     detail: str = field(default="full", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)
+    #: For a format that is a program: the sampling period, and how the input is held.
+    period: object = field(default=None, kw_only=True)
+    hold: str = field(default="zoh", kw_only=True)
+    #: The answers that are printed alone, by name; none means the whole document.
+    printed: tuple[str, ...] = field(default=(), kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

@@ -32,22 +32,27 @@ def command(
     convention_name: str | None,
     detail: str,
     templates: str | None,
+    printed: tuple[str, ...],
+    period: str | None,
+    hold: str,
+    settings: dict[str, str],
     timeout: float | None,
     memory: float | None,
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
-    chosen = chosen_format(format_name, target)
+    chosen = chosen_format(format_name, target, default="text" if printed else "latex")
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot)
     convention = convention_of(convention_name)
-    page = page_of(detail, templates, chosen)
+    page = page_of(detail, templates, chosen, printed=printed, period=period, hold=hold)
 
     def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)
         report_progress = progress_on_terminal(found, report_progress)
+        alone = task_name is not None
         return solved(
-            found, chosen, target, plot, convention, report_progress, only_some_tasks=task_name is not None, **page
+            found, chosen, target, plot, convention, report_progress, only_some_tasks=alone, settings=settings, **page
         )
 
     run_work(work, timeout, memory, place_of(file))

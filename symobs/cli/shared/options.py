@@ -44,10 +44,22 @@ def _settings(_: click.Context, __: click.Parameter, entries: tuple[str, ...]) -
     return found
 
 
+def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
+    """Return the names of --print; raises `UsageError` where there is none."""
+    names = tuple(name for part in (value or "").split(",") if (name := part.strip()))
+    if value is not None and not names:
+        raise UsageError("no answer is named", where="--print", repair="write for example --print K,L")
+    return names
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
-        "--format", "format_name", metavar="NAME", help="latex (default), html, markdown, text, json, pdf, …"
+        "--format",
+        "format_name",
+        metavar="NAME",
+        help="latex (default), html, markdown, text, json, pdf, …; a program: c, python, matlab, modelica; "
+        "numbers alone: numpy, csv.",
     ),
     "target": click.option(
         "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
@@ -71,6 +83,20 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "convention_name",
         metavar="NAME",
         help="Write the page in this convention: standard, S0 to S4, or the path of a TOML file.",
+    ),
+    "printed": click.option(
+        "--print",
+        "printed",
+        metavar="NAMES",
+        help="Print these answers alone, for example K,L: exact, or as numbers with --format matlab, numpy or csv.",
+        callback=_names,
+    ),
+    "period": click.option("--period", metavar="TIME", help="For a program: the sampling period, for example 1/100."),
+    "hold": click.option(
+        "--hold",
+        default="zoh",
+        metavar="NAME",
+        help="For a program: zoh, a zero-order hold (default), or tustin, the bilinear map.",
     ),
     "settings": click.option(
         "--set",

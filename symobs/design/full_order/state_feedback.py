@@ -72,6 +72,13 @@ class StateFeedbackDesign(GainDesign):
         }
 
     @property
+    def told_method(self) -> str:
+        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+        if self.desired is None or self.answer["K"] is None or not self.fixed_polynomial.is_one:
+            return super().told_method
+        return page_style(self.page_method, self.plant, several=self.plant.inputs > 1)
+
+    @property
     def systems(self) -> Mapping[str, Realisation]:
         """The plant, and the loop with u = v − K x."""
         m, K = self.plant.matrices, self.answer["K"]

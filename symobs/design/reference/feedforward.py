@@ -112,7 +112,10 @@ class FeedforwardDesign(Result):
         if self.answer["F"] is None:
             return self.loop.systems
         F = self.answer["F"]
-        return {**self.loop.systems, "closed_loop": response(self.loop, F if isinstance(F, Matrix) else Matrix.of([[F]]))}
+        return {
+            **self.loop.systems,
+            "closed_loop": response(self.loop, F if isinstance(F, Matrix) else Matrix.of([[F]])),
+        }
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

@@ -103,7 +103,9 @@ def _nested(terms: list[Term]) -> Polynomial:
         (coefficient, {other: power - least * (other == name) for other, power in powers.items()})
         for coefficient, powers in having
     ]
-    kept = [(coefficient, {other: power for other, power in powers.items() if power}) for coefficient, powers in lowered]
+    kept = [
+        (coefficient, {other: power for other, power in powers.items() if power}) for coefficient, powers in lowered
+    ]
     return Nested(_nested(kept), name, least, _nested(rest) if rest else 0.0)
 
 
