@@ -1,27 +1,26 @@
-"""A result at values of its parameters: the same question for the plant that they leave, asked and checked anew."""
+"""A result at values of its parameters: the same question for the plant that they leave, asked and checked anew.
+
+This module is below the type of results, which therefore has no name here.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
+import symobs
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, together
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.expression import parse_matrix, parse_polynomial
 from symobs.expression.source import shown
-from symobs.result.registry import task_named
 from symobs.specification import parse_signal, read_names, read_poles
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.reading import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-
-    from symobs.result.result import Result
-
-Found = TypeVar("Found", bound="Result")
 
 #: The gains that are a choice among many where there are several inputs or outputs: the value of the one that was chosen.
 _CHOSEN = ("K", "L")
@@ -31,15 +30,15 @@ _CHOSEN = ("K", "L")
 _UNSAID = {"Horizon": "T"}
 
 
-def at_values(result: Found, given: Mapping[Any, Any]) -> Found:
+def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
     """Return the result of the same task at these values, with the values of its gains where they still serve."""
-    task, plant = task_named(result.task), result.plant
-    if plant.is_stratum or task is None:
+    task, plant = getattr(symobs, result.task), result.plant
+    if plant.is_stratum:
         message = "this is what holds in one case of a result"
         raise InputError(message, where="at", repair="give the values to the result itself")
     read = {
         name: _READERS[kind](asked, plant, f"specification.{name}")
-        for name, kind in task.keywords.items()
+        for name, kind in task.kinds.items()
         if kind in _READERS and (asked := result.specification.get(name, _UNSAID.get(kind))) is not None
     }
     values = _values(given, plant, {name for value in read.values() for name in _names(value)})
@@ -47,8 +46,7 @@ def at_values(result: Found, given: Mapping[Any, Any]) -> Found:
         return result
     there = _plant(plant, values)
     moved = {name: _moved(value, values) for name, value in read.items() if values.keys() & _names(value)}
-    found: Found = task.function(there, **{**result.specification, **moved})  # type: ignore[assignment]
-    return _with_chosen(result, found, values)
+    return _with_chosen(result, task(there, **{**result.specification, **moved}), values)
 
 
 def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dict[str, Scalar]:
@@ -86,7 +84,7 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
     return there
 
 
-def _with_chosen(result: Result, found: Found, values: dict[str, Scalar]) -> Found:
+def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
     """Return the found result with the gains that were chosen, which its constructor checks, where they serve here."""
     for letter in _CHOSEN:
         chosen, here = result.answer.get(letter), found.answer.get(letter)

@@ -1,4 +1,7 @@
-"""The systems that a design consists of: as systems of python-control, and the one of them that a program runs."""
+"""The systems that a design consists of: as systems of python-control, and the one of them that a program runs.
+
+This module is below the type of results, which therefore has no name here.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,6 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix
     from symobs.exact.linear_algebra.realisation import Realisation
-    from symobs.result.result import Result
 
 
 class Controller(NamedTuple):
@@ -29,7 +31,7 @@ class Controller(NamedTuple):
     gains: tuple[str, ...]
 
 
-def observer_of(result: Result) -> Controller | None:
+def observer_of(result: Any) -> Controller | None:
     """Return the observer of a design as a program runs it, None where there is none."""
     system, plant = result.systems.get("observer"), result.plant
     if system is None:
@@ -48,10 +50,10 @@ def require_numbers(matrices: Iterable[Matrix], wanted: str) -> None:
         raise InputError(message, where="values", repair=f"set them: --set {first}=1, or .at({first}=1) in Python")
 
 
-def to_control(result: Result) -> dict[str, Any]:
+def to_control(result: Any) -> dict[str, Any]:
     """Return the systems of a design as systems of python-control, as `Result.to_control` says."""
     try:
-        import control  # noqa: PLC0415 - only where its systems are asked for
+        import control
     except ImportError:
         message = "systems of python-control need python-control, which is not installed"
         raise UsageError(message, repair='pip install "symobs[control]"') from None
@@ -92,7 +94,7 @@ def _labels(letter: str, count: int) -> list[str]:
 
 
 def _array(matrix: Matrix) -> Any:
-    import numpy as np  # noqa: PLC0415 - python-control has it
+    import numpy as np
 
     entries = [nearest_double(entry) for entry in matrix.entries]
     return np.array(entries, dtype=float).reshape(matrix.shape)

@@ -1,7 +1,8 @@
 """A result at many points at once: its fields as NumPy arrays, with what holds in a case where a condition fails.
 
 Where the value of a condition is too near to 0 for its rounding error, the point is decided, and its fields found,
-exactly, each coordinate read as its shortest decimal.
+exactly, each coordinate read as its shortest decimal.  This module is below the type of results, which therefore has
+no name here.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from symobs.conditions import Condition
-    from symobs.result.result import Result
 
 #: A value below this part of the sum of its terms may be nothing but rounding error.
 _ROUNDING = 2.0**-40
@@ -41,10 +41,10 @@ _HOLDS: dict[str, Callable[[Any], bool]] = {
 }
 
 
-def evaluate(result: Result, points: Mapping[Any, Any]) -> dict[str, Any]:
+def evaluate(result: Any, points: Mapping[Any, Any]) -> dict[str, Any]:
     """Return one array for each field of numbers at arrays of points, as `Result.evaluate` says."""
     try:
-        import numpy as np  # noqa: PLC0415 - only where arrays are asked for
+        import numpy as np
     except ImportError:
         message = "evaluating at arrays of points needs NumPy, which is not installed"
         raise UsageError(message, repair="pip install numpy, or use .at(...) for one point") from None
@@ -62,7 +62,7 @@ def evaluate(result: Result, points: Mapping[Any, Any]) -> dict[str, Any]:
     return _shaped(fields, values, shape)
 
 
-def _fields(result: Result) -> dict[str, Any]:
+def _fields(result: Any) -> dict[str, Any]:
     """Return the fields of numbers: matrices, scalars and integers without time or the variable of polynomials."""
     apart = {result.plant.variable, "t"}
     return {
@@ -73,7 +73,7 @@ def _fields(result: Result) -> dict[str, Any]:
     }
 
 
-def _decisive(result: Result) -> list[Scalar]:
+def _decisive(result: Any) -> list[Scalar]:
     """Return what must not vanish where the result holds without a look at its cases."""
     apart = {result.plant.variable, "t", EIGENVALUE}
     values = dict.fromkeys([*(condition.expression for condition in result.holds_where), *result.existence])
@@ -86,9 +86,9 @@ def _entries(field: Any) -> tuple[Scalar, ...]:
     return (Scalar.of(field),)
 
 
-def _read(points: Mapping[Any, Any], result: Result, fields: Mapping[str, Any]) -> dict[str, Any]:
+def _read(points: Mapping[Any, Any], result: Any, fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return arrays of doubles by name; raises `InputError` for a parameter without a value, or a value that is none."""
-    import numpy as np  # noqa: PLC0415 - it is there
+    import numpy as np
 
     needed = set().union(
         *map(symbols_in, [*(e for field in fields.values() for e in _entries(field)), *_decisive(result)])
@@ -118,9 +118,9 @@ def _read(points: Mapping[Any, Any], result: Result, fields: Mapping[str, Any]) 
     return {name: found[name] for name in found if name in needed}
 
 
-def _outside(result: Result, points: Mapping[str, Any]) -> Any:
+def _outside(result: Any, points: Mapping[str, Any]) -> Any:
     """Return where a value is not finite, or has a sign that is not the declared one."""
-    import numpy as np  # noqa: PLC0415 - it is there
+    import numpy as np
 
     count = max((len(array) for array in points.values()), default=1)
     outside = np.zeros(count, dtype=bool)
@@ -133,7 +133,7 @@ def _outside(result: Result, points: Mapping[str, Any]) -> Any:
 
 def _doubtful(decisive: Iterable[Scalar], points: Mapping[str, Any]) -> Any:
     """Return where one of the values that decide may be 0, its rounding error taken into account."""
-    import numpy as np  # noqa: PLC0415 - it is there
+    import numpy as np
 
     count = max((len(array) for array in points.values()), default=1)
     doubtful = np.zeros(count, dtype=bool)
@@ -145,7 +145,7 @@ def _doubtful(decisive: Iterable[Scalar], points: Mapping[str, Any]) -> Any:
     return doubtful
 
 
-def _exactly(result: Result, fields: Mapping[str, Any], points: Mapping[str, Any], index: int) -> list[float]:
+def _exactly(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], index: int) -> list[float]:
     """Return the entries of the fields at one point, exactly, from the case that applies there."""
     values = {name: Scalar.of(shortest(array[index])) for name, array in points.items()}
     there = _case_at(result, values)
@@ -164,7 +164,7 @@ def _exactly(result: Result, fields: Mapping[str, Any], points: Mapping[str, Any
     return found
 
 
-def _case_at(result: Result, values: Mapping[str, Scalar]) -> Result | None:
+def _case_at(result: Any, values: Mapping[str, Scalar]) -> Any:
     """Return the result that holds at a point: this one, that of a case, or of a case of it; None if none does."""
     if not all(_holds(condition, values) for condition in result.domain):
         return None
@@ -185,7 +185,7 @@ def _holds(condition: Condition, values: Mapping[str, Scalar]) -> bool:
 
 def _shaped(fields: Mapping[str, Any], values: Any, shape: tuple[int, ...]) -> dict[str, Any]:
     """Return the arrays of the fields: a matrix has its rows and columns behind the shape of the points."""
-    import numpy as np  # noqa: PLC0415 - it is there
+    import numpy as np
 
     found: dict[str, Any] = {}
     start = 0

@@ -231,7 +231,8 @@ class Result(Faces):
         """
         from symobs.result.at_values import at_values  # noqa: PLC0415 - a result that is not moved does not pay for it
 
-        return at_values(self, {**(values or {}), **named})
+        found: Self = at_values(self, {**(values or {}), **named})
+        return found
 
     def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
         """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.

@@ -134,7 +134,9 @@ class StateSpace:
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
         """Return the plant of a python-control system; each float is read as its shortest decimal.
 
-        The page says so.  A system of `Result.to_control` is read back exactly.  Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
+        The page says so.  A system of `Result.to_control` is read back exactly.
+
+        Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
         """
         if symbols is None and (exact := exact_of(system)) is not None:
             return cast("StateSpace", exact)

@@ -338,7 +338,7 @@ class OutputFeedback(Result):
 
     @property
     def controller(self) -> Controller | None:
-        """y → u = −F y."""
+        """Y → u = −F y."""
         if not self.exists:
             return None
         A, B, C, D = self.realisation

@@ -20,8 +20,8 @@ from symobs.design.page_parts.component_equations import write_components
 from symobs.design.page_parts.time_responses import plot_error
 from symobs.design.pole_placement.multiple_outputs import pair_of
 from symobs.exact import Matrix
-from symobs.formula.term import Term, letter
 from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.term import Term, letter
 from symobs.result import Case, Result, task
 from symobs.result.control_systems import Controller, observer_of
 

@@ -11,7 +11,6 @@ from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
-from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, kernel
@@ -23,6 +22,7 @@ from symobs.result import Case, Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 

@@ -47,7 +47,7 @@ class ArrayFunction:
 
     def __call__(self, points: Mapping[str, Any]) -> Any:
         """Return an array with one row for each value; `points` has flat arrays of one length by name."""
-        import numpy as np  # noqa: PLC0415 - arrays only where arrays came
+        import numpy as np
 
         known = {name: at_points(name, points) for name in self.names}
         count = max((len(array) for array in points.values()), default=1)
@@ -64,7 +64,7 @@ class ArrayFunction:
 
 def at_points(name: str, points: Mapping[str, Any]) -> Any:
     """Return the values of a generator: those of its own symbol, or a function of them."""
-    import numpy as np  # noqa: PLC0415 - arrays only where arrays came
+    import numpy as np
 
     function = function_named(name)
     if function is None:

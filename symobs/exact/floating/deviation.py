@@ -38,7 +38,7 @@ def deviation(exact: Sampled, rounded: Quadruple) -> Deviation | None:
     """Return bounds of the deviation, None where there are none in double precision."""
     system = exact.enclosed(_BITS)
     with Precision(_BITS):
-        Phi, Gamma, C, D = system
+        Phi, Gamma, C, _ = system
         own = [balls(matrix) for matrix in rounded]
         total, last = _sum_of_powers(Phi)
         always = bool(last < 1)

@@ -7,7 +7,7 @@ tustin   s = 2(z − 1)/(h(z + 1)):  Φ = (I − Ah/2)⁻¹(I + Ah/2),  Γ = (I 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from flint import arb, arb_mat
 

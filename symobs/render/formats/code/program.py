@@ -176,10 +176,8 @@ def _deviation(
             f"In {STEPS} steps rounding errors may grow beyond any bound in double precision: it is unstable by itself."
         ]
     steps = "at every step" if bound.always else f"in the first {STEPS} steps"
-    return [
-        f"For inputs of modulus at most 1, from the state 0, {controller.output[0]} differs {steps} by at most "
-        f"{bound.output!r} from exact arithmetic."
-    ]
+    output = f"{controller.output[0]} differs {steps} by at most {bound.output!r} from exact arithmetic"
+    return [f"For inputs of modulus at most 1, from the state 0, {output}."]
 
 
 def above(value: Fraction) -> str:
