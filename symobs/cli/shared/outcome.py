@@ -86,7 +86,7 @@ def solved(
 
     `settings` are values of parameters; what the file expects is held against the answers before they are set.  With
     `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the document.
-     `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
+    `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
