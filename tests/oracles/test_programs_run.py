@@ -39,9 +39,7 @@ DESIGNS: dict[str, tuple[Any, str | None]] = {
     "reduced observer": (symobs.reduced_order_observer(WITH_FEEDTHROUGH, poles="-3"), "1/30"),
     "sampled": (symobs.compensator(SAMPLED, control_poles="4/5, 7/10", observer_poles="1/2, 3/5"), None),
 }
-CASES = [
-    (name, hold) for name, (_, period) in DESIGNS.items() for hold in (("zoh", "tustin") if period else ("zoh",))
-]
+CASES = [(name, hold) for name, (_, period) in DESIGNS.items() for hold in (("zoh", "tustin") if period else ("zoh",))]
 
 
 def system_of(name: str) -> tuple[Any, Any, Any, Any, tuple[str, ...]]:
@@ -91,7 +89,7 @@ def inputs_of(name: str) -> list[dict[str, list[float]]]:
     """Inputs of modulus at most 1 that decimals write exactly."""
     plant, signals = DESIGNS[name][0].plant, system_of(name)[4]
     sizes = {"u": plant.inputs, "y": plant.outputs}
-    chosen = random.Random(name)
+    chosen = random.Random(name)  # noqa: S311 - a seeded draw
     return [{s: [chosen.randint(-1024, 1024) / 1024 for _ in range(sizes[s])] for s in signals} for _ in range(STEPS)]
 
 
@@ -117,7 +115,9 @@ def exact_outputs(name: str, hold: str) -> list[list[Fraction]]:
 
 
 def assert_within_its_bound(text: str, outputs: list[list[float]], name: str, hold: str) -> None:
-    stated = re.search(r"differs (?:at every step|in the first 1000 steps) by at most (\S+) from exact arithmetic", text)
+    stated = re.search(
+        r"differs (?:at every step|in the first 1000 steps) by at most (\S+) from exact arithmetic", text
+    )
     assert stated is not None
     exact = exact_outputs(name, hold)
     assert len(outputs) == STEPS
@@ -164,13 +164,17 @@ def test_c(name: str, hold: str, tmp_path: Path) -> None:
     sizes = {signal: len(entries) for signal, entries in inputs_of(name)[0].items()}
     outputs = len(exact_outputs(name, hold)[0])
     arrays = "".join(f" double {s}[{k}];" for s, k in sizes.items())
-    reads = "".join(f'if (scanf("%lf", &{s}[{i}]) != 1) return 1;\n        ' for s, k in sizes.items() for i in range(k))
+    reads = "".join(
+        f'if (scanf("%lf", &{s}[{i}]) != 1) return 1;\n        ' for s, k in sizes.items() for i in range(k)
+    )
     (tmp_path / "program.c").write_text(text, encoding="utf-8")
     (tmp_path / "main.c").write_text(
-        f'#include <stdio.h>\n#include "program.c"\nint main(void)\n{{\n    {kind}_state state;{arrays} double v[{outputs}];\n'
+        f'#include <stdio.h>\n#include "program.c"\nint main(void)\n{{\n'
+        f"    {kind}_state state;{arrays} double v[{outputs}];\n"
         f"    {kind}_start(&state);\n    for (int k = 0; k < {STEPS}; k++) {{\n        {reads}\n"
         f"        {kind}_step(&state, {', '.join(sizes)}, v);\n"
-        f'        for (int i = 0; i < {outputs}; i++) printf("%.17g ", v[i]);\n        printf("\\n");\n    }}\n    return 0;\n}}\n',
+        f'        for (int i = 0; i < {outputs}; i++) printf("%.17g ", v[i]);\n'
+        '        printf("\\n");\n    }\n    return 0;\n}\n',
         encoding="utf-8",
     )
     strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
@@ -193,7 +197,8 @@ def test_matlab_by_octave() -> None:
         given = inputs_of(name)
         arrays = [f"{s} = {octave.matrix([step[s] for step in given])};" for s in given[0]]
         called = ", ".join(f"{s}(k, :)'" for s in given[0])
-        loop = f"found = []; state = [];\nfor k = 1:{STEPS}\n[v, state] = step_{number}(state, {called});\nfound(k, :) = v';\nend"
+        step = f"[v, state] = step_{number}(state, {called});"
+        loop = f"found = []; state = [];\nfor k = 1:{STEPS}\n{step}\nfound(k, :) = v';\nend"
         texts.append(own)
         questions.append("\n".join([*arrays, loop, 'say("found", found);']))
     replies = octave.ask(questions, beginning="\n".join(texts))
@@ -222,7 +227,8 @@ def test_modelica_in_continuous_time(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["block B\nequation\nend C;", "block B\n  Real x[1]\nequation\nend B;", "block B\nequation\n  y = x;\nend B;"]
+    "text",
+    ["block B\nequation\nend C;", "block B\n  Real x[1]\nequation\nend B;", "block B\nequation\n  y = x;\nend B;"],
 )
 def test_the_reader_refuses_what_is_not_modelica(text: str) -> None:
     with pytest.raises(SyntaxError):

@@ -21,7 +21,12 @@ if TYPE_CHECKING:
 
 #: Steps for which the bound is found at least.
 STEPS = 1000
-_BITS = 256
+#: Bits that are tried in turn: products of enclosures grow by the absolute values of the entries.
+_BITS = (256, 1024, 4096)
+#: An enclosure of which this power of two is uncertain is too wide.
+_UNCERTAIN = -20
+_SQUARINGS = 20
+_HALF = 0.5
 #: Rounding to nearest, and what is lost where a product underflows.
 _UNIT, _UNDERFLOW = -53, -1074
 
@@ -36,15 +41,15 @@ class Deviation(NamedTuple):
 
 def deviation(exact: Sampled, rounded: Quadruple) -> Deviation | None:
     """Return bounds of the deviation, None where there are none in double precision."""
-    system = exact.enclosed(_BITS)
-    with Precision(_BITS):
-        Phi, Gamma, C, _ = system
+    powers = next((found for bits in _BITS if (found := _sum_of_powers(exact, bits)) is not None), None)
+    if powers is None:
+        return None
+    total, always = powers
+    system = exact.enclosed(_BITS[0])
+    with Precision(_BITS[0]):
+        _, Gamma, C, _ = system
         own = [balls(matrix) for matrix in rounded]
-        total, last = _sum_of_powers(Phi)
-        always = bool(last < 1)
-        if always:
-            total = total / (1 - last)
-        terms = Phi.ncols() + Gamma.ncols() + 2
+        terms = own[0].ncols() + own[1].ncols() + 2
         unit = arb(2) ** _UNIT * terms
         gamma, lost = unit / (1 - unit), arb(2) ** _UNDERFLOW * terms
         off = [_norm(a - b) + gamma * _norm(b) for a, b in zip(system, own, strict=True)]
@@ -58,14 +63,31 @@ def deviation(exact: Sampled, rounded: Quadruple) -> Deviation | None:
         return None if float("inf") in bounds else Deviation(bounds[0], bounds[1], always)
 
 
-def _sum_of_powers(matrix: arb_mat) -> tuple[arb, arb]:
-    """Return Σ ‖Mʲ‖ for j < STEPS, and ‖M^STEPS‖."""
+def _sum_of_powers(exact: Sampled, bits: int) -> tuple[arb, bool] | None:
+    """Return a bound of Σ ‖Φʲ‖, and whether it is that of all j and not only of j < STEPS; None where bits do not suffice.
+
+    Where ‖Φᵖ‖ < 1/2 the sum over all j is at most that over j < p, divided by 1 − ‖Φᵖ‖; (I + P)(I + P²)(I + P⁴) … sums the
+    powers of P = Φ^STEPS.
+    """
+    matrix = exact.enclosed(bits)[0]
     order = matrix.nrows()
-    power = type(matrix)(order, order, [int(i == j) for i in range(order) for j in range(order)])
-    total = arb(0)
-    for _ in range(STEPS):
-        total, power = total + _norm(power), matrix * power
-    return total, _norm(power)
+    with Precision(bits):
+        power = type(matrix)(order, order, [int(i == j) for i in range(order) for j in range(order)])
+        total = arb(0)
+        for _ in range(STEPS):
+            size = _norm(power)
+            if size < _HALF:
+                return total / (1 - size), True
+            total, power = total + size, matrix * power
+        if any(entry.rad() > _norm(power) * arb(2) ** _UNCERTAIN for entry in power.entries()):
+            return None
+        whole = total
+        for _ in range(_SQUARINGS):
+            size = _norm(power)
+            if size < _HALF:
+                return whole / (1 - size), True
+            whole, power = whole * (1 + size), power * power
+        return total, False
 
 
 def _norm(matrix: arb_mat) -> arb:

@@ -32,7 +32,9 @@ def floats(exact: Matrix) -> Any:
 
 
 def drawn(chosen: random.Random, rows: int, columns: int) -> Matrix:
-    return matrix([[Fraction(chosen.randint(-30, 30), chosen.randint(1, 9)) for _ in range(columns)] for _ in range(rows)])
+    return matrix(
+        [[Fraction(chosen.randint(-30, 30), chosen.randint(1, 9)) for _ in range(columns)] for _ in range(rows)]
+    )
 
 
 def test_the_nearest_double_of_irrational_numbers() -> None:
@@ -48,7 +50,7 @@ def test_the_nearest_double_of_irrational_numbers() -> None:
 
 @pytest.mark.parametrize("hold", HOLDS)
 def test_sampling_as_scipy_does(hold: str) -> None:
-    chosen = random.Random(7)
+    chosen = random.Random(7)  # noqa: S311 - a seeded draw
     for order in (1, 2, 3, 4):
         system = Realisation(*(drawn(chosen, *s) for s in ((order, order), (order, 2), (3, order), (3, 2))))
         found = Sampled(system, Fraction(1, 50), hold).rounded()
@@ -59,7 +61,9 @@ def test_sampling_as_scipy_does(hold: str) -> None:
 
 
 def test_zeros_and_whole_numbers_of_a_chain_of_integrators_stay_exact() -> None:
-    chain = Realisation(matrix([[0, 1, 0], [0, 0, 1], [0, 0, 0]]), matrix([[0], [0], [1]]), matrix([[1, 0, 0]]), matrix([[0]]))
+    chain = Realisation(
+        matrix([[0, 1, 0], [0, 0, 1], [0, 0, 0]]), matrix([[0], [0], [1]]), matrix([[1, 0, 0]]), matrix([[0]])
+    )
     A, B, _, _ = Sampled(chain, Fraction(1, 4)).rounded()
     assert floats(A).tolist() == [[1, 0.25, 0.03125], [0, 1, 0.25], [0, 0, 1]]
     assert floats(B).tolist() == [[float(Fraction(1, 384))], [0.03125], [0.25]]
@@ -72,7 +76,7 @@ def test_the_bilinear_map_has_no_value_where_a_pole_is_2_over_the_period() -> No
 
 
 def test_margins_are_below_those_of_the_eigenvalues_and_near_them() -> None:
-    chosen, told = random.Random(3), [0, 0]
+    chosen, told = random.Random(3), [0, 0]  # noqa: S311 - a seeded draw
     for _ in range(40):
         order = chosen.randint(1, 6)
         A = matrix([[Fraction(chosen.randint(-9, 9), 10) for _ in range(order)] for _ in range(order)])
@@ -142,7 +146,7 @@ def test_the_deviation_grows_where_the_system_is_unstable_and_has_no_bound_where
 
 def test_nested_polynomials_are_the_polynomials() -> None:
     texts = ["x^3*y - 7*x*y^2/3 + x - 5", "(x + y)^5", "x^4*y^4*w^2 + w", "1/7", "(x - 1)*(y - 1)*(w - 1)", "x^9 - x^7"]
-    chosen = random.Random(5)
+    chosen = random.Random(5)  # noqa: S311 - a seeded draw
     points = {name: np.array([chosen.uniform(-2, 2) for _ in range(50)]) for name in ("w", "x", "y")}
     for text in texts:
         value = parse_scalar(text, None, where="")

@@ -14,9 +14,7 @@ import symobs
 from symobs.errors import InputError, UsageError
 
 HIDDEN = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]")
-CART = symobs.StateSpace(
-    "[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]", "[0; 1/M; 0; -1/(M*l)]", "[1 0 0 0]"
-)
+CART = symobs.StateSpace("[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]", "[0; 1/M; 0; -1/(M*l)]", "[1 0 0 0]")
 
 
 def exactly(matrix: Any, **values: float) -> Any:
@@ -31,7 +29,8 @@ def test_gains_beside_lambdify_at_many_points() -> None:
     points = {name: chosen.uniform(1, 2, 40_000) for name in ("M", "m", "g", "l", "p")}
     found = result.evaluate(points)
     assert found["K"].shape == (40_000, 1, 4)
-    expected = sympy.lambdify(sympy.symbols("M m g l p"), list(result.K))(*points.values())
+    entries = list(result.K)
+    expected = sympy.lambdify(sympy.symbols("M m g l p"), entries)(*points.values())  # noqa: TID251 - our own expressions
     for index, values in enumerate(expected):
         np.testing.assert_allclose(found["K"][:, 0, index], values, rtol=1e-11)
 
@@ -86,7 +85,9 @@ def test_beside_a_condition_the_value_is_exact() -> None:
 
 def test_a_sign_that_is_not_the_declared_one_is_nan() -> None:
     plant = symobs.StateSpace("[0 1; -k/m 0]", None, "[1 0]", symbols={"k": "positive", "m": "nonzero"})
-    found = symobs.observer(plant, poles="-1, -2").evaluate({"k": [1, -1, 0, 1, np.inf, np.nan], "m": [2, 2, 2, 0, 2, 2]})
+    found = symobs.observer(plant, poles="-1, -2").evaluate(
+        {"k": [1, -1, 0, 1, np.inf, np.nan], "m": [2, 2, 2, 0, 2, 2]}
+    )
     assert np.isnan(found["L"][:, 0, 0]).tolist() == [False, True, True, True, True, True]
 
 

@@ -172,9 +172,7 @@ def _deviation(
         return []
     bound = deviation(sampled, numbers)
     if bound is None:
-        return [
-            f"In {STEPS} steps rounding errors may grow beyond any bound in double precision: it is unstable by itself."
-        ]
+        return [f"In {STEPS} steps rounding errors may grow beyond any bound in double precision."]
     steps = "at every step" if bound.always else f"in the first {STEPS} steps"
     output = f"{controller.output[0]} differs {steps} by at most {bound.output!r} from exact arithmetic"
     return [f"For inputs of modulus at most 1, from the state 0, {output}."]
