@@ -36,6 +36,7 @@ TOP: dict[str, dict[str, Any]] = {
     },
     "plant": {"description": "A, B, C, D, or transfer_function; dt"},
     "specification": {"description": "what the tasks need"},
+    "values": {"description": "values of symbols, k = 4: the answers are those at these values"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
     "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
 }
@@ -113,6 +114,7 @@ def schema() -> dict[str, Any]:
         "task": {"enum": known},
         "tasks": {"type": "array", "items": {"enum": known}, "minItems": 1, "uniqueItems": True},
         "symbols": {"type": "object", "additionalProperties": {"anyOf": [sign, symbol]}},
+        "values": {"type": "object", "additionalProperties": number_or_text},
         "plant": {
             "type": "object",
             "properties": plant,

@@ -52,6 +52,7 @@ class Problem:
     convention: Convention = STANDARD
     text: str = ""
     printed: tuple[Mapping[str, Any], ...] = ()
+    values: Mapping[str, Any] = field(default_factory=dict)  # of symbols: the results are those there
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.
@@ -65,7 +66,8 @@ class Problem:
                 report(task.name, tuple(results))
             own, keys = _Errors(), keys_of(task, self.specification)
             with own:
-                results.append(task.function(self.plant, **{name: self.specification[keys[name]] for name in keys}))
+                found = task.function(self.plant, **{name: self.specification[keys[name]] for name in keys})
+                results.append(found.at(self.values) if self.values else found)
             own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
             errors.found += own.found
         if errors.found:
@@ -140,11 +142,12 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = _table(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
+    values = _table(data, "values", errors)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed)
+        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed, values)
     if plant is not None and wanted:
         with errors:
-            Problem(title, source, ids, wanted, plant, specification, expect, convention).solve()
+            Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)

@@ -106,6 +106,7 @@ def _registered(function: Callback) -> Callback:
     signature = inspect.signature(function).parameters
     keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
     alone = signature["plant"].default is None
+    function.kinds = keywords  # type: ignore[attr-defined]  # a result that is asked anew reads its specification so
     _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), alone)
     return function
 

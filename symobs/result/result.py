@@ -18,6 +18,7 @@ from symobs.convention import STANDARD, Convention, convention_named
 from symobs.derivation import translated
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
 from symobs.result.writers import render, writer_of
 
@@ -28,11 +29,14 @@ if TYPE_CHECKING:
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
     from symobs.figures.plot import Picture
+    from symobs.result.control_systems import Controller
     from symobs.system import StateSpace
 
 
 #: The formats that are texts.
-Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text"]
+Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text", "numpy", "csv"]
+#: The formats that are programs.
+Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
 
 
 @dataclass(frozen=True)
@@ -183,6 +187,11 @@ class Result(Faces):
         other.__dict__.pop("derivation", None)
         return other
 
+    @property
+    def told_method(self) -> str:
+        """The method whose page is written."""
+        return self.method if self.page_method == "auto" else self.page_method
+
     def specified(self, specification: Mapping[str, Any]) -> Self:
         """Return the same result, which knows what was asked for; its claims do not speak of that either."""
         return self._copied(specification=specification)
@@ -216,6 +225,57 @@ class Result(Faces):
         """What the letters of the data must mean on the page: the plant's matrices."""
         m = self.plant.matrices
         return {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
+
+    def at(self, values: Mapping[Any, Any] | None = None, /, **named: Any) -> Self:
+        """Return the same result where parameters have values: `result.at(k=4, m="1/2")`, or `result.at({k: 4})`.
+
+        The task is put anew to the plant and the specification at these values, exact as everywhere, so that conditions
+        are decided, the case that applies is the answer, and the constructor checks it; of gains that are not unique the
+        value of the chosen one is kept.  Other parameters stay.  Raises `InputError` for what is no parameter, for a value
+        that the declared sign excludes, and where there is no plant.
+        """
+        from symobs.result.at_values import at_values  # noqa: PLC0415 - a result that is not moved does not pay for it
+
+        found: Self = at_values(self, {**(values or {}), **named})
+        return found
+
+    def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
+        """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.
+
+        Arrays of points are broadcast to one shape S; a matrix field has the shape S + (rows, columns).  Where a condition
+        of the result, or a declared sign, fails, there stands what holds in that case, else `nan`.  Floating-point points
+        are read as their shortest decimals where a condition is decided.  Fields that depend on time or on the variable
+        of polynomials, and words, are left out.  Raises `InputError` where a parameter has no value.
+        """
+        from symobs.result.evaluation import evaluate  # noqa: PLC0415 - it needs NumPy
+
+        return evaluate(self, points)
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The systems of a design by name: the plant, if it has input and output, and what is built for it."""
+        m = self.plant.matrices
+        return {"plant": Realisation(m.A, m.B, m.C, m.D)} if m.has_input and m.has_output else {}
+
+    @property
+    def controller(self) -> Controller | None:
+        """The system of a design that a program runs."""
+        return None
+
+    def to_control(self) -> dict[str, Any]:
+        """Return the systems of a design by name as state-space systems of python-control.
+
+        plant         u → y
+        observer      (u, y) → x_hat
+        compensator   y → w = F y, so that u = v − w closes the loop
+        closed_loop   v → y
+
+        Entries are the nearest doubles; `StateSpace.from_control` reads each system back exactly.  Raises `InputError`
+        where a parameter has no value, naming it, and `UsageError` where python-control is not installed.
+        """
+        from symobs.result.control_systems import to_control  # noqa: PLC0415 - it needs python-control
+
+        return to_control(self)
 
     def __getattr__(self, name: str) -> Any:
         """Return an answer as SymPy objects; Python asks here too where a property of the class has failed."""
@@ -252,14 +312,28 @@ class Result(Faces):
     def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
 
     @overload
+    def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
+
+    @overload
     def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
 
-    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes:
+    def to(
+        self,
+        format_name: str,
+        *,
+        convention: str = "standard",
+        detail: str = "full",
+        period: object = None,
+        hold: str = "zoh",
+    ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer.
+        `detail` says how much of the derivation is told: full, outline or answer.  python, matlab, c and modelica are the
+        observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
+        bilinear map (tustin); numpy and csv the numbers alone.
         """
-        return render(Document("", "", (self,), convention_named(convention), detail=detail), format_name)
+        document = Document("", "", (self,), convention_named(convention), detail=detail, period=period, hold=hold)
+        return render(document, format_name)
 
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
@@ -296,6 +370,11 @@ class Document:
     text: str = ""
     detail: str = field(default="full", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)
+    #: For a format that is a program: the sampling period, and how the input is held.
+    period: object = field(default=None, kw_only=True)
+    hold: str = field(default="zoh", kw_only=True)
+    #: The answers that are printed alone, by name; none means the whole document.
+    printed: tuple[str, ...] = field(default=(), kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

@@ -9,7 +9,7 @@ import importlib
 import pkgutil
 from functools import lru_cache
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import symobs
 from symobs.errors import UsageError
@@ -64,9 +64,23 @@ def formats() -> Mapping[str, Any]:
 
 
 def render(document: Any, format_name: str) -> str | bytes:
-    """Return a document in a format; raises `UsageError` naming the formats that exist."""
-    rendered: str | bytes = format_named(format_name).render(document)
+    """Return a document in a format, or the answers that are to be printed alone.
+
+    Raises `UsageError` naming the formats that exist, or those that print answers alone or are programs.
+    """
+    chosen = format_named(format_name)
+    if document.period is not None and not hasattr(chosen, "is_program"):
+        _refuse("a period belongs to a program", "--period", "is_program")
+    if document.printed and not hasattr(chosen, "answers"):
+        _refuse(f"{format_name} prints no answers alone", "--print", "answers")
+    rendered: str | bytes = chosen.answers(document) if document.printed else chosen.render(document)
     return rendered
+
+
+def _refuse(message: str, where: str, having: str) -> NoReturn:
+    """Raise `UsageError` naming the formats that have an attribute."""
+    names = ", ".join(sorted(name for name, found in formats().items() if hasattr(found, having)))
+    raise UsageError(message, where=where, repair=f"use --format with one of {names}")
 
 
 def format_named(name: str) -> Any:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.errors import InputError
+from symobs.exact.floating.doubles import nearest_double
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix
 
 
 class ControlSystem(NamedTuple):
@@ -31,6 +35,19 @@ def read_control_system(system: Any) -> ControlSystem:
         raise InputError(message, where="plant", repair="convert it by control.ss(system)")
     parts = [_shortest_decimals(system, name, [getattr(system, name)[0][0]])[0] for name in ("num", "den")]
     return ControlSystem(parts, {}, dt)
+
+
+def exact_of(system: Any) -> Any:
+    """Return the exact plant that a system was made of, None where there is none or its floats are others by now."""
+    exact = getattr(system, "exact", None)
+    if exact is None or not all(_are_of(getattr(exact.matrices, name), getattr(system, name)) for name in "ABCD"):
+        return None
+    return exact if (exact.dt if isinstance(exact.dt, int) else float(exact.dt)) == system.dt else None
+
+
+def _are_of(matrix: Matrix, array: Any) -> bool:
+    """Return whether an array holds the doubles nearest to the entries of an exact matrix."""
+    return bool(array.shape == matrix.shape) and array.reshape(-1).tolist() == [*map(nearest_double, matrix.entries)]
 
 
 def _shortest_decimals(system: Any, name: str, rows: Any) -> list[list[str]]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from symobs.errors import BudgetExceeded, InputError, ProblemErrors, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.expression import parse_polynomial
-from symobs.system.control_system import read_control_system
+from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.matrices import Matrices, as_rows, shape_errors
 from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
@@ -134,8 +134,12 @@ class StateSpace:
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
         """Return the plant of a python-control system; each float is read as its shortest decimal.
 
-        The page says so.  Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
+        The page says so.  A system of `Result.to_control` is read back exactly.
+
+        Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
         """
+        if symbols is None and (exact := exact_of(system)) is not None:
+            return cast("StateSpace", exact)
         transfer_function, matrices, dt = read_control_system(system)
         if transfer_function is None:
             plant = cls(**matrices, dt=dt, symbols=symbols)

@@ -59,9 +59,12 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         chosen = {name: value for name, value in options_given.items() if name.startswith(group) and value is not None}
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
-    chosen = chosen_format(options_given["format_name"], options_given["target"])
+    default = "text" if options_given["printed"] else "latex"
+    chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
     check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
-    page = page_of(options_given["detail"], options_given["templates"], chosen)
+    of_numbers = {name: options_given[name] for name in ("printed", "period", "hold")}
+    page = page_of(options_given["detail"], options_given["templates"], chosen, **of_numbers)
+    page["settings"] = options_given["settings"]
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True

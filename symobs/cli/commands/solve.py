@@ -33,16 +33,20 @@ def command(
     convention_name: str | None,
     detail: str,
     templates: str | None,
+    printed: tuple[str, ...],
+    period: str | None,
+    hold: str,
+    settings: dict[str, str],
     timeout: float | None,
     memory: float | None,
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
-    chosen = chosen_format(format_name, target)
+    chosen = chosen_format(format_name, target, default="text" if printed else "latex")
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    page = page_of(detail, templates, chosen)
+    page = page_of(detail, templates, chosen, printed=printed, period=period, hold=hold)
 
     def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)
@@ -56,6 +60,7 @@ def command(
             report_progress,
             bibliography=bibliography,
             only_some_tasks=task_name is not None,
+            settings=settings,
             **page,
         )
 

@@ -59,8 +59,8 @@ def progress_on_terminal(found: Any, report_progress: Progress) -> Progress:
     return shown
 
 
-def chosen_format(format_name: str | None, target: str | None) -> str:
-    """Return the output format: that of --format, else that of the suffix of the target, else LaTeX."""
+def chosen_format(format_name: str | None, target: str | None, *, default: str = "latex") -> str:
+    """Return the output format: that of --format, else that of the suffix of the target, else the default."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
     from symobs.result import format_named  # noqa: PLC0415
@@ -73,7 +73,7 @@ def chosen_format(format_name: str | None, target: str | None) -> str:
             repair = f"give --format one of {', '.join(known)}"
             raise UsageError(f"the suffix {quoted(suffix)} names no output format", where="-o", repair=repair)
         format_name = "latex" if "latex" in named else named[0]
-    return str(format_named(format_name or "latex").name)
+    return str(format_named(format_name or default).name)
 
 
 def place_of(file: str) -> str:

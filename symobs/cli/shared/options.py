@@ -31,10 +31,35 @@ def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> 
     raise UsageError(f"{quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
 
 
+def _settings(_: click.Context, __: click.Parameter, entries: tuple[str, ...]) -> dict[str, str]:
+    """Return the values of --set by name; raises `UsageError` for what is no NAME=VALUE, or a name set twice."""
+    found: dict[str, str] = {}
+    for entry in entries:
+        name, separator, value = (part.strip() for part in entry.partition("="))
+        if not (name and separator and value):
+            raise UsageError(f"{quoted(entry)} gives no value", where="--set", repair="write for example --set k=4")
+        if name in found:
+            raise UsageError(f"{quoted(name)} is set twice", where="--set", repair="keep one of them")
+        found[name] = value
+    return found
+
+
+def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
+    """Return the names of --print; raises `UsageError` where there is none."""
+    names = tuple(name for part in (value or "").split(",") if (name := part.strip()))
+    if value is not None and not names:
+        raise UsageError("no answer is named", where="--print", repair="write for example --print K,L")
+    return names
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
-        "--format", "format_name", metavar="NAME", help="latex (default), html, markdown, text, json, pdf, …"
+        "--format",
+        "format_name",
+        metavar="NAME",
+        help="latex (default), html, markdown, text, json, pdf, …; a program: c, python, matlab, modelica; "
+        "numbers alone: numpy, csv.",
     ),
     "target": click.option(
         "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
@@ -62,6 +87,28 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         metavar="NAME",
         help='Write the page in this convention: standard, a law such as "u = K x_hat, A + M C", a name that '
         "`symobs conventions` lists, or the path of a TOML file.",
+    ),
+    "printed": click.option(
+        "--print",
+        "printed",
+        metavar="NAMES",
+        help="Print these answers alone, for example K,L: exact, or as numbers with --format matlab, numpy or csv.",
+        callback=_names,
+    ),
+    "period": click.option("--period", metavar="TIME", help="For a program: the sampling period, for example 1/100."),
+    "hold": click.option(
+        "--hold",
+        default="zoh",
+        metavar="NAME",
+        help="For a program: zoh, a zero-order hold (default), or tustin, the bilinear map.",
+    ),
+    "settings": click.option(
+        "--set",
+        "settings",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="Give a parameter a value, for example k=4; repeat it. The answers are those at these values.",
+        callback=_settings,
     ),
     "timeout": click.option(
         "--timeout",

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.cli.shared.output import check_target
-from symobs.errors import OutOfBudget, UsageError
+from symobs.errors import InputError, OutOfBudget, ProblemErrors, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from symobs.cli.shared.time_and_memory import Progress
 
@@ -38,12 +38,15 @@ def convention_of(name: str | None) -> Any:
     return convention_named(name)
 
 
-def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, Any]:
-    """Return the options of --detail and --templates; raises `UsageError` for unknown values."""
+def page_of(detail: str, templates: str | None, format_name: str, **of_numbers: Any) -> dict[str, Any]:
+    """Return the options of --detail and --templates, and those of programs and numbers as they are.
+
+    Raises `UsageError` for unknown values.
+    """
     from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
 
     if templates is None:
-        return {"detail": detail_named(detail)}
+        return {"detail": detail_named(detail), **of_numbers}
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
     from symobs.result import format_named, formats  # noqa: PLC0415
 
@@ -52,7 +55,7 @@ def page_of(detail: str, templates: str | None, format_name: str) -> dict[str, A
         message = f"the format {format_name} has no LaTeX template"
         raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
     check_folder(Path(templates))
-    return {"detail": detail_named(detail), "templates": Path(templates)}
+    return {"detail": detail_named(detail), "templates": Path(templates), **of_numbers}
 
 
 def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:
@@ -78,12 +81,14 @@ def solved(
     *,
     bibliography: str | None = None,
     only_some_tasks: bool = False,
+    settings: Mapping[str, str] | None = None,
     **page: Any,
 ) -> Outcome:
     """Solve a problem and return the outcome: its document, its plot, messages and exit code.
 
-    With `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the
-    document.  `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
+    `settings` are values of parameters; what the file expects is held against the answers before they are set.  With
+    `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the document.
+    `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
     """
     from symobs.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.result import render  # noqa: PLC0415
@@ -105,6 +110,8 @@ def solved(
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
+    if settings:
+        results = _at(results, settings)
     report_progress("the page")
     outputs = [(rendered(results), target)]
     if bibliography is not None:
@@ -125,6 +132,16 @@ def solved(
     messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
     code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0
     return Outcome(tuple(outputs), (*unmet, *messages), code)
+
+
+def _at(results: tuple[Any, ...], settings: Mapping[str, str]) -> tuple[Any, ...]:
+    """Return the results at values of their parameters; an error names the option."""
+    try:
+        return tuple(result.at(settings) for result in results)
+    except InputError as raised:
+        for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
+            error.where = error.where.replace("values.", "--set ")
+        raise
 
 
 def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None) -> Outcome:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Self
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
-from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
+from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.gain_cases import design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError, together
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.result import Result, choose, method, task

@@ -13,13 +13,14 @@ from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
-from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
+from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.gain_cases import design_of
 from symobs.design.gain.gain_design import letters_of
-from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, observer_of
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, reduced_observer_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, transfer
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 
@@ -44,7 +45,7 @@ class MinimalOrderCompensator(OutputFeedback):
     @classmethod
     def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
         """Return the compensator for these polynomials, in the coordinates [C; R]."""
-        return cls.of(design_of(StateFeedbackDesign, plant, control), observer_of(plant, observer), name)
+        return cls.of(design_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)
 
     @classmethod
     def of(cls, feedback: StateFeedbackDesign, estimator: ReducedOrderObserver, method_name: str) -> Self:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import places, solved
@@ -13,10 +13,13 @@ from symobs.derivation.builder import relation
 from symobs.design.gain.gain_cases import places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer, transfer_matrix
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer
+from symobs.exact.linear_algebra.realisation import Realisation, closed
+from symobs.exact.linear_algebra.transfer_function import transfer_matrix
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Case, Result
+from symobs.result.control_systems import Controller
 from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:
@@ -35,20 +38,6 @@ if TYPE_CHECKING:
 _DECIDABLE_TERMS = 400
 #: What an answer has none of where there is no loop.
 _OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
-
-
-class Realisation(NamedTuple):
-    """A system in state space."""
-
-    A: Matrix
-    B: Matrix
-    C: Matrix
-    D: Matrix
-
-    def function(self, variable: str) -> Matrix:
-        """Return C (sI − A)⁻¹ B + D."""
-        numerators, characteristic = transfer_matrix(*self, variable)
-        return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -358,6 +347,24 @@ class OutputFeedback(Result):
             "closed_loop_matrix_estimate": self.estimate_coordinates,
             "family": self.families,
         }
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, the observer, F, and the plant with F in the return path: u = v − F y."""
+        if not self.exists:
+            return super().systems
+        m, own = self.plant.matrices, self.estimator.systems
+        loop = closed(Realisation(m.A, m.B, m.C, m.D), self.realisation)
+        return {**own, "compensator": self.realisation, "closed_loop": loop}
+
+    @property
+    def controller(self) -> Controller | None:
+        """Y → u = −F y."""
+        if not self.exists:
+            return None
+        A, B, C, D = self.realisation
+        sizes = (("y", self.plant.outputs),), ("u", self.plant.inputs)
+        return Controller("compensator", Realisation(A, B, -C, -D), *sizes, returns=True, gains=("K", "L"))
 
     @property
     def families(self) -> Mapping[str, Any] | None:

@@ -20,8 +20,10 @@ from symobs.design.page_parts.component_equations import write_components
 from symobs.design.page_parts.time_responses import plot_error
 from symobs.design.pole_placement.multiple_outputs import pair_of
 from symobs.exact import Matrix
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula.term import Term, letter
 from symobs.result import Case, Result, task
+from symobs.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -75,6 +77,29 @@ class ObserverDesign(GainDesign):
             "B_y": L,
             **self.report,
         }
+
+    @property
+    def told_method(self) -> str:
+        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+        if self.desired is None or self.answer["L"] is None or not self.fixed_polynomial.is_one:
+            return super().told_method
+        return page_style(self.page_method, self.plant, several=self.plant.outputs > 1)
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the observer (u, y) → x̂."""
+        m, L = self.plant.matrices, self.answer["L"]
+        if L is None:
+            return super().systems
+        driven = Matrix.block([[m.B - L @ m.D, L]]) if m.has_input else L
+        rest = Matrix.zeros(self.plant.order, driven.shape[1])
+        own = Realisation((m.A - L @ m.C).normal(), driven.normal(), Matrix.identity(self.plant.order), rest)
+        return {**super().systems, "observer": own}
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
 
     def write(self, page: Page) -> None:
         """Write data, gain, and the observer with its error equation."""

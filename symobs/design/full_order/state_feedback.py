@@ -14,6 +14,7 @@ from symobs.design.gain.gain_page import write_gain
 from symobs.design.gain.gain_request import designed, page_style
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.pole_placement.multiple_outputs import pair_of
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula.term import Term, letter
 from symobs.result import Case, Result, task
 
@@ -69,6 +70,22 @@ class StateFeedbackDesign(GainDesign):
             "closed_loop_matrix": None if K is None else m.A - m.B @ K,
             **self.report,
         }
+
+    @property
+    def told_method(self) -> str:
+        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+        if self.desired is None or self.answer["K"] is None or not self.fixed_polynomial.is_one:
+            return super().told_method
+        return page_style(self.page_method, self.plant, several=self.plant.inputs > 1)
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the loop with u = v − K x."""
+        m, K = self.plant.matrices, self.answer["K"]
+        if K is None or not m.has_output:
+            return super().systems
+        loop = Realisation((m.A - m.B @ K).normal(), m.B, (m.C - m.D @ K).normal(), m.D)
+        return {**super().systems, "closed_loop": loop}
 
     def write(self, page: Page) -> None:
         """Write data and gain."""

@@ -19,9 +19,11 @@ from symobs.design.gain.gain_cases import chosen, design_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, kernel, modulo, unit_rows
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.result import Case, Result, choose, method, task
+from symobs.result.control_systems import Controller, observer_of
 from symobs.specification import (
     DesiredPolynomial,
     MatrixText,
@@ -186,6 +188,25 @@ class ReducedOrderObserver(Result):
         yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
 
     @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the observer (u, y) → x̂ with the state z."""
+        m, known = self.plant.matrices, self.answer
+        if known["L"] is None:
+            return super().systems
+        M = known["M"]
+        rows, p = range(self.plant.order), self.plant.outputs
+        of_y, of_z = M.select(rows, range(p)), M.select(rows, range(p, self.plant.order))
+        driven, shown = known["H"], of_y
+        if m.has_input:
+            driven, shown = Matrix.block([[known["G"], driven]]), Matrix.block([[-(of_y @ m.D), shown]])
+        return {**super().systems, "observer": Realisation(known["F"], driven.normal(), of_z, shown.normal())}
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
+
+    @property
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of the inner gain and of the observer."""
         return (*self.inner.certificates, *self.certificates)
@@ -227,7 +248,7 @@ class ReducedOrderObserver(Result):
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             desired = self.desired.substitute(values)
-            return observer_of(plant, desired, self.answer["T"].substitute(values), self.method)
+            return reduced_observer_of(plant, desired, self.answer["T"].substitute(values), self.method)
 
         return solved(self.plant, self.places, solve)
 
@@ -315,7 +336,7 @@ class DependentOutputs(ReducedOrderObserver):
         return ()
 
 
-def observer_of(
+def reduced_observer_of(
     plant: StateSpace, desired: DesiredPolynomial, T: Matrix | None = None, method_name: str = "partition"
 ) -> ReducedOrderObserver:
     """Return the observer in the coordinates T, or in others where these are singular; the negative result on a stratum.

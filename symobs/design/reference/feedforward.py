@@ -12,10 +12,10 @@ from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
-from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, kernel
+from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.result import Case, Result, choose, method, task
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
+    from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
@@ -106,6 +107,17 @@ class FeedforwardDesign(Result):
         driven = block([[B @ F_], [nothing]])
         whole = seen @ (letter("s", zero) @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
         yield Claim(relation(letter("T_v", zero), whole), zero, "the whole loop with its error responds alike")
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """Those of the loop, which is closed from v to y."""
+        if self.answer["F"] is None:
+            return self.loop.systems
+        F = self.answer["F"]
+        return {
+            **self.loop.systems,
+            "closed_loop": response(self.loop, F if isinstance(F, Matrix) else Matrix.of([[F]])),
+        }
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

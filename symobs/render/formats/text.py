@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
+from symobs.render.formats.code.numbers import exact_answers
 from symobs.render.page.blocks import (
     CaseBlock,
     Caution,
@@ -56,6 +57,10 @@ class Text:
     def render(self, document: Document) -> str:
         """Return the document as plain text."""
         return TextWriter(printer_for(document, TextPrinter), WIDTH).body(narrate(document)) + "\n"
+
+    def answers(self, document: Document) -> str:
+        """Return the exact answers that are to be printed alone."""
+        return exact_answers(document)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title."""

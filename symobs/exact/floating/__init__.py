@@ -1,0 +1,1 @@
+"""Exact values in floating point: arrays of points, nearest doubles, and proofs about what rounding does."""

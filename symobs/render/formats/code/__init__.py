@@ -1,0 +1,1 @@
+"""Observers and compensators as programs, and the numbers of an answer alone."""

@@ -1,0 +1,158 @@
+"""--set, [values], --print, --period and the formats of numbers and programs, as they are typed."""
+
+from __future__ import annotations
+
+import io
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.support.tools.command_line import EXAMPLES, inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FILE = """
+task = "compensator"
+[symbols]
+k = "positive"
+[plant]
+A = "[0 1; 0 -k]"
+B = "[0; 1]"
+C = "[1 0]"
+[specification]
+control_poles = "-2, -2"
+observer_poles = "-10, -10"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "servo.toml").write_text(FILE, encoding="utf-8")
+    return tmp_path
+
+
+def test_print_writes_the_answers_alone(folder: Path) -> None:
+    run = inside("solve", "servo.toml", "--print", "K,L", folder=folder)
+    assert (run.code, run.out, run.err) == (0, "K = [4 -k+4]\nL = [-k+20; k**2-20*k+100]\n", "")
+
+
+def test_set_gives_values_exactly(folder: Path) -> None:
+    run = inside("solve", "servo.toml", "--print", "K, L", "--set", "k=1/3", folder=folder)
+    assert run.out == "K = [4 11/3]\nL = [59/3; 841/9]\n"
+    found = json.loads(inside("solve", "servo.toml", "--set", "k=1", "--format", "json", folder=folder).out)["results"][
+        0
+    ]
+    assert (found["K"], found["L"], found["symbols"]) == ([["4", "3"]], [["19"], ["81"]], {})
+    assert found["decimals"]["L"] == [[19.0], [81.0]]
+    task = inside("observer", "--A", "[0 1; -2 -k]", "--C", "[1 0]", "--poles=-3, -4", "--set", "k=1", "--print", "L")
+    assert (task.code, task.out) == (0, "L = [6; 4]\n")
+
+
+@pytest.mark.parametrize("extra", ["[values]\nk = 1\n", '[values]\nk = "2/2"\n[expect]\nL = "[19; 81]"\n'])
+def test_a_file_gives_values(folder: Path, extra: str) -> None:
+    (folder / "servo.toml").write_text(FILE + extra, encoding="utf-8")
+    run = inside("solve", "servo.toml", "--print", "L", folder=folder)
+    assert (run.code, run.out, run.err) == (0, "L = [19; 81]\n", "")
+
+
+def test_what_a_file_expects_is_held_against_its_own_answers(folder: Path) -> None:
+    """`--set` comes after: the file's problem has the parameter, and so has what it expects."""
+    expected = '[expect]\nL = "[20 - k; (10 - k)^2]"\n'
+    (folder / "servo.toml").write_text(FILE + expected, encoding="utf-8")
+    assert inside("solve", "servo.toml", "--print", "L", "--set", "k=1", folder=folder).code == 0
+    (folder / "servo.toml").write_text(FILE + "[values]\nk = 2\n" + '[expect]\nL = "[19; 81]"\n', encoding="utf-8")
+    assert inside("solve", "servo.toml", "--print", "L", folder=folder).code == 4
+
+
+def test_the_numbers_alone(folder: Path) -> None:
+    def printed(name: str, answers: str = "K,L") -> str:
+        return inside("solve", "servo.toml", "--set", "k=1/3", "--print", answers, "--format", name, folder=folder).out
+
+    assert printed("matlab") == "K = [4.0 3.6666666666666665];\nL = [19.666666666666668; 93.44444444444444];\n"
+    np.testing.assert_array_equal(np.loadtxt(io.StringIO(printed("csv", "K")), delimiter=","), [4, 11 / 3])
+    np.testing.assert_array_equal(np.loadtxt(io.StringIO(printed("csv", "L"))), [59 / 3, 841 / 9])
+    assert printed("csv").splitlines() == [
+        "# K",
+        "4.0,3.6666666666666665",
+        "# L",
+        "19.666666666666668",
+        "93.44444444444444",
+    ]
+    assert printed("numpy") == (
+        "import numpy as np\n\nK = np.array([[4.0, 3.6666666666666665]])\n"
+        "L = np.array([[19.666666666666668], [93.44444444444444]])\n"
+    )
+    whole = inside("solve", "servo.toml", "--set", "k=1/3", "--format", "numpy", folder=folder).out
+    assert "closed_loop_matrix = np.array([[0.0, 1.0, 0.0, 0.0], [-4.0, -4.0," in whole
+
+
+def test_names_are_those_of_the_convention() -> None:
+    example = next(
+        path for path in EXAMPLES if 'convention = "S0"' in path.read_text(encoding="utf-8") and "observer" in path.stem
+    )
+    found = json.loads(inside("solve", str(example), "--format", "json").out)["results"]
+    own = {name: value for result in found for name, value in result["in_convention"].items() if name != "name"}
+    for name, value in own.items():
+        printed = inside("solve", str(example), "--print", name).out
+        assert all(str(entry).replace(" ", "") in printed for row in value for entry in row)
+
+
+def test_a_program_is_written_to_a_file_by_its_suffix(folder: Path) -> None:
+    for suffix, begins in ((".c", "/*"), (".py", '"""'), (".m", "function [u, state]"), (".mo", "block Compensator")):
+        target = f"servo{suffix}"
+        run = inside("solve", "servo.toml", "--set", "k=1", "--period", "1/100", "-o", target, folder=folder)
+        assert (run.code, run.err) == (0, "")
+        assert (folder / target).read_text(encoding="utf-8").startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["--set", "k=-1"], 3, "--set k: -1 is not positive, as k is declared; give a value of that sign"),
+        (["--set", "q=1", "--set", "k=x"], 3, "--set q: q is no parameter of the problem; use k"),
+        (["--set", "k"], 2, '--set: "k" gives no value; write for example --set k=4'),
+        (["--set", "k=1", "--set", "k=2"], 2, '--set: "k" is set twice; keep one of them'),
+        (["--print", "M"], 2, "--print: there is no answer M; use K, L, F"),
+        (["--print", "closed_lop"], 2, "--print: there is no answer closed_lop; did you mean closed_loop?"),
+        (["--print", ","], 2, "--print: no answer is named; write for example --print K,L"),
+        (
+            ["--print", "K", "--format", "html"],
+            2,
+            "--print: html prints no answers alone; use --format with one of csv, matlab",
+        ),
+        (
+            ["--print", "F", "--set", "k=1", "--format", "csv"],
+            2,
+            "--print: F is not made of numbers; leave --format out",
+        ),
+        (
+            ["--print", "K", "--format", "numpy"],
+            3,
+            "values: a NumPy array needs numbers, and k has no value; set them: --set k=1",
+        ),
+        (["--format", "c", "--period", "1/100"], 3, "code needs numbers, and k has no value; set them: --set k=1"),
+        (["--format", "c", "--set", "k=1"], 2, "--period: a program runs in discrete time"),
+        (["--format", "c", "--set", "k=1", "--period", "9", "--hold", "x"], 2, "--hold: 'x' is no way to sample"),
+    ],
+)
+def test_refusals(folder: Path, arguments: list[str], code: int, message: str) -> None:
+    run = inside("solve", "servo.toml", *arguments, folder=folder)
+    assert (run.code, run.out) == (code, "")
+    assert message in run.err
+
+
+def test_all_wrong_values_of_a_file_are_told_at_once(folder: Path) -> None:
+    (folder / "servo.toml").write_text(FILE + "[values]\nk = -1\nq = 2\n", encoding="utf-8")
+    run = inside("solve", "servo.toml", folder=folder)
+    assert run.code == 3
+    assert [line.partition(":")[0] for line in run.lines] == ["values.k", "values.q"]
+
+
+def test_json_names_the_method_whose_page_is_written() -> None:
+    arguments = ("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles=-3, -4", "--format", "json")
+    for method, page in ((None, "canonical_form"), ("ackermann", "ackermann"), ("existence", "existence")):
+        asked = ("--method", method) if method else ()
+        assert json.loads(inside(*arguments, *asked).out)["results"][0]["page_method"] == page
