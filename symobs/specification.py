@@ -17,6 +17,7 @@ from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
+from symobs.system.matrices import as_rows
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
@@ -156,15 +157,16 @@ def desired_polynomial(
     return _from_polynomial(polynomial, plant, degree, second)
 
 
-def read_poles(value: object, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
+def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
         return parse_poles(value, symbols.names, variable=variable, where=where)
+    if is_sympy(value) and (hasattr(value, "shape") or hasattr(value, "__iter__")):
+        value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
     entries = listed if isinstance(listed, Sequence) else [listed]
     read = [
-        read_complex(entry, f"{where}[{index}]") if type(entry).__module__.startswith("sympy") else entry
-        for index, entry in enumerate(entries)
+        read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
     ]
     return parse_poles(read, symbols.names, variable=variable, where=where)
 
@@ -224,9 +226,9 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
 
 
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
-    """Return a given gain; raises ShapeMismatch for another shape."""
+    """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
-    gain = read_matrix(value, plant.symbols.seen(value), where)
+    gain = read_matrix(as_rows("B" if shape[1] == 1 else "C", value), plant.symbols.seen(value), where)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")

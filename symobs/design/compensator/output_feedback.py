@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import places, solved
@@ -13,11 +13,12 @@ from symobs.derivation.builder import relation
 from symobs.design.gain.gain_cases import places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer, transfer_matrix
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer
 from symobs.formula import Environment
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Case, Result
 from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
+from symobs.system.connections import Realisation, closed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -35,34 +36,6 @@ if TYPE_CHECKING:
 _DECIDABLE_TERMS = 400
 #: What an answer has none of where there is no loop.
 _OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
-
-
-class Realisation(NamedTuple):
-    """A system in state space."""
-
-    A: Matrix
-    B: Matrix
-    C: Matrix
-    D: Matrix
-
-    def function(self, variable: str) -> Matrix:
-        """Return C (sI − A)⁻¹ B + D."""
-        numerators, characteristic = transfer_matrix(*self, variable)
-        return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
-
-
-def closed(plant: Realisation, returned: Realisation) -> Realisation:
-    """Return the plant with another system in the return path, negative feedback: u = v − (C₂ x₂ + D₂ y)."""
-    A, B, C, D = plant
-    through = (Matrix.identity(B.shape[1]) + returned.D @ D).inverse()
-    v, state, own = through, through @ returned.D @ C, through @ returned.C
-    output, fed = C - D @ state, D @ own
-    return Realisation(
-        Matrix.block([[A - B @ state, -(B @ own)], [returned.B @ output, returned.A - returned.B @ fed]]).normal(),
-        Matrix.block([[B @ v], [returned.B @ D @ v]]).normal(),
-        Matrix.block([[output, -fed]]).normal(),
-        (D @ v).normal(),
-    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

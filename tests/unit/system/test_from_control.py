@@ -24,7 +24,7 @@ def test_floats_are_read_as_their_shortest_decimals() -> None:
 
 def test_the_page_says_what_was_read() -> None:
     plant = StateSpace.from_control(control.ss([[0, 1], [0, -1]], [[0], [1]], [[1, 0]], [[0]]))
-    sentence = "shortest decimals of the floating-point numbers"
+    sentence = "Floating-point numbers are read as their shortest decimals."
     assert sentence in " ".join(symobs.observer(plant, poles=[-10, -10]).to("text").split())
     exact = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     assert sentence not in " ".join(symobs.observer(exact, poles=[-10, -10]).to("text").split())
