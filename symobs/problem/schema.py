@@ -145,6 +145,7 @@ def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str
     known = given if isinstance(given, Mapping) else {}
     asked = {name: task for task in wanted for name in task.keywords if name.endswith("poles")}
     for name, task in asked.items():
-        instead = (name, f"{name.removesuffix('poles')}polynomial", *("KLMH" if name == "poles" else ()))
+        gains = {"poles": "KLMH", "control_poles": "K", "observer_poles": "L"}.get(name, "")
+        instead = (name, f"{name.removesuffix('poles')}polynomial", *gains)
         if not any(other in known or other in keys_of(task, known) for other in instead):
             yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'

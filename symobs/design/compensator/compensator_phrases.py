@@ -22,6 +22,9 @@ PHRASES: dict[str, str] = {
     "control_in_error": "In terms of the error,",
     "closed_loop_matrix": "so that plant and error together are block triangular,",
     "polynomial_splits": "and the polynomial of the loop is the product of the two that were asked for:",
+    "polynomial_splits_given": "and the polynomial of the loop is the product of the two:",
+    "loop_unstable_continuous": "Not all poles of the loop lie in the open left half-plane: with these gains it is unstable.",
+    "loop_unstable_discrete": "Not all poles of the loop lie inside the unit circle: with these gains it is unstable.",
     "estimate_coordinates": "In state and estimate the same loop reads",
     "unity_feedback": "With $F$ before the plant and unity feedback the reference acts on the output through another numerator,",
     "similar_loops": "The two matrices are similar through {turned}.",
@@ -40,6 +43,8 @@ PHRASES: dict[str, str] = {
     "loop_no_poles": "It has no poles: those of the state feedback and of the observer, {lost}, all cancel.",
     "loop_polynomial_divides": "The denominator divides the product of the two polynomials asked for, as it must.",
     "loop_polynomial": "The denominator is the product of the two polynomials asked for, as it must be.",
+    "loop_polynomial_divides_given": "The denominator divides the product of the two polynomials, as it must.",
+    "loop_polynomial_given": "The denominator is the product of the two polynomials, as it must be.",
     "defective": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are not bounded by a multiple of the exponential alone.",
     "defective_instead": "The repeated pole {pole} is defective, {matrix}, so the transients contain its exponential times a power of time and are not bounded by a multiple of the exponential alone. With distinct poles they are, for example with {instead}.",
     "side_by_side": "Placing the poles of observer and state feedback.",
@@ -58,6 +63,9 @@ PHRASES: dict[str, str] = {
 QUESTIONS: dict[str, str] = {
     "ask compensator": "Design a compensator of state feedback and an observer of full order, and close the loop with it.",
     "ask compensator observer=full": "Design a compensator of state feedback and an observer of full order, and close the loop with it.",
+    "ask compensator K L": "Close the loop with the feedback gain $K$ and an observer of full order with the gain $L$, and find its poles.",
+    "ask compensator K": "Close the loop with the feedback gain $K$ and an observer of full order.",
+    "ask compensator L": "Close the loop with state feedback and an observer of full order with the gain $L$.",
     "ask compensator observer=minimal": "Design a compensator of state feedback and an observer of minimal order, and close the loop with it.",
 }
 
@@ -71,6 +79,8 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
     "loop_no_poles": ("polynomial",),
+    "loop_unstable_continuous": ("unstable",),
+    "loop_unstable_discrete": ("unstable",),
     "no_stable_compensator": ("no_stable_compensator",),
 }
 

@@ -13,22 +13,22 @@ from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
-from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
+from symobs.design.compensator.output_feedback import Asked, OutputFeedback
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
-from symobs.design.gain.gain_cases import design_of
+from symobs.design.gain.gain_cases import half_of
 from symobs.design.gain.gain_design import letters_of
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, completed, require_rank
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, transfer
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
+from symobs.system.connections import Realisation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
     from symobs.result import Case
-    from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
 
@@ -42,9 +42,10 @@ class MinimalOrderCompensator(OutputFeedback):
     estimator: ReducedOrderObserver
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
-        """Return the compensator for these polynomials, in the coordinates [C; R]."""
-        feedback = design_of(StateFeedbackDesign, plant, control)
+    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+        """Return the compensator for these polynomials, or with this K, in the coordinates [C; R]."""
+        assert not isinstance(observer, Matrix)  # noqa: S101 - the task takes no L of a reduced-order observer
+        feedback = half_of(StateFeedbackDesign, plant, control)
         estimator = ReducedOrderObserver.of(plant, observer, completed(plant.matrices.C), "partition")
         return cls.of(feedback, estimator, name)
 

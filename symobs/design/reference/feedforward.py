@@ -11,17 +11,18 @@ from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.design.compensator.compensator import observer_based
-from symobs.design.compensator.output_feedback import OutputFeedback, Realisation
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
 from symobs.result import Case, Result, choose, method, task
+from symobs.system.connections import Realisation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.design.compensator.output_feedback import OutputFeedback
     from symobs.specification import Name, Poles, PolynomialText
     from symobs.system import StateSpace
 
