@@ -11,7 +11,7 @@ import symobs
 from symobs import StateSpace
 from symobs.errors import CertificateRejected, InputError
 
-s, k = sympy.symbols("s k")
+s = sympy.Symbol("s")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 SEVERAL = StateSpace("[0 1 0; 0 0 1; 1 -2 3]", "[1 0; 0 0; 0 1]", "[1 0 0; 0 1 0]")
 THROUGH = StateSpace("[0 1; -2 k]", "[0; 1]", "[1 0]", "[3]")
@@ -74,7 +74,8 @@ def test_where_a_loop_with_a_parameter_is_stable() -> None:
     found = symobs.compensator(SERVO, K=["k", 2], L=[3, 4])
     assert found.stable == "conditional"
     for value in (-20, -1, 5, 100):
-        assert all(condition.subs(k, value) for condition in found.stable_if) == (value > 0), value
+        holds = [eval(condition, {"k": value}) for condition in found.stable_if]  # noqa: S307 - of our own making
+        assert all(holds) == (value > 0), value
 
 
 def test_one_gain_is_given_and_the_other_placed() -> None:
@@ -88,12 +89,12 @@ def test_one_gain_is_given_and_the_other_placed() -> None:
 
 
 def test_what_is_not_observable_has_its_cases() -> None:
-    """At k = 0 the second state is not seen: its mode -1 stays, whatever the gain."""
+    """At k = 0 the second state is not seen, and its mode -1 stays; at k = 1 it is not moved."""
     plant = StateSpace("[-2 k; 0 -1]", "[1; 1]", "[1 0]", symbols={"k": "real"})
     found = symobs.compensator(plant, K=[1, 1], L=[1, 1])
-    (case,) = found.case_tree
-    assert [str(condition) for condition in case.when] == ["k = 0"]
-    assert sympy.expand(case.result.closed_loop_polynomial).subs(s, -1) == 0
+    assert [case.result.plant.A[0, 1] for case in found.case_tree] == [1, 0]
+    for case in found.case_tree:
+        assert sympy.expand(case.result.closed_loop_polynomial).subs(s, -1) == 0
 
 
 def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
