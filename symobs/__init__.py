@@ -8,6 +8,10 @@ from __future__ import annotations
 
 from typing import Any
 
+#: The functions that are no tasks, and where they are.
+FUNCTIONS = {
+    "bounded": "symobs.cli.shared.time_and_memory",
+}
 #: Where tasks and methods are discovered, and where output formats are.
 TASK_PACKAGES = ("symobs.analysis", "symobs.design")
 FORMAT_PACKAGE = "symobs.render.formats"
@@ -19,6 +23,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "StateSpace":
         return importlib.import_module("symobs.system").StateSpace
+    if name in FUNCTIONS:
+        return getattr(importlib.import_module(FUNCTIONS[name]), name)
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name[:1].isupper():
@@ -35,7 +41,7 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     from symobs.result import tasks  # noqa: PLC0415
 
-    return sorted(["StateSpace", "__version__", *_errors(), *tasks()])
+    return sorted(["StateSpace", "__version__", *_errors(), *FUNCTIONS, *tasks()])
 
 
 def _errors() -> dict[str, type[Exception]]:

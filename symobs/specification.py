@@ -79,6 +79,15 @@ KINDS: dict[str, dict[str, Any]] = {
     },
 }
 
+#: The words a keyword of the kind Name may be; those of `method` are the task's methods.
+CHOICES: dict[str, tuple[str, ...]] = {
+    "kind": ("controllable", "observable", "modal"),
+    "meaning": ("asymptotic", "lyapunov"),
+    "member": ("simple", "decoupled"),
+    "observer": ("full", "minimal"),
+    "of": ("observability", "controllability"),
+}
+
 
 @dataclass(frozen=True)
 class DesiredPolynomial:

@@ -9,7 +9,7 @@ from symobs.conditions import SIGNS
 from symobs.convention import conventions
 from symobs.result import tasks
 from symobs.result.in_convention import names_in
-from symobs.specification import KINDS
+from symobs.specification import CHOICES, KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -72,7 +72,9 @@ def repair_of(key: str, known: Collection[str], where: str) -> str:
     """Return what to do about a key that is not known where it stands: most are, elsewhere."""
     from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
 
-    near = get_close_matches(key[:64], known, 1)
+    near = [name for name in known if len(key) > 2 and name.startswith(key.rstrip("s"))] or get_close_matches(
+        key[:64], known, 1
+    )
     of = [task.name for task in tasks().values() if key in task.keywords]
     if key in PLANT:
         return "it belongs to [plant]"
@@ -98,7 +100,8 @@ def schema() -> dict[str, Any]:
     keywords: dict[str, Any] = {}
     for name in known:
         for keyword, kind in kinds_of(tasks()[name]).items():
-            keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
+            words = {"enum": list(CHOICES[keyword])} if keyword in CHOICES and kind == "Name" else {}
+            keywords.setdefault(keyword, {**KINDS[kind], **words, "tasks": []})["tasks"].append(name)
     for convention in conventions().values():
         for own, (name, _) in names_in(convention).items():
             if own not in keywords and name in keywords:

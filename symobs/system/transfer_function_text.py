@@ -117,6 +117,15 @@ def read_characteristic(value: object, symbols: Symbols, variable: str, where: s
     return found
 
 
+def _other_time(value: Scalar, variable: str) -> str:
+    """Return what to do about a function of the variable of the other domain of time."""
+    if variable == "s" and "z" in value.names:
+        return "z is the variable in discrete time: give dt = true, or the period"
+    if variable == "z" and "s" in value.names:
+        return "s is the variable in continuous time: leave dt out, or write z"
+    return ""
+
+
 def realise(value: Scalar, variable: str, where: str = "transfer_function") -> tuple[Matrix, Matrix, Matrix, Matrix]:
     """Return the controllable canonical form (A, B, C, D) of a proper rational function."""
     denominator = value.denominator.coefficients(variable)
@@ -125,9 +134,8 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
     if order < 1:
         message = f"{value} has no pole, so it has no state"
         example = f"1/({variable}*({variable}+1))"
-        raise InputError(
-            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
-        )
+        repair = f"give a proper rational function of {variable}, such as {example}"
+        raise InputError(message, where=where, repair=_other_time(value, variable) or repair)
     if order > MOST_STATES:
         message = f"a transfer function of order {order}, more than {MOST_STATES}"
         raise BudgetExceeded(message, where=where, repair="give one of lower order")

@@ -6,11 +6,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from symobs.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 Optioned = TypeVar("Optioned", bound="Callable[..., Any] | click.Command")
 
@@ -31,31 +32,98 @@ def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> 
     raise UsageError(f"{quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
 
 
+class OneOf(click.ParamType):
+    """A word of a few, which help and completion show; whoever reads it refuses another one, with what to do."""
+
+    name = "word"
+
+    def __init__(self, choices: Callable[[], Iterable[str]]) -> None:
+        """Take the words, which are looked up where they are shown."""
+        self.choices = choices
+
+    def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:  # noqa: ARG002 - click's signature
+        """Return the words as help shows them."""
+        return f"[{'|'.join(self.choices())}]"
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Return the words that begin like this."""
+        return [CompletionItem(word) for word in self.choices() if word.startswith(incomplete)]
+
+
+class AFile(click.ParamType):
+    """The path of a file, or of a folder, which the shell completes; whoever opens it says what is wrong with it."""
+
+    name = "path"
+
+    def __init__(self, kind: str = "file") -> None:
+        """Take what the shell is to complete: file or dir."""
+        self.kind = kind
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Leave the completion to the shell."""
+        return [CompletionItem(incomplete, type=self.kind)]
+
+
+def _formats() -> Iterable[str]:
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - for help and completion only
+
+    return format_suffixes(symobs.FORMAT_PACKAGE)
+
+
+def _conventions() -> Iterable[str]:
+    from symobs.convention import conventions  # noqa: PLC0415 - for help and completion only
+
+    return conventions()
+
+
+def _details() -> Iterable[str]:
+    from symobs.render.page.detail_level import DETAILS  # noqa: PLC0415 - for help and completion only
+
+    return DETAILS
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
-        "--format", "format_name", metavar="NAME", help="latex (default), html, markdown, text, json, pdf, …"
+        "--format", "format_name", type=OneOf(_formats), help="The output format; latex where nothing is said."
     ),
     "target": click.option(
-        "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
+        "-o",
+        "target",
+        type=AFile(),
+        metavar="PATH",
+        help="Write to PATH; its suffix names the format where --format does not.",
     ),
     "detail": click.option(
         "--detail",
         default="full",
-        metavar="NAME",
-        help="How much of the derivation is told: full (default), outline or answer.",
+        type=OneOf(_details),
+        help="How much of the derivation is told; full where nothing is said.",
     ),
     "templates": click.option(
-        "--templates", metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."
+        "--templates", type=AFile("dir"), metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."
     ),
     "plot": click.option(
         "--plot",
+        type=AFile(),
         metavar="PATH",
         help="Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex.",
     ),
     "convention": click.option(
         "--convention",
         "convention_name",
+        type=OneOf(_conventions),
         metavar="NAME",
         help="Write the page in this convention: standard, S0 to S4, or the path of a TOML file.",
     ),
