@@ -1,6 +1,7 @@
 """What type checkers and editors know of `symobs`; `python -m tests.programs.typed_face` writes it."""
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -23,6 +24,7 @@ from symobs.analysis.time_response.initial_state import InitialState as _Initial
 from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
@@ -45,7 +47,7 @@ from symobs.errors import UnknownName as UnknownName
 from symobs.errors import UsageError as UsageError
 from symobs.system import StateSpace as StateSpace
 
-_Number: TypeAlias = str | int | Fraction | Expr
+_Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -75,6 +77,7 @@ def canonical_form(
     *,
     kind: str = "controllable",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CanonicalFormResult:
     """Return the controllable, observable or modal canonical form, x̄ = T x."""
 
@@ -96,6 +99,7 @@ def characteristic_polynomial(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CharacteristicPolynomialResult:
     """Return χ(s) = det(sI − A), its factors and its roots with multiplicity."""
 
@@ -127,6 +131,12 @@ class _CompensatorResult(_OutputFeedback):
     @property
     def family(self) -> Mapping[str, Any]: ...
     @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
     def T(self) -> ImmutableMatrix: ...
     @property
     def direct_term(self) -> ImmutableMatrix: ...
@@ -134,12 +144,15 @@ class _CompensatorResult(_OutputFeedback):
 def compensator(
     plant: StateSpace,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    L: _Matrix | None = None,
     observer: str = "full",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CompensatorResult:
     """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p."""
 
@@ -163,6 +176,7 @@ def controllability(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ControllabilityResult:
     """Decide whether (A, B) is controllable: rank [B, AB, …, Aⁿ⁻¹B] = n."""
 
@@ -190,6 +204,7 @@ def decomposition(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DecompositionResult:
     """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither."""
 
@@ -212,6 +227,7 @@ def detectability(
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DetectabilityResult:
     """Decide whether some L makes A − LC stable: whether all unobservable modes are stable."""
 
@@ -242,6 +258,7 @@ def dual(
     *,
     sign: int = 1,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DualResult:
     """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
 
@@ -264,12 +281,13 @@ class _FeedforwardResult(_FeedforwardDesign):
 def feedforward(
     plant: StateSpace,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     observer: str = "full",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _FeedforwardResult:
     """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
 
@@ -293,6 +311,7 @@ def gramian(
     horizon: _Number | None = None,
     of: str = "observability",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _GramianResult:
     """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt)."""
 
@@ -311,6 +330,7 @@ def initial_state(
     input: _Number | _Matrix | None = None,
     horizon: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _InitialStateResult:
     """Return the initial state x₀ that explains the output y(t) under the input u(t), exactly, or say that none does."""
 
@@ -331,6 +351,7 @@ def initial_state_covariance(
     R: _Number | _Matrix | None = None,
     horizon: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _InitialStateCovarianceResult:
     """Return the covariance of the reconstructed initial state under white input noise Q and output noise R."""
 
@@ -344,6 +365,7 @@ def matrix_exponential(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _MatrixExponentialResult:
     """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
 
@@ -367,6 +389,7 @@ def observability(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ObservabilityResult:
     """Decide whether (C, A) is observable: rank [C; CA; …; CAⁿ⁻¹] = n."""
 
@@ -397,12 +420,13 @@ class _ObserverResult(_ObserverDesign):
 def observer(
     plant: StateSpace,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     L: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ObserverResult:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
 
@@ -423,6 +447,7 @@ def pbh(
     *,
     of: str = "observability",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _PbhResult:
     """Test observability (or controllability) eigenvalue by eigenvalue: rank [A − λI; C] = n for all λ."""
 
@@ -449,6 +474,7 @@ def pole_advice(
     settling_time: _Number | None = None,
     overshoot: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _PoleAdviceResult:
     """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair."""
 
@@ -479,10 +505,11 @@ class _ReducedOrderObserverResult(_ReducedOrderObserver):
 def reduced_order_observer(
     plant: StateSpace,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     T: _Matrix | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ReducedOrderObserverResult:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
 
@@ -524,6 +551,7 @@ def stability_region(
     margin: _Number | None = None,
     radius: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StabilityRegionResult:
     """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components."""
 
@@ -546,6 +574,7 @@ def stabilizability(
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StabilizabilityResult:
     """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable."""
 
@@ -572,12 +601,13 @@ class _StateFeedbackResult(_StateFeedbackDesign):
 def state_feedback(
     plant: StateSpace,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StateFeedbackResult:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s)."""
 
@@ -608,6 +638,7 @@ def time_varying_observability(
     output: _Number | _Matrix | None = None,
     input: _Number | _Matrix | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TimeVaryingObservabilityResult:
     """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'."""
 
@@ -630,14 +661,15 @@ class _TrackingResult(_TrackingDesign):
 def tracking(
     plant: StateSpace,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     reference_matrix: _Matrix | None = None,
     reference_start: _Matrix | None = None,
     observer: str = "minimal",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TrackingResult:
     """Let x follow ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
 
@@ -655,5 +687,6 @@ def transfer_function(
     plant: StateSpace,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TransferFunctionResult:
     """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros."""
