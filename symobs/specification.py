@@ -170,7 +170,7 @@ def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = 
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
         return parse_poles(value, symbols.names, variable=variable, where=where)
-    if is_sympy(value) and (hasattr(value, "shape") or hasattr(value, "__iter__")):
+    if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
         value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
     entries = listed if isinstance(listed, Sequence) else [listed]
@@ -185,6 +185,9 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         repair = f"give as many poles as the order asks for, {degree}, with commas between"
         raise InputError(message, where=where, repair=repair, given=len(poles))
+    if any(variable in part.names for pole in poles for part in (pole.real, pole.imaginary)):
+        message = f"a pole contains {variable}, the variable of the polynomials"
+        raise InputError(message, where=where, repair="write another name")
     field = Field.of(
         [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
     )

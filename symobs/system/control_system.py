@@ -22,10 +22,14 @@ def read_control_system(system: Any) -> ControlSystem:
     """
     dt = (repr(system.dt) if isinstance(system.dt, float) else system.dt) or 0 if hasattr(system, "dt") else 0
     if hasattr(system, "num") and hasattr(system, "den"):
-        rows = [
-            [[above.tolist(), below.tolist()] for above, below in zip(*row, strict=True)]
-            for row in zip(system.num, system.den, strict=True)
-        ]
+        try:
+            rows = [
+                [[above.tolist(), below.tolist()] for above, below in zip(*row, strict=True)]
+                for row in zip(system.num, system.den, strict=True)
+            ]
+        except (AttributeError, TypeError) as error:
+            message = f"a system of python-control is expected, but a {type(system).__name__} came"
+            raise InputError(message, where="plant", repair="give what control.ss or control.tf returns") from error
         return ControlSystem(rows[0][0] if len(rows) == len(rows[0]) == 1 else rows, {}, dt)
     for name in "ABCD":
         if getattr(getattr(system, name, None), "dtype", None) is None or getattr(system, name).dtype.kind not in "iuf":

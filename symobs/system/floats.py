@@ -21,7 +21,7 @@ def read_floats(value: Any, floats: object, where: str) -> Any:
     """
     if floats is None:
         return value
-    if floats != "decimal":
+    if not isinstance(floats, str) or floats != "decimal":
         message = f"{str(floats)[:40]!r} is no way to read floats"
         raise InputError(message, where="floats", repair='write floats="decimal", or leave it out')
     return _in_decimals(value, where)
@@ -30,12 +30,13 @@ def read_floats(value: Any, floats: object, where: str) -> Any:
 def _in_decimals(value: Any, where: str) -> Any:
     if is_sympy(value):
         return _without_sympy_floats(value)
-    if isinstance(value, (list, tuple)) or getattr(value, "shape", ()):
-        entries = list(value)
+    is_array = type(value).__name__ in {"ndarray", "matrix"} and hasattr(value, "tolist")
+    if is_array and value.shape == ():
+        return _in_decimals(value[()], where)
+    if isinstance(value, (list, tuple)) or is_array:
+        entries = list(value if type(value).__name__ != "matrix" else value.A)
         read = [_in_decimals(entry, where) for entry in entries]
         return value if all(new is old for new, old in zip(read, entries, strict=True)) else read
-    if getattr(value, "shape", None) == () and hasattr(value, "item") and not isinstance(value, numbers.Number):
-        return _in_decimals(value[()], where)
     if isinstance(value, numbers.Real) and not isinstance(value, numbers.Rational):
         return _decimal(value, where)
     if isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real):

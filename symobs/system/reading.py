@@ -44,7 +44,7 @@ def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[ob
         return value
     if isinstance(value, str):
         return parse_matrix(value, symbols.names, where=where, beside=beside)
-    if is_sympy(value) and hasattr(value, "shape"):
+    if is_sympy(value) and hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:
         from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
         return matrix_from_sympy(value, where)

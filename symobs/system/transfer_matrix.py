@@ -10,7 +10,6 @@ from symobs.errors import BudgetExceeded, CertificateRejected, InputError, Shape
 from symobs.exact import Matrix, Scalar, companion, product_of, rank, reduced_echelon, transfer_matrix
 from symobs.expression import parse_matrix
 from symobs.expression.written_fraction import parse_fractions
-from symobs.system.symbols import is_sympy
 from symobs.system.transfer_function_text import (
     MOST_STATES,
     WrittenTransferFunction,
@@ -91,9 +90,13 @@ def _of_rows(rows: Sequence[Sequence[WrittenTransferFunction]]) -> WrittenTransf
 
 def _rows_of(value: Any, variable: str) -> list[list[Any]] | None:
     """Return the rows of a matrix of functions, None for one function: two lists of coefficients have no variable."""
-    if is_sympy(value):
-        return [list(value.row(i)) for i in range(value.shape[0])] if len(getattr(value, "shape", ())) == 2 else None
-    if not isinstance(value, (list, tuple)) or not all(isinstance(row, (list, tuple)) and row for row in value):
+    if hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:  # a matrix or an array
+        value = value.tolist()
+    if (
+        not isinstance(value, (list, tuple))
+        or not value
+        or not all(isinstance(row, (list, tuple)) and row for row in value)
+    ):
         return None
     entries = [entry for row in value for entry in row]
     if not any(isinstance(entry, (list, tuple)) or _has(variable, entry) for entry in entries):

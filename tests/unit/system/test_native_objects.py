@@ -14,7 +14,7 @@ from sympy.physics.control import TransferFunction, TransferFunctionMatrix
 
 import symobs
 from symobs import StateSpace
-from symobs.errors import InexactInput, InputError, ShapeMismatch
+from symobs.errors import InexactInput, InputError, ShapeMismatch, SymobsError
 
 s, k = sympy.symbols("s k")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -265,3 +265,44 @@ def test_plants_that_do_not_fit_are_refused(connect: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         connect()
     assert issubclass(ShapeMismatch, InputError)
+
+
+# -- what is none of these --------------------------------------------------------------------------------------------
+
+
+class Foreign:
+    """An object of nobody's."""
+
+    shape, dtype, num, den = (2, 2), "f", 1, 2
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda: StateSpace(np.zeros((2, 2, 2))),
+        lambda: StateSpace(np.array([[None]]), floats="decimal"),
+        lambda: StateSpace([[np.datetime64("2020")]], floats="decimal"),
+        lambda: StateSpace([[1]], floats=np.array([1, 2])),  # type: ignore[arg-type]
+        lambda: StateSpace([[1]], dt=np.array([1, 2])),
+        lambda: StateSpace(Foreign(), floats="decimal"),
+        lambda: StateSpace(control.ss([[1]], [[1]], [[1]], 0), floats="decimal"),
+        lambda: StateSpace(sympy.Array([1, 2])),
+        lambda: StateSpace.from_transfer_function([]),
+        lambda: StateSpace.from_transfer_function([[], []]),
+        lambda: StateSpace.from_transfer_function(TransferFunction(1, s, s)),
+        lambda: StateSpace.from_control(TransferFunction(1, s, s)),
+        lambda: StateSpace.from_control(Foreign()),
+        lambda: symobs.observer(None, poles=[-1]),  # type: ignore[arg-type]
+        lambda: symobs.observer(SERVO, poles=[s, -1]),
+        lambda: symobs.observer(SERVO, poles="s, -1"),
+        lambda: symobs.observer(SERVO, poles=[-1, -2], member=np.array([1, 2])),  # type: ignore[arg-type]
+        lambda: symobs.compensator(SERVO, method=3),  # type: ignore[arg-type]
+        lambda: symobs.gramian(SERVO, of=True),  # type: ignore[arg-type]
+        lambda: SERVO * object(),
+        lambda: SERVO.feedback(np.array([1, 2, 3])),
+    ],
+)
+def test_foreign_objects_are_refused_with_a_reason(ask: Any) -> None:
+    with pytest.raises(SymobsError) as caught:
+        ask()
+    assert str(caught.value)
