@@ -48,6 +48,7 @@ from symobs.errors import UsageError as UsageError
 from symobs.system import StateSpace as StateSpace
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
+_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -73,7 +74,7 @@ class _CanonicalFormResult(_CanonicalForm):
     def polynomial(self) -> Expr: ...
 
 def canonical_form(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     kind: str = "controllable",
     method: str = "auto",
@@ -96,7 +97,7 @@ class _CharacteristicPolynomialResult(_CharacteristicPolynomial):
     def stable_if(self) -> tuple[Any, ...]: ...
 
 def characteristic_polynomial(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,
@@ -142,7 +143,7 @@ class _CompensatorResult(_OutputFeedback):
     def direct_term(self) -> ImmutableMatrix: ...
 
 def compensator(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
@@ -173,7 +174,7 @@ class _ControllabilityResult(_Controllability):
     def missing_inputs(self) -> tuple[Any, ...]: ...
 
 def controllability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,
@@ -201,7 +202,7 @@ class _DecompositionResult(_Decomposition):
     def transfer_function(self) -> Expr: ...
 
 def decomposition(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,
@@ -223,7 +224,7 @@ class _DetectabilityResult(_Detectability):
     def rank(self) -> int: ...
 
 def detectability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
@@ -254,7 +255,7 @@ class _DualResult(_Dual):
     def dual_observability_rank(self) -> int: ...
 
 def dual(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     sign: int = 1,
     method: str = "auto",
@@ -279,7 +280,7 @@ class _FeedforwardResult(_FeedforwardDesign):
     def closed_loop_matrix(self) -> ImmutableMatrix: ...
 
 def feedforward(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
@@ -306,7 +307,7 @@ class _GramianResult(_Gramian):
     def kernel(self) -> tuple[Any, ...]: ...
 
 def gramian(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     horizon: _Number | None = None,
     of: str = "observability",
@@ -324,7 +325,7 @@ class _InitialStateResult(_InitialState):
     def kernel(self) -> tuple[Any, ...]: ...
 
 def initial_state(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     output: _Number | _Matrix | None = None,
     input: _Number | _Matrix | None = None,
@@ -345,7 +346,7 @@ class _InitialStateCovarianceResult(_InitialStateCovariance):
     def output_part(self) -> ImmutableMatrix: ...
 
 def initial_state_covariance(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     Q: _Number | _Matrix | None = None,
     R: _Number | _Matrix | None = None,
@@ -362,7 +363,7 @@ class _MatrixExponentialResult(_MatrixExponential):
     def matrix(self) -> ImmutableMatrix: ...
 
 def matrix_exponential(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,
@@ -386,7 +387,7 @@ class _ObservabilityResult(_Observability):
     def missing_measurements(self) -> tuple[Any, ...]: ...
 
 def observability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,
@@ -418,7 +419,7 @@ class _ObserverResult(_ObserverDesign):
     def family(self) -> Mapping[str, Any]: ...
 
 def observer(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
@@ -443,7 +444,7 @@ class _PbhResult(_PopovBelevitchHautus):
     def polynomial(self) -> Expr: ...
 
 def pbh(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     of: str = "observability",
     method: str = "auto",
@@ -468,7 +469,7 @@ class _PoleAdviceResult(_PoleAdvice):
     def omega_d(self) -> Expr: ...
 
 def pole_advice(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     radius: _Number | None = None,
     settling_time: _Number | None = None,
@@ -503,7 +504,7 @@ class _ReducedOrderObserverResult(_ReducedOrderObserver):
     def family(self) -> Any: ...
 
 def reduced_order_observer(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
@@ -542,7 +543,7 @@ class _StabilityRegionResult(_StabilityRegion):
     def intervals_decimal(self) -> tuple[Any, ...]: ...
 
 def stability_region(
-    plant: StateSpace | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
+    plant: _Plant | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
     *,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
@@ -570,7 +571,7 @@ class _StabilizabilityResult(_Stabilizability):
     def rank(self) -> int: ...
 
 def stabilizability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
@@ -599,7 +600,7 @@ class _StateFeedbackResult(_StateFeedbackDesign):
     def family(self) -> Mapping[str, Any]: ...
 
 def state_feedback(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
@@ -632,7 +633,7 @@ class _TimeVaryingObservabilityResult(_TimeVaryingObservability):
     def x0(self) -> tuple[Any, ...]: ...
 
 def time_varying_observability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     interval: str | Sequence[_Number] | None = None,
     output: _Number | _Matrix | None = None,
@@ -659,7 +660,7 @@ class _TrackingResult(_TrackingDesign):
     def polynomial(self) -> Expr: ...
 
 def tracking(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
@@ -684,7 +685,7 @@ class _TransferFunctionResult(_TransferFunction):
     def zeros(self) -> tuple[Any, ...]: ...
 
 def transfer_function(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
     floats: str | None = None,

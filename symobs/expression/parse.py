@@ -174,9 +174,10 @@ def _exact(value: object, where: str) -> Number:
         repair = 'write an integer or a text such as "1/10"'
         raise InputError(f"{_kind(value)} is not an exact number", where=where, repair=repair)
     if not isinstance(value, numbers.Rational):
-        if not isinstance(value, numbers.Real) and all(map(_is_whole, (value.real, value.imag))):
-            real, imaginary = (Scalar.of(int(part)) for part in (value.real, value.imag))
-            return Complex(real, imaginary) if value.imag else real
+        number = complex(value)
+        if not isinstance(value, numbers.Real) and _is_whole(number.real) and _is_whole(number.imag):
+            real, imaginary = Scalar.of(int(number.real)), Scalar.of(int(number.imag))
+            return real if imaginary.is_zero else Complex(real, imaginary)
         repair = f'write an exact value such as "{_exact_text(value)}"{FLOATS}'
         raise InexactInput(f"{shown(str(value))} is a float", where=where, repair=repair)
     return _rational(value, where)

@@ -118,7 +118,7 @@ def _made(found: Realisation, plant: Plant, other: Any) -> Plant:
         message = f"the plants have different sampling periods, {plant.dt} and {other.dt}"
         raise InputError(message, where="plant.dt", repair="give both the same dt")
     dt = next((p.dt for p in (plant, other) if p.dt is not True), True)
-    made = type(plant)(*found, dt, symbols=_together(plant.symbols, other.symbols))
+    made: Plant = type(plant)(*found, dt, symbols=_together(plant.symbols, other.symbols))
     made.is_from_floats = plant.is_from_floats or other.is_from_floats
     made.is_in_decimals = plant.is_in_decimals or other.is_in_decimals
     return made

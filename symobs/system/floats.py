@@ -41,7 +41,7 @@ def _in_decimals(value: Any, where: str) -> Any:
         return _decimal(value, where)
     if isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real):
         real, imaginary = (Scalar.of(Fraction(_decimal(part, where))) for part in (value.real, value.imag))
-        return Complex(real, imaginary) if value.imag else real
+        return real if imaginary.is_zero else Complex(real, imaginary)
     return value
 
 

@@ -66,7 +66,8 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
         found = written[0] / written[1]
     else:
         found, written = read_scalar(value, symbols, where), None
-    return written_over(*(written or (found.numerator, found.denominator)), variable)
+    above, below = written or (found.numerator, found.denominator)
+    return written_over(above, below, variable)
 
 
 def written_over(above: Scalar, below: Scalar, variable: str) -> WrittenTransferFunction:

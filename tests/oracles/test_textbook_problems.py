@@ -31,7 +31,7 @@ s, z, t = sympy.symbols("s z t")
 # -- the second reader ------------------------------------------------------------------------------------------------
 
 
-def value(text: str) -> Any:
+def value(text: Any) -> Any:
     """An expression, with the number of `point` in place of each name but s, z and t."""
     if not isinstance(text, str):
         return sympy.Rational(text)
@@ -317,7 +317,7 @@ def solved(row: dict[str, Any]) -> Any:
     if "transfer_function" in row:
         plant: Any = symobs.StateSpace.from_transfer_function(row["transfer_function"], row.get("dt", 0))
     elif "A" in row:
-        plant = symobs.StateSpace(*(row.get(name) for name in "ABCD"), row.get("dt", 0))
+        plant = symobs.StateSpace(*(row.get(name) for name in "ABCD"), dt=row.get("dt", 0))
     elif row.get("dt"):
         plant = symobs.StateSpace.from_polynomial(row["polynomial"], row["dt"])
         specification.pop("polynomial")

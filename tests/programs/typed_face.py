@@ -47,6 +47,7 @@ from sympy.matrices import MatrixBase
 '''
 NAMES = """
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
+_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -118,7 +119,7 @@ def signature(task: Task) -> str:
     """A task as a function of the package."""
     parameters = inspect.signature(task.function).parameters
     by_place = [str(p) for p in parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
-    plant = ", ".join(text.replace("'", "") for text in by_place)
+    plant = ", ".join(text.replace("'", "").replace("StateSpace", "_Plant") for text in by_place)
     keywords = []
     for name, kind in task.keywords.items():
         default = parameters[name].default

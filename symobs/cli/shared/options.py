@@ -32,7 +32,7 @@ def _amount(_: click.Context, parameter: click.Parameter, value: str | None) -> 
     raise UsageError(f"{quoted(value)} is not {amount}", where=f"--{parameter.name}", repair=example)
 
 
-class OneOf(click.ParamType):
+class OneOf(click.ParamType):  # type: ignore[type-arg]  # generic in the newest click alone
     """A word of a few, which help and completion show; whoever reads it refuses another one, with what to do."""
 
     name = "word"
@@ -55,7 +55,7 @@ class OneOf(click.ParamType):
         return [CompletionItem(word) for word in self.choices() if word.startswith(incomplete)]
 
 
-class AFile(click.ParamType):
+class AFile(click.ParamType):  # type: ignore[type-arg]  # as above
     """The path of a file, or of a folder, which the shell completes; whoever opens it says what is wrong with it."""
 
     name = "path"

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -162,6 +162,8 @@ def test_what_is_wrong_in_a_file_is_said_with_its_repair(text: str, said: str) -
 
 class _Timer:
     """A timer that fires when told to."""
+
+    last: Any = None
 
     def __init__(self, seconds: float, tell: object) -> None:
         assert seconds == 2.0

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import control
+from typing import Any
+
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import sympy
@@ -92,7 +94,8 @@ def test_what_is_not_observable_has_its_cases() -> None:
     """At k = 0 the second state is not seen, and its mode -1 stays; at k = 1 it is not moved."""
     plant = StateSpace("[-2 k; 0 -1]", "[1; 1]", "[1 0]", symbols={"k": "real"})
     found = symobs.compensator(plant, K=[1, 1], L=[1, 1])
-    for case, stays in zip(found.case_tree, ({"k": 1, "mode": -2}, {"k": 0, "mode": -1}), strict=True):
+    tree: Any = found.case_tree
+    for case, stays in zip(tree, ({"k": 1, "mode": -2}, {"k": 0, "mode": -1}), strict=True):
         assert case.result.plant.A[0, 1] == stays["k"]
         assert sympy.expand(case.result.closed_loop_polynomial).subs(s, stays["mode"]) == 0
 
@@ -116,6 +119,6 @@ def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
         ({"K": [0.5, 2], "L": [1, 2]}, "0.5 is a float"),
     ],
 )
-def test_gains_that_have_no_place_are_refused(specification: dict[str, object], said: str) -> None:
+def test_gains_that_have_no_place_are_refused(specification: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.compensator(SERVO, **specification)

@@ -6,7 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-import control
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import sympy
@@ -51,7 +51,7 @@ def test_poles_may_be_exact_numbers_of_any_kind(poles: Any) -> None:
     """The error's characteristic polynomial from the given poles: trace and determinant of A - L C."""
     error = SERVO.A - symobs.observer(SERVO, poles=poles).L * SERVO.C
     numbers = [complex(pole) for pole in poles]
-    assert (float(error.trace()), float(error.det())) == (sum(numbers).real, np.prod(numbers).real)
+    assert (float(error.trace()), float(error.det())) == (sum(numbers, 0j).real, float(np.prod(numbers).real))
 
 
 @pytest.mark.parametrize("gain", [[1, 2], np.array([1, 2]), (1, "2"), [[1], [2]]])
