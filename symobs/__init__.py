@@ -13,6 +13,7 @@ TASK_PACKAGES = ("symobs.analysis", "symobs.design")
 FORMAT_PACKAGE = "symobs.render.formats"
 #: Functions that are no tasks, and where they are.
 FUNCTIONS = {
+    "bounded": "symobs.cli.shared.time_and_memory",
     "batch": "symobs.batching",
     "sweep": "symobs.batching.sweep",
 }
@@ -24,10 +25,10 @@ def __getattr__(name: str) -> Any:
 
     if name == "StateSpace":
         return importlib.import_module("symobs.system").StateSpace
-    if name == "__version__":
-        return importlib.import_module("importlib.metadata").version("symobs")
     if name in FUNCTIONS:
         return getattr(importlib.import_module(FUNCTIONS[name]), name)
+    if name == "__version__":
+        return importlib.import_module("importlib.metadata").version("symobs")
     if name[:1].isupper():
         if name in _errors():
             return _errors()[name]

@@ -1,6 +1,7 @@
 """What type checkers and editors know of `symobs`; `python -m tests.programs.typed_face` writes it."""
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -25,6 +26,7 @@ from symobs.analysis.time_response.matrix_exponential import MatrixExponential a
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.batching import batch as batch
 from symobs.batching.sweep import sweep as sweep
+from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
@@ -47,7 +49,8 @@ from symobs.errors import UnknownName as UnknownName
 from symobs.errors import UsageError as UsageError
 from symobs.system import StateSpace as StateSpace
 
-_Number: TypeAlias = str | int | Fraction | Expr
+_Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
+_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -73,10 +76,11 @@ class _CanonicalFormResult(_CanonicalForm):
     def polynomial(self) -> Expr: ...
 
 def canonical_form(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     kind: str = "controllable",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CanonicalFormResult:
     """Return the controllable, observable or modal canonical form, x̄ = T x."""
 
@@ -95,9 +99,10 @@ class _CharacteristicPolynomialResult(_CharacteristicPolynomial):
     def stable_if(self) -> tuple[Any, ...]: ...
 
 def characteristic_polynomial(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CharacteristicPolynomialResult:
     """Return χ(s) = det(sI − A), its factors and its roots with multiplicity."""
 
@@ -129,19 +134,28 @@ class _CompensatorResult(_OutputFeedback):
     @property
     def family(self) -> Mapping[str, Any]: ...
     @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
     def T(self) -> ImmutableMatrix: ...
     @property
     def direct_term(self) -> ImmutableMatrix: ...
 
 def compensator(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    L: _Matrix | None = None,
     observer: str = "full",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _CompensatorResult:
     """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p."""
 
@@ -162,9 +176,10 @@ class _ControllabilityResult(_Controllability):
     def missing_inputs(self) -> tuple[Any, ...]: ...
 
 def controllability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ControllabilityResult:
     """Decide whether (A, B) is controllable: rank [B, AB, …, Aⁿ⁻¹B] = n."""
 
@@ -189,9 +204,10 @@ class _DecompositionResult(_Decomposition):
     def transfer_function(self) -> Expr: ...
 
 def decomposition(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DecompositionResult:
     """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither."""
 
@@ -210,10 +226,11 @@ class _DetectabilityResult(_Detectability):
     def rank(self) -> int: ...
 
 def detectability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DetectabilityResult:
     """Decide whether some L makes A − LC stable: whether all unobservable modes are stable."""
 
@@ -240,10 +257,11 @@ class _DualResult(_Dual):
     def dual_observability_rank(self) -> int: ...
 
 def dual(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     sign: int = 1,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _DualResult:
     """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
 
@@ -264,14 +282,15 @@ class _FeedforwardResult(_FeedforwardDesign):
     def closed_loop_matrix(self) -> ImmutableMatrix: ...
 
 def feedforward(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     observer: str = "full",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _FeedforwardResult:
     """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
 
@@ -290,11 +309,12 @@ class _GramianResult(_Gramian):
     def kernel(self) -> tuple[Any, ...]: ...
 
 def gramian(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     horizon: _Number | None = None,
     of: str = "observability",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _GramianResult:
     """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt)."""
 
@@ -307,12 +327,13 @@ class _InitialStateResult(_InitialState):
     def kernel(self) -> tuple[Any, ...]: ...
 
 def initial_state(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     output: _Number | _Matrix | None = None,
     input: _Number | _Matrix | None = None,
     horizon: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _InitialStateResult:
     """Return the initial state x₀ that explains the output y(t) under the input u(t), exactly, or say that none does."""
 
@@ -327,12 +348,13 @@ class _InitialStateCovarianceResult(_InitialStateCovariance):
     def output_part(self) -> ImmutableMatrix: ...
 
 def initial_state_covariance(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     Q: _Number | _Matrix | None = None,
     R: _Number | _Matrix | None = None,
     horizon: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _InitialStateCovarianceResult:
     """Return the covariance of the reconstructed initial state under white input noise Q and output noise R."""
 
@@ -343,9 +365,10 @@ class _MatrixExponentialResult(_MatrixExponential):
     def matrix(self) -> ImmutableMatrix: ...
 
 def matrix_exponential(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _MatrixExponentialResult:
     """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
 
@@ -366,9 +389,10 @@ class _ObservabilityResult(_Observability):
     def missing_measurements(self) -> tuple[Any, ...]: ...
 
 def observability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ObservabilityResult:
     """Decide whether (C, A) is observable: rank [C; CA; …; CAⁿ⁻¹] = n."""
 
@@ -397,14 +421,15 @@ class _ObserverResult(_ObserverDesign):
     def family(self) -> Mapping[str, Any]: ...
 
 def observer(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     L: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ObserverResult:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
 
@@ -421,10 +446,11 @@ class _PbhResult(_PopovBelevitchHautus):
     def polynomial(self) -> Expr: ...
 
 def pbh(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     of: str = "observability",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _PbhResult:
     """Test observability (or controllability) eigenvalue by eigenvalue: rank [A − λI; C] = n for all λ."""
 
@@ -445,12 +471,13 @@ class _PoleAdviceResult(_PoleAdvice):
     def omega_d(self) -> Expr: ...
 
 def pole_advice(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     radius: _Number | None = None,
     settling_time: _Number | None = None,
     overshoot: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _PoleAdviceResult:
     """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair."""
 
@@ -479,12 +506,13 @@ class _ReducedOrderObserverResult(_ReducedOrderObserver):
     def family(self) -> Any: ...
 
 def reduced_order_observer(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     T: _Matrix | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _ReducedOrderObserverResult:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
 
@@ -517,7 +545,7 @@ class _StabilityRegionResult(_StabilityRegion):
     def intervals_decimal(self) -> tuple[Any, ...]: ...
 
 def stability_region(
-    plant: StateSpace | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
+    plant: _Plant | object = None, symbols: Mapping[str, Any] | None = None, dt: object = 0,
     *,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
@@ -526,6 +554,7 @@ def stability_region(
     margin: _Number | None = None,
     radius: _Number | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StabilityRegionResult:
     """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components."""
 
@@ -544,10 +573,11 @@ class _StabilizabilityResult(_Stabilizability):
     def rank(self) -> int: ...
 
 def stabilizability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     meaning: str = "asymptotic",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StabilizabilityResult:
     """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable."""
 
@@ -572,14 +602,15 @@ class _StateFeedbackResult(_StateFeedbackDesign):
     def family(self) -> Mapping[str, Any]: ...
 
 def state_feedback(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | None = None,
+    poles: str | Sequence[_Number] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _StateFeedbackResult:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s)."""
 
@@ -604,12 +635,13 @@ class _TimeVaryingObservabilityResult(_TimeVaryingObservability):
     def x0(self) -> tuple[Any, ...]: ...
 
 def time_varying_observability(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     interval: str | Sequence[_Number] | None = None,
     output: _Number | _Matrix | None = None,
     input: _Number | _Matrix | None = None,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TimeVaryingObservabilityResult:
     """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'."""
 
@@ -630,16 +662,17 @@ class _TrackingResult(_TrackingDesign):
     def polynomial(self) -> Expr: ...
 
 def tracking(
-    plant: StateSpace,
+    plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | None = None,
+    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | None = None,
+    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     reference_matrix: _Matrix | None = None,
     reference_start: _Matrix | None = None,
     observer: str = "minimal",
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TrackingResult:
     """Let x follow ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
 
@@ -654,8 +687,9 @@ class _TransferFunctionResult(_TransferFunction):
     def zeros(self) -> tuple[Any, ...]: ...
 
 def transfer_function(
-    plant: StateSpace,
+    plant: _Plant,
     *,
     method: str = "auto",
+    floats: str | None = None,
 ) -> _TransferFunctionResult:
     """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros."""

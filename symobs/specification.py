@@ -18,6 +18,7 @@ from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
 from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
+from symobs.system.matrices import as_rows
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
@@ -77,6 +78,15 @@ KINDS: dict[str, dict[str, Any]] = {
         "description": 'the intensity of white noise, symmetric: "q" or "[q1 0; 0 q2]"',
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
+}
+
+#: The words a keyword of the kind Name may be; those of `method` are the task's methods.
+CHOICES: dict[str, tuple[str, ...]] = {
+    "kind": ("controllable", "observable", "modal"),
+    "meaning": ("asymptotic", "lyapunov"),
+    "member": ("simple", "decoupled"),
+    "observer": ("full", "minimal"),
+    "of": ("observability", "controllability"),
 }
 
 
@@ -157,15 +167,16 @@ def desired_polynomial(
     return _from_polynomial(polynomial, plant, degree, second)
 
 
-def read_poles(value: object, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
+def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
         return parse_poles(value, symbols.names, variable=variable, where=where, roots=True)
+    if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
+        value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
     entries = listed if isinstance(listed, Sequence) else [listed]
     read = [
-        read_complex(entry, f"{where}[{index}]") if type(entry).__module__.startswith("sympy") else entry
-        for index, entry in enumerate(entries)
+        read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
     ]
     return parse_poles(read, symbols.names, variable=variable, where=where, roots=True)
 
@@ -175,6 +186,9 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
         message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
         repair = f"give as many poles as the order asks for, {degree}, with commas between"
         raise InputError(message, where=where, repair=repair, given=len(poles))
+    if any(variable in part.names for pole in poles for part in (pole.real, pole.imaginary)):
+        message = f"a pole contains {variable}, the variable of the polynomials"
+        raise InputError(message, where=where, repair="write another name")
     if all(is_in_kernel(part) and not part.field.roots for pole in poles for part in (pole.real, pole.imaginary)):
         return DesiredPolynomial(variable, _factors_of_pairs(poles, variable, where), poles)
     factors, waiting = list[Scalar](), list(map(tidied, poles))
@@ -254,9 +268,9 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
 
 
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
-    """Return a given gain; raises ShapeMismatch for another shape."""
+    """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
-    gain = read_matrix(value, plant.symbols.seen(value), where)
+    gain = read_matrix(as_rows("B" if shape[1] == 1 else "C", value), plant.symbols.seen(value), where)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")

@@ -9,32 +9,41 @@ from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import predicate, relation
 from symobs.exact import roots_of
 from symobs.formula import HoldsExactlyWhere, Roots
+from symobs.formula.term import block
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
     from symobs.derivation.builder import Page
     from symobs.exact import Scalar
+    from symobs.formula.term import Term
 
 
 def state_transfer_function(page: Page) -> None:
     """State P, as it is written where that is not in lowest terms, and what cancels in it."""
     plant, written = page.plant, page.plant.written
     assert written is not None  # noqa: S101 - the caller has looked
-    lowest = factored_form(page, written.value)
     cancelled = monic(written.cancelled, plant.variable)
-    if written.cancelled.is_one and not written.apart:
-        page.given(relation(page["P"], lowest))
+    if isinstance(written, WrittenTransferMatrix):
+        page.given(relation(page["P"], _written_out(page, written)))
+    elif written.cancelled.is_one and not written.apart:
+        page.given(relation(page["P"], factored_form(page, written.value)))
     else:
         above, below = (factored_form(page, part) for part in (written.above, written.below))
-        page.given(relation(page["P"], above / below, lowest))
+        page.given(relation(page["P"], above / below, factored_form(page, written.value)))
     page.environment = page.environment.having(values={"P": written.value})
     apart = vanishing_factors(written.apart, plant.symbols.signs)
     if apart:
         page.assume("lowest_terms_parameters", *apart)
     if not written.cancelled.is_one:
         _say_cancelled(page, cancelled, written.below)
-    page.remark("realised")
+    page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
+
+
+def _written_out(page: Page, written: WrittenTransferMatrix) -> Term:
+    """Return the matrix with its entries factored."""
+    return block([[factored_form(page, entry.value) for entry in row] for row in written.rows])
 
 
 def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:

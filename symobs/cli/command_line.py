@@ -10,12 +10,15 @@ import sys
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from symobs.cli.shared.common import EXIT_BUG, EXIT_INTERRUPTED, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, write_message
 from symobs.errors import ProblemErrors, SymobsError, UsageError
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 _MOST_LINES = 100
 #: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called.
@@ -23,6 +26,7 @@ COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
     "batch": "Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.",
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
+    "examples": "List the worked examples, or print the one called NAME.",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
@@ -58,6 +62,14 @@ class Tasks(click.Group):
         from symobs.cli.commands.of_task import task_command  # noqa: PLC0415 - it reads the task's signature
 
         return task_command(task)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Complete commands and tasks from the tables, without importing what they run."""
+        from click.shell_completion import CompletionItem  # noqa: PLC0415 - for completion only
+
+        found = {**COMMANDS, **_summaries()}
+        named = [CompletionItem(name, help=text) for name, text in found.items() if name.startswith(incomplete)]
+        return [*named, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; an interruption is reported without click's empty line."""

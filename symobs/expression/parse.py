@@ -9,6 +9,7 @@ text, so any text ends, soon, in an exact value or in one of symobs's errors.
 from __future__ import annotations
 
 import numbers
+from decimal import Decimal
 from fractions import Fraction
 from math import lcm
 from typing import TYPE_CHECKING
@@ -34,6 +35,10 @@ __all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polyn
 _LONGEST_REPAIR = 30
 #: Numbers up to this many bits need no budget.
 _NUMBERS, _SMALL = {int, Fraction}, 128
+#: What else to do about floats.
+FLOATS = ', or give the plant or the task floats="decimal"'
+#: Beyond it a float stands for several integers.
+_WHOLE_UP_TO = 2**53
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
 
 
@@ -46,7 +51,7 @@ def parse_scalar(
     functions: bool = False,
     rounding: bool = False,
 ) -> Scalar:
-    """Return the real value of a text, an int or a Fraction.
+    """Return the real value of a text, an int, a Fraction or a Decimal.
 
     `names` are the declared names, None for any; `variable` (s, z or t) is known besides them; with `functions`, exp,
     sin, cos, sinh, cosh and sqrt of real arguments are read as generators; with `rounding` decimals are (`exact.as_printed`).
@@ -164,16 +169,38 @@ def _exact(value: object, where: str) -> Number:
     """Return an exact Python number; raises InexactInput for a float, with the fraction to write instead."""
     if isinstance(value, (Scalar, Complex)):
         return value
+    if isinstance(value, Decimal) and value.is_finite():
+        return _rational(Fraction(value) if _is_short(value) else 10**MOST_DIGITS, where)
     if isinstance(value, bool) or not isinstance(value, numbers.Complex):
         repair = 'write an integer or a text such as "1/10"'
         raise InputError(f"{_kind(value)} is not an exact number", where=where, repair=repair)
     if not isinstance(value, numbers.Rational):
-        repair = f'write an exact value such as "{_exact_text(value)}"'
+        number = complex(value)
+        if not isinstance(value, numbers.Real) and _is_whole(number.real) and _is_whole(number.imag):
+            real, imaginary = Scalar.of(int(number.real)), Scalar.of(int(number.imag))
+            return real if imaginary.is_zero else Complex(real, imaginary)
+        repair = f'write an exact value such as "{_exact_text(value)}"{FLOATS}'
         raise InexactInput(f"{shown(str(value))} is a float", where=where, repair=repair)
+    return _rational(value, where)
+
+
+def _rational(value: numbers.Rational | int, where: str) -> Scalar:
+    """Return a fraction of Python's; raises `BudgetExceeded` where it is too long."""
     above, below = int(value.numerator), int(value.denominator)
     if max(abs(above), below) >= 10**MOST_DIGITS:
         raise BudgetExceeded(f"a number has more than {MOST_DIGITS} digits", where=where)
     return Scalar.rational(above, below)
+
+
+def _is_short(value: Decimal) -> bool:
+    """Return whether a decimal has few digits when it is written out: 1E+1000000 has many."""
+    _, digits, exponent = value.as_tuple()
+    return len(digits) + abs(int(exponent)) <= MOST_DIGITS
+
+
+def _is_whole(part: float) -> bool:
+    """Return whether a float is an integer that no other integer shares it with."""
+    return abs(part) <= _WHOLE_UP_TO and part == int(part)
 
 
 def _exact_text(value: numbers.Complex) -> str:

@@ -257,9 +257,18 @@ class Tokeniser:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
         question = f'did you mean "{nearest}"? ' if nearest else ""
         listed = f"declared: {shown(', '.join(declared), 200)}" if declared else "no name is declared, so declare it"
+        if {name, self.scope.variable} == {"s", "z"}:
+            question, listed = "", _OF_OTHER_TIME[name]
         message = f'the name "{name}" is not declared'
         facts = {"name": name, "nearest": nearest, "declared": tuple(declared)}
         return self.source.error(message, at, question + listed, UnknownName, **facts)
+
+
+#: What to do about the variable of the other domain of time.
+_OF_OTHER_TIME = {
+    "z": "z is the variable in discrete time: give dt = true, or the period",
+    "s": "s is the variable in continuous time: leave dt out, or write z",
+}
 
 
 # -- characters that begin no token -------------------------------------------------------------------------------

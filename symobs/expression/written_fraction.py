@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.exact import Complex, Scalar
-from symobs.expression.evaluation import Evaluator, trees_of
+from symobs.expression.evaluation import Evaluator, Grid, trees_of
 from symobs.expression.names import Scope
 
 if TYPE_CHECKING:
@@ -33,10 +33,21 @@ def parse_fraction(text: str, names: Names, *, variable: str, where: str) -> tup
 
     None where they are complex or no polynomials in every name.  Raises what `parse_scalar` raises.
     """
+    ((found,),) = parse_fractions(text, names, variable=variable, where=where)
+    return found
+
+
+def parse_fractions(text: str, names: Names, *, variable: str, where: str) -> list[list[tuple[Scalar, Scalar] | None]]:
+    """Return the same of every entry of a matrix; of a text without brackets that of its one entry."""
     scope = Scope.of(names, variable, where)
     source, (tree,) = trees_of(text, scope, where)
-    found = _fraction(_Written(source, scope).entry(tree))
-    above, below = found.above, found.below
+    found: Any = _Written(source, scope).entry(tree)
+    rows = found.rows if isinstance(found, Grid) else [[found]]
+    return [[_parts(_fraction(entry)) for entry in row] for row in rows]
+
+
+def _parts(fraction: Fraction) -> tuple[Scalar, Scalar] | None:
+    above, below = fraction.above, fraction.below
     if not isinstance(above, Scalar) or not isinstance(below, Scalar):
         return None
     return above, below

@@ -9,7 +9,7 @@ from symobs.conditions import SIGNS
 from symobs.convention import conventions
 from symobs.result import tasks
 from symobs.result.in_convention import names_in
-from symobs.specification import KINDS
+from symobs.specification import CHOICES, KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -78,7 +78,9 @@ def repair_of(key: str, known: Collection[str], where: str) -> str:
     """Return what to do about a key that is not known where it stands: most are, elsewhere."""
     from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
 
-    near = get_close_matches(key[:64], known, 1)
+    near = [name for name in known if len(key) > 2 and name.startswith(key.rstrip("s"))] or get_close_matches(
+        key[:64], known, 1
+    )
     of = [task.name for task in tasks().values() if key in task.keywords]
     if key in PLANT:
         return "it belongs to [plant]"
@@ -104,7 +106,8 @@ def schema() -> dict[str, Any]:
     keywords: dict[str, Any] = {}
     for name in known:
         for keyword, kind in kinds_of(tasks()[name]).items():
-            keywords.setdefault(keyword, {**KINDS[kind], "tasks": []})["tasks"].append(name)
+            words = {"enum": list(CHOICES[keyword])} if keyword in CHOICES and kind == "Name" else {}
+            keywords.setdefault(keyword, {**KINDS[kind], **words, "tasks": []})["tasks"].append(name)
     for convention in conventions().values():
         for own, (name, _) in names_in(convention).items():
             if own not in keywords and name in keywords:
@@ -152,6 +155,7 @@ def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str
     known = given if isinstance(given, Mapping) else {}
     asked = {name: task for task in wanted for name in task.keywords if name.endswith("poles")}
     for name, task in asked.items():
-        instead = (name, f"{name.removesuffix('poles')}polynomial", *("KLMH" if name == "poles" else ()))
+        gains = {"poles": "KLMH", "control_poles": "K", "observer_poles": "L"}.get(name, "")
+        instead = (name, f"{name.removesuffix('poles')}polynomial", *gains)
         if not any(other in known or other in keys_of(task, known) for other in instead):
             yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'

@@ -11,7 +11,7 @@ import symobs
 from symobs._dataclass import dataclass
 from symobs.errors import InputError
 from symobs.result.writers import discover, import_named
-from symobs.system import StateSpace, as_plant
+from symobs.system import StateSpace, as_plant, read_floats
 
 if TYPE_CHECKING:
     from symobs.result.result import Result
@@ -79,17 +79,26 @@ def _of_constant_plants(function: Callback) -> Callback:
 
 
 def _of_plants(function: Callback) -> Callback:
-    """Let a task take the plants of other programs; one that needs a plant refuses what is none."""
-    only = inspect.signature(function).parameters["plant"].default is not None
+    """Let a task take the plants of other programs, and floats where it is told how; where it needs a plant, nothing else."""
+    signature = inspect.signature(function).parameters
+    only = signature["plant"].default is not None
+    words = [name for name, given in signature.items() if name != "plant" and _kind(given.annotation) == "Name"]
 
     @wraps(function)
-    def reading(*arguments: Any, **keywords: Any) -> Result:
-        if arguments and arguments[0] is not None:
-            arguments = (_asked_anew(as_plant(arguments[0], only=only)), *arguments[1:])
-        elif keywords.get("plant") is not None:
-            keywords["plant"] = _asked_anew(as_plant(keywords["plant"], only=only))
-        result: Result = function(*arguments, **keywords)
-        asked = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
+    def reading(*arguments: Any, floats: str | None = None, **keywords: Any) -> Result:
+        if arguments and (only or arguments[0] is not None):
+            arguments = (_asked_anew(as_plant(arguments[0], only=only, floats=floats)), *arguments[1:])
+        elif "plant" in keywords and (only or keywords["plant"] is not None):
+            keywords["plant"] = _asked_anew(as_plant(keywords["plant"], only=only, floats=floats))
+        for name in words:
+            if not isinstance(keywords.get(name, ""), str):
+                message = f"a name is expected, but a value of type {type(keywords[name]).__name__} came"
+                raise InputError(message, where=f"specification.{name}", repair="write it in quotes")
+        came = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
+        asked = {name: read_floats(value, floats, f"specification.{name}") for name, value in came.items()}
+        result: Result = function(*arguments, **keywords | asked)
+        if any(asked[name] is not value for name, value in came.items()):
+            result.plant.is_from_floats = True  # the plant of this result alone: the page says how they were read
         return result.specified(asked)
 
     return reading  # type: ignore[return-value]

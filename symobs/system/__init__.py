@@ -1,5 +1,6 @@
 """Plants, and the readers of their data."""
 
+from symobs.system.floats import read_floats
 from symobs.system.matrices import Matrices
 from symobs.system.other_programs import as_plant
 from symobs.system.reading import read_complex, read_matrix, read_scalar
@@ -18,6 +19,7 @@ __all__ = [
     "as_plant",
     "is_sympy",
     "read_complex",
+    "read_floats",
     "read_matrix",
     "read_scalar",
     "realise",

@@ -1,8 +1,7 @@
-"""State-space and transfer-function systems of python-control, floats read as their shortest decimals."""
+"""State-space and transfer-function systems of python-control."""
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.errors import InputError
@@ -13,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class ControlSystem(NamedTuple):
-    """The data of a system: numerator and denominator, or else the matrices by name; dt is 0 in continuous time."""
+    """The data of a system: rows of numerators over denominators, or else the matrices by name; dt is 0 in continuous time."""
 
-    transfer_function: list[list[str]] | None
+    transfer_function: list[list[Any]] | None
     matrices: dict[str, Any]
     dt: Any
 
@@ -26,15 +25,24 @@ def read_control_system(system: Any) -> ControlSystem:
     Raises `InputError` where the system has no A, B, C, D and no numerator and denominator of numbers.
     """
     dt = (repr(system.dt) if isinstance(system.dt, float) else system.dt) or 0 if hasattr(system, "dt") else 0
-    if not (hasattr(system, "num") and hasattr(system, "den")):
-        return ControlSystem(
-            None, {name: _shortest_decimals(system, name, getattr(system, name, None)) for name in "ABCD"}, dt
-        )
-    if len(system.num) != 1 or len(system.num[0]) != 1:
-        message = "a transfer matrix has several realisations"
-        raise InputError(message, where="plant", repair="convert it by control.ss(system)")
-    parts = [_shortest_decimals(system, name, [getattr(system, name)[0][0]])[0] for name in ("num", "den")]
-    return ControlSystem(parts, {}, dt)
+    if hasattr(system, "num") and hasattr(system, "den"):
+        try:
+            rows = [
+                [[above.tolist(), below.tolist()] for above, below in zip(*row, strict=True)]
+                for row in zip(system.num, system.den, strict=True)
+            ]
+        except (AttributeError, TypeError) as error:
+            message = f"a system of python-control is expected, but a {type(system).__name__} came"
+            raise InputError(message, where="plant", repair="give what control.ss or control.tf returns") from error
+        return ControlSystem(rows[0][0] if len(rows) == len(rows[0]) == 1 else rows, {}, dt)
+    for name in "ABCD":
+        if getattr(getattr(system, name, None), "dtype", None) is None or getattr(system, name).dtype.kind not in "iuf":
+            message = (
+                f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers "
+                f"{name}"
+            )
+            raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)")
+    return ControlSystem(None, {name: getattr(system, name) for name in "ABCD"}, dt)
 
 
 def exact_of(system: Any) -> Any:
@@ -48,19 +56,3 @@ def exact_of(system: Any) -> Any:
 def _are_of(matrix: Matrix, array: Any) -> bool:
     """Return whether an array holds the doubles nearest to the entries of an exact matrix."""
     return bool(array.shape == matrix.shape) and array.reshape(-1).tolist() == [*map(nearest_double, matrix.entries)]
-
-
-def _shortest_decimals(system: Any, name: str, rows: Any) -> list[list[str]]:
-    """Return rows of floats as texts, each the shortest that names the same float."""
-    try:
-        found = [[float(entry) for entry in (row.tolist() if hasattr(row, "tolist") else row)] for row in rows]
-    except (TypeError, ValueError) as error:
-        message = (
-            f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers {name}"
-        )
-        raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)") from error
-    for entry in (entry for row in found for entry in row):
-        if not isfinite(entry):
-            message = f"{entry} is not a finite number"
-            raise InputError(message, where=f"plant.{name}", repair="give finite entries")
-    return [[repr(entry) for entry in row] for row in found]

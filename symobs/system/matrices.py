@@ -45,16 +45,15 @@ class Matrices:
 def as_rows(name: str, value: Any) -> Any:
     """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix."""
     if (
-        name == "A"
-        or value is None
-        or isinstance(value, (str, Matrix))
+        value is None
+        or isinstance(value, (str, Matrix, dict, set))
         or (hasattr(value, "shape") and len(value.shape) == 2)
     ):
         return value
     listed = value.tolist() if hasattr(value, "tolist") else value
     if not isinstance(listed, (list, tuple)):
         return [[value]]
-    if any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
+    if name == "A" or any(isinstance(row, (list, tuple)) or getattr(row, "shape", ()) for row in listed):
         return value
     return [[entry] for entry in listed] if name == "B" else [list(listed)]
 

@@ -11,7 +11,7 @@ from symobs.system.symbols import is_sympy
 _MAKE_ONE = 'give a symobs.StateSpace, for example symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")'
 
 
-def as_plant(value: Any, *, only: bool = True) -> Any:
+def as_plant(value: Any, *, only: bool = True, floats: str | None = None) -> Any:
     """Return the plant of a system of python-control or SymPy, or of a pair of lists of coefficients.
 
     A `StateSpace` is returned as it is, and what is no plant where it need not be the `only` thing that may come: raises
@@ -19,13 +19,13 @@ def as_plant(value: Any, *, only: bool = True) -> Any:
     """
     if isinstance(value, StateSpace):
         return value
-    module = type(value).__module__
+    module = str(type(value).__module__)
     if module.partition(".")[0] == "control":
         return StateSpace.from_control(value)
     if module.startswith("sympy.physics.control"):
-        return _from_sympy(value)
-    if isinstance(value, (list, tuple)) and len(value) == 2 and all(isinstance(part, (list, tuple)) for part in value):
-        return StateSpace.from_transfer_function(value)
+        return _from_sympy(value, floats)
+    if isinstance(value, (list, tuple)) and len(value) == 2 and all(map(_is_flat, value)):
+        return StateSpace.from_transfer_function(value, floats=floats)
     if not only:
         return value
     repair = _MAKE_ONE
@@ -35,17 +35,30 @@ def as_plant(value: Any, *, only: bool = True) -> Any:
     raise InputError(message, where="plant", repair=repair)
 
 
-def _from_sympy(system: Any) -> StateSpace:
+def _is_flat(part: object) -> bool:
+    """Return whether this is a list or an array of numbers."""
+    return isinstance(part, (list, tuple)) or len(getattr(part, "shape", ())) == 1
+
+
+def _from_sympy(system: Any, floats: str | None) -> StateSpace:
     """Return the plant of a system of `sympy.physics.control`, connections of systems included."""
     found = system.doit()
     dt = getattr(found, "sampling_time", 0)
     if all(hasattr(found, name) for name in "ABCD"):
-        return StateSpace(found.A, found.B, found.C, found.D, dt)
-    if not all(hasattr(found, name) for name in ("num", "den", "var")):
-        message = f"a system of SymPy with one input and one output is expected, but a {type(found).__name__} came"
+        return StateSpace(found.A, found.B, found.C, found.D, dt, floats=floats)
+    if hasattr(found, "num_inputs") and not hasattr(found, "num"):
+        entries = [[found[i, j].doit() for j in range(found.num_inputs)] for i in range(found.num_outputs)]
+    else:
+        entries = [[found]]
+    if not all(hasattr(entry, name) for row in entries for entry in row for name in ("num", "den", "var")):
+        message = f"a state-space system or transfer functions of SymPy are expected, but a {type(found).__name__} came"
         raise InputError(message, where="plant", repair=_MAKE_ONE)
     from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
 
-    own = {found.var: "z" if dt else "s"}
-    coefficients = tuple(with_plain_symbols(part, own) for part in (found.num, found.den))
-    return StateSpace.from_transfer_function(coefficients, dt)
+    variable = "z" if dt else "s"
+    rows = [
+        [tuple(with_plain_symbols(part, {entry.var: variable}) for part in (entry.num, entry.den)) for entry in row]
+        for row in entries
+    ]
+    single = rows[0][0] if len(rows) == len(rows[0]) == 1 else rows
+    return StateSpace.from_transfer_function(single, dt, floats=floats)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
 from symobs.expression import parse_matrix, parse_scalar
+from symobs.expression.parse import FLOATS
 from symobs.expression.source import shown
 from symobs.system.symbols import Symbols, is_sympy, sympy_symbols
 
@@ -25,7 +27,9 @@ _DECIMAL = re.compile(r"\d\.\d")
 
 
 def has_decimals(value: object) -> bool:
-    """Return whether a text, or nested lists of texts, contain a decimal number."""
+    """Return whether a text, or nested lists of texts and numbers, contain a decimal number."""
+    if isinstance(value, Decimal):
+        return value.is_finite() and value != value.to_integral_value()
     if isinstance(value, (list, tuple)):
         return any(has_decimals(entry) for entry in value)
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False
@@ -40,11 +44,11 @@ def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[ob
         return value
     if isinstance(value, str):
         return parse_matrix(value, symbols.names, where=where, beside=beside)
-    if is_sympy(value) and hasattr(value, "shape"):
+    if is_sympy(value) and hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:
         from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
         return matrix_from_sympy(value, where)
-    if type(value).__module__.startswith("numpy"):
+    if str(type(value).__module__).startswith("numpy"):
         value = _from_numpy(value, where)
     if isinstance(value, Sequence) and sympy_symbols(value) | ({"": 0} if _any_sympy(value) else {}):
         return _mixed_rows(value, symbols, where)
@@ -106,9 +110,10 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
 
 
 def _from_numpy(value: Any, where: str) -> object:
-    if getattr(value, "dtype", None) is not None and value.dtype.kind not in "iuO":
+    """Return the entries of an array; those of integers, complex numbers and objects are read one by one."""
+    if getattr(getattr(value, "dtype", None), "kind", "") == "f":
         message = f"a NumPy array of {value.dtype} holds floating-point numbers"
-        raise InexactInput(message, where=where, repair='write exact values such as "1/10"')
+        raise InexactInput(message, where=where, repair=f'write exact values such as "1/10"{FLOATS}')
     return value.tolist()
 
 

@@ -6,16 +6,18 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
-from symobs.errors import BudgetExceeded, InputError, ProblemErrors, SymobsError
+from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
-from symobs.expression import parse_polynomial
+from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
+from symobs.system.floats import read_floats
 from symobs.system.matrices import Matrices, as_rows, shape_errors
-from symobs.system.reading import has_decimals, read_matrix, read_scalar, read_values
+from symobs.system.reading import has_decimals, read_matrix, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
-from symobs.system.transfer_function_text import MOST_STATES, WrittenTransferFunction, read_transfer_function, realise
+from symobs.system.transfer_function_text import WrittenTransferFunction, read_characteristic
+from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -27,13 +29,15 @@ _LONG = 25
 class StateSpace:
     """A linear plant: ẋ = A x + B u, y = C x + D u (x(k+1) = … in discrete time).
 
-    A  n×n, B  n×m, C  p×n, D  p×m; each a MATLAB-style text `"[0 1; 0 -1]"`, nested lists of integers and texts, or a
-    SymPy matrix.  B, C may be left out where a task does not need them; D is zero if left out.
+    A  n×n, B  n×m, C  p×n, D  p×m; each a MATLAB-style text `"[0 1; 0 -1]"`, nested lists of exact numbers and texts, a
+    SymPy matrix or a NumPy array; flat lists are a column B and a row C.  B, C may be left out where a task does not
+    need them; D is zero if left out.
     dt       0 continuous time; True or a positive value: discrete time
     symbols  name → sign ("positive", …, "real"); when given, no other names exist
+    floats   "decimal" reads floats as their shortest decimals, and the page says so; otherwise they are refused
 
     The name t is the time: a plant with t in a matrix is time-varying, ẋ = A(t) x + B(t) u, and need not declare it.
-
+    `P * Q`, `P + Q` and `P.feedback(Q)` connect plants as python-control does; Q may be a gain.
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
 
@@ -46,10 +50,14 @@ class StateSpace:
         dt: object = 0,
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
-        transfer_function: WrittenTransferFunction | None = None,
+        floats: str | None = None,
+        transfer_function: WrittenTransferFunction | WrittenTransferMatrix | None = None,
     ) -> None:
         """Read the matrices and check that they fit."""
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
+        came = A, B, C, D
+        A, B, C, D = (read_floats(value, floats, f"plant.{name}") for name, value in zip("ABCD", came, strict=True))
+        self.is_from_floats = any(new is not old for new, old in zip((A, B, C, D), came, strict=True))
         known = known.seen([A, B, C, D])
         A, B, C, D = (as_rows(name, value) for name, value in zip("ABCD", (A, B, C, D), strict=True))
         named, texts = known.with_time(), [value for value in (A, B, C, D) if isinstance(value, str)]
@@ -71,7 +79,6 @@ class StateSpace:
         self.time = read_time(dt, known)
         self.written = transfer_function
         self.polynomial: Scalar | None = None
-        self.is_from_floats = False
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
@@ -88,20 +95,29 @@ class StateSpace:
 
     @classmethod
     def from_transfer_function(
-        cls, transfer_function: object, dt: object = 0, *, symbols: Mapping[str, Any] | Symbols | None = None
+        cls,
+        transfer_function: object,
+        dt: object = 0,
+        *,
+        symbols: Mapping[str, Any] | Symbols | None = None,
+        floats: str | None = None,
     ) -> StateSpace:
         """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
 
         b(s)/a(s) + d with a(s) = sⁿ + a₁ sⁿ⁻¹ + … + aₙ gives ones above the diagonal, last row −aₙ … −a₁, B = eₙ and
-        C the coefficients of b, constant first.  Raises `InputError` where the function is not proper or constant.
+        C the coefficients of b, constant first.  The function is a text, a SymPy expression or lists of coefficients,
+        highest power first: ([1], [1, 2, 0]).  A matrix of functions, "[1/(s+1) 0; 1/s 1/(s+1)]", is given a minimal
+        realisation.  Raises `InputError` where a function is not proper, or has no pole.
         """
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
-        time = read_time(dt, known)
-        known = known.seen(transfer_function, time.variable)
-        where = "plant.transfer_function"
-        written = read_transfer_function(transfer_function, known, time.variable, where)
-        A, B, C, D = realise(written.value, time.variable, where)
-        return cls(A, B, C, D, dt, symbols=known, transfer_function=written)
+        time, where = read_time(dt, known), "plant.transfer_function"
+        given = read_floats(transfer_function, floats, where)
+        known = known.seen(given, time.variable)
+        written = read_written(given, known, time.variable, where)
+        A, B, C, D = written.realised(where)
+        plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
+        plant.is_from_floats = given is not transfer_function
+        return plant
 
     @classmethod
     def from_polynomial(
@@ -114,18 +130,8 @@ class StateSpace:
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         time = read_time(dt, known)
         known = known.seen(polynomial, time.variable)
-        where, variable = "specification.polynomial", time.variable
-        if isinstance(polynomial, str):
-            value = parse_polynomial(polynomial, variable, known.names, where=where)
-        else:
-            value = read_scalar(polynomial, known, where)
-        lead, *rest = value.coefficients(variable)
-        if not rest or not value.is_polynomial_in(variable):
-            message = f"{value} is not a polynomial in {variable} of degree 1 or more"
-            raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
-        if len(rest) > MOST_STATES:
-            message = f"a polynomial of degree {len(rest)}, more than {MOST_STATES}"
-            raise BudgetExceeded(message, where=where, repair="give one of lower degree")
+        value = read_characteristic(polynomial, known, time.variable, "specification.polynomial")
+        lead, *rest = value.coefficients(time.variable)
         plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
         plant.polynomial = value
         return plant
@@ -136,15 +142,15 @@ class StateSpace:
 
         The page says so.  A system of `Result.to_control` is read back exactly.
 
-        Raises `InputError` for a transfer matrix, and where an entry is not a finite number.
+        Raises `InputError` where it is no system of numbers.
         """
         if symbols is None and (exact := exact_of(system)) is not None:
             return cast("StateSpace", exact)
         transfer_function, matrices, dt = read_control_system(system)
         if transfer_function is None:
-            plant = cls(**matrices, dt=dt, symbols=symbols)
+            plant = cls(**matrices, dt=dt, symbols=symbols, floats="decimal")
         else:
-            plant = cls.from_transfer_function(transfer_function, dt, symbols=symbols)
+            plant = cls.from_transfer_function(transfer_function, dt, symbols=symbols, floats="decimal")
         plant.is_from_floats = True
         return plant
 
@@ -158,12 +164,12 @@ class StateSpace:
     @property
     def inputs(self) -> int:
         """The number m of inputs; 0 where B is not given."""
-        return self.matrices.B.shape[1] if self.matrices.has_input else 0
+        return self.matrices.B.shape[1]
 
     @property
     def outputs(self) -> int:
         """The number p of outputs; 0 where C is not given."""
-        return self.matrices.C.shape[0] if self.matrices.has_output else 0
+        return self.matrices.C.shape[0]
 
     @property
     def variable(self) -> str:
@@ -205,8 +211,8 @@ class StateSpace:
         return plant
 
     @property
-    def origin(self) -> Scalar | None:
-        """The transfer function in lowest terms, if the plant was given by one."""
+    def origin(self) -> Scalar | Matrix | None:
+        """The transfer function, or matrix, in lowest terms, if the plant was given by one."""
         return None if self.written is None else self.written.value
 
     @property
@@ -283,6 +289,18 @@ class StateSpace:
         plant = copy(self)
         plant.symbols = symbols
         return plant
+
+    def __mul__(self, other: object) -> StateSpace:
+        """Return the series connection y = P₁ P₂ u: the other plant comes first."""
+        return connected("series", self, other)
+
+    def __add__(self, other: object) -> StateSpace:
+        """Return the parallel connection y = (P₁ + P₂) u."""
+        return connected("parallel", self, other)
+
+    def feedback(self, other: object = 1, sign: int = -1) -> StateSpace:
+        """Return y = (I − sign P₁ P₂)⁻¹ P₁ u, P₂ a plant or a gain in the feedback path."""
+        return connected("feedback" if sign < 0 else "positive feedback", self, other)
 
     # -- what is found on strata ---------------------------------------------------------------------------------------
 

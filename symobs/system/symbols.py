@@ -204,4 +204,5 @@ def _symbols_in(values: object) -> Iterator[Any]:
 
 def is_sympy(value: object) -> bool:
     """Return whether a value is a SymPy object, without importing SymPy."""
-    return "sympy" in sys.modules and type(value).__module__.startswith("sympy")
+    # an undefined function of SymPy makes a class that says of no module
+    return "sympy" in sys.modules and (type(value).__module__ or "sympy").startswith("sympy")

@@ -42,7 +42,7 @@ def read_time(dt: object, symbols: Symbols) -> TimeDomain:
     """Return the time domain of `dt`: 0 is continuous, True or a positive value discrete."""
     if dt is True:
         return Discrete()
-    if dt is False or dt is None or dt == 0:
+    if dt is False or dt is None:
         return Continuous()
     value = read_scalar(str(dt) if isinstance(dt, float) else dt, symbols, "plant.dt")
     if value.is_zero:

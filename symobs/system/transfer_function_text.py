@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Matrix, Scalar, companion, product_of
-from symobs.expression import parse_scalar
+from symobs.expression import parse_polynomial, parse_scalar
 from symobs.expression.written_fraction import parse_fraction
 from symobs.system.reading import read_scalar
 from symobs.system.symbols import is_sympy
@@ -42,6 +42,10 @@ class WrittenTransferFunction:
         """The cancelled factor of the denominator, 1 if nothing cancels."""
         return product_of(factor**power for factor, power in self._common if self.variable in factor.names)
 
+    def realised(self, where: str) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+        """Return its controllable canonical form."""
+        return realise(self.value, self.variable, where)
+
     @property
     def apart(self) -> tuple[Scalar, ...]:
         """The cancelled factors in the parameters alone, which are nonzero wherever the function is defined."""
@@ -50,17 +54,24 @@ class WrittenTransferFunction:
 
 def read_transfer_function(value: object, symbols: Symbols, variable: str, where: str) -> WrittenTransferFunction:
     """Return the transfer function of a text, a SymPy expression, a number or two lists of coefficients."""
+    written: Any
     if isinstance(value, str):
         found = parse_scalar(value, symbols.names, variable=variable, where=where)
         written = parse_fraction(value, symbols.names, variable=variable, where=where)
     elif is_sympy(value):
         found, written = read_scalar(value, symbols, where), _of_sympy(value, where)
     elif isinstance(value, (list, tuple)):
+        value = [part.tolist() if hasattr(part, "tolist") else part for part in value]  # NumPy arrays
         written = _of_coefficients(value, symbols, variable, where)
         found = written[0] / written[1]
     else:
         found, written = read_scalar(value, symbols, where), None
     above, below = written or (found.numerator, found.denominator)
+    return written_over(above, below, variable)
+
+
+def written_over(above: Scalar, below: Scalar, variable: str) -> WrittenTransferFunction:
+    """Return the function above / below with integer coefficients."""
     common = above.denominator * below.denominator  # numbers, unless a polynomial came with coefficients 1/m
     return WrittenTransferFunction((above * common).numerator, (below * common).numerator, variable)
 
@@ -91,6 +102,31 @@ def _of_coefficients(value: list[Any] | tuple[Any, ...], symbols: Symbols, varia
     return found
 
 
+def read_characteristic(value: object, symbols: Symbols, variable: str, where: str) -> Scalar:
+    """Return a polynomial of degree 1 or more, and of no more than a plant may have states."""
+    if isinstance(value, str):
+        found = parse_polynomial(value, variable, symbols.names, where=where)
+    else:
+        found = read_scalar(value, symbols, where)
+    degree = found.degree(variable)
+    if degree < 1 or not found.is_polynomial_in(variable):
+        message = f"{found} is not a polynomial in {variable} of degree 1 or more"
+        raise InputError(message, where=where, repair=f'write for example "{variable}^2 + h {variable} + 1"')
+    if degree > MOST_STATES:
+        message = f"a polynomial of degree {degree}, more than {MOST_STATES}"
+        raise BudgetExceeded(message, where=where, repair="give one of lower degree")
+    return found
+
+
+def _other_time(value: Scalar, variable: str) -> str:
+    """Return what to do about a function of the variable of the other domain of time."""
+    if variable == "s" and "z" in value.names:
+        return "z is the variable in discrete time: give dt = true, or the period"
+    if variable == "z" and "s" in value.names:
+        return "s is the variable in continuous time: leave dt out, or write z"
+    return ""
+
+
 def realise(value: Scalar, variable: str, where: str = "transfer_function") -> tuple[Matrix, Matrix, Matrix, Matrix]:
     """Return the controllable canonical form (A, B, C, D) of a proper rational function."""
     denominator = value.denominator.coefficients(variable)
@@ -99,9 +135,8 @@ def realise(value: Scalar, variable: str, where: str = "transfer_function") -> t
     if order < 1:
         message = f"{value} has no pole, so it has no state"
         example = f"1/({variable}*({variable}+1))"
-        raise InputError(
-            message, where=where, repair=f"give a proper rational function of {variable}, such as {example}"
-        )
+        repair = f"give a proper rational function of {variable}, such as {example}"
+        raise InputError(message, where=where, repair=_other_time(value, variable) or repair)
     if order > MOST_STATES:
         message = f"a transfer function of order {order}, more than {MOST_STATES}"
         raise BudgetExceeded(message, where=where, repair="give one of lower order")

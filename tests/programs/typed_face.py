@@ -9,7 +9,8 @@ import inspect
 from collections.abc import Mapping
 from typing import Any
 
-from symobs import FUNCTIONS, errors
+import symobs
+from symobs import errors
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 from symobs.problem import read
 from symobs.result import Result, Task, tasks
@@ -18,7 +19,7 @@ from tests.support.paths import ROOT
 STUB = ROOT / "symobs" / "__init__.pyi"
 #: What a keyword of each kind takes.
 KINDS = {
-    "Poles": "str | Sequence[_Number]",
+    "Poles": "str | Sequence[_Number] | MatrixBase",
     "PolynomialText": "str | Expr",
     "GainText": "_Matrix",
     "MatrixText": "_Matrix",
@@ -36,6 +37,7 @@ KINDS = {
 HEAD = '''"""What type checkers and editors know of `symobs`; `python -m tests.programs.typed_face` writes it."""
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -44,7 +46,8 @@ from sympy.matrices import MatrixBase
 
 '''
 NAMES = """
-_Number: TypeAlias = str | int | Fraction | Expr
+_Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
+_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -116,12 +119,13 @@ def signature(task: Task) -> str:
     """A task as a function of the package."""
     parameters = inspect.signature(task.function).parameters
     by_place = [str(p) for p in parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
-    plant = ", ".join(text.replace("'", "") for text in by_place)
+    plant = ", ".join(text.replace("'", "").replace("StateSpace", "_Plant") for text in by_place)
     keywords = []
     for name, kind in task.keywords.items():
         default = parameters[name].default
         optional = " | None" if default is None else ""
         keywords.append(f"    {name}: {KINDS[kind]}{optional} = {default!r},".replace("'", '"'))
+    keywords.append("    floats: str | None = None,")
     own = own_class(task)
     told = f'    """{task.summary}"""'
     star = "    *,\n" if keywords else ""
@@ -135,8 +139,8 @@ def stub() -> str:
     raised = sorted(name for name in vars(errors) if isinstance(getattr(errors, name), type) and name[0].isupper())
     raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
+    imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
     imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
-    imports |= {f"from {module} import {name} as {name}" for name, module in FUNCTIONS.items()}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
 

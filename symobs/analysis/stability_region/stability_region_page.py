@@ -42,6 +42,8 @@ def write_region(page: Page, result: StabilityRegion) -> None:
         with page.section("given"):
             page.given(relation(page["chi_p"], question.plant.polynomial))
             page.environment = page.environment.having(values={"chi_p": question.plant.polynomial})
+            if result.plant.is_from_floats:
+                page.remark("from_floats")
             state_signs(page)
         chi = "chi_p"
     else:

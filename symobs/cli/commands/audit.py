@@ -10,7 +10,7 @@ import click
 
 from symobs.audit import REPORTS, audit, report
 from symobs.cli.shared.common import EXIT_NO, place_of, read_file, run_work, write_message
-from symobs.cli.shared.options import LIMITS, options
+from symobs.cli.shared.options import LIMITS, AFile, OneOf, options
 from symobs.cli.shared.outcome import Outcome
 from symobs.cli.shared.output import check_target
 from symobs.errors import ProblemErrors, SymobsError, UsageError
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 
 @click.command("audit")
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown or json.")
-@click.option("-o", "target", metavar="PATH", help="Write to PATH.")
+@click.argument("files", nargs=-1, required=True, type=AFile(), metavar="FILE...")
+@click.option("--format", "format_name", default="text", type=OneOf(lambda: REPORTS), help="text if left out.")
+@click.option("-o", "target", type=AFile(), metavar="PATH", help="Write to PATH.")
 @options(*LIMITS)
 def command(
     files: tuple[str, ...], format_name: str, target: str | None, timeout: float | None, memory: float | None

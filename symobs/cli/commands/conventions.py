@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import click
 
+from symobs.cli.shared.options import OneOf
 from symobs.cli.shared.output import write
+from symobs.convention import conventions
 from symobs.convention.listing import file_of, listed
 
 
 @click.command("conventions")
-@click.argument("name", required=False)
+@click.argument("name", required=False, type=OneOf(conventions))
 def command(name: str | None) -> None:
     """List the conventions a page can be written in, or print the file of the one called NAME."""
     write(listed() if name is None else file_of(name))

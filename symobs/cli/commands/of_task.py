@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.shared.common import chosen_format, run_work
-from symobs.cli.shared.options import OF_A_PAGE, options
+from symobs.cli.shared.common import chosen_format, progress_on_terminal, run_work
+from symobs.cli.shared.options import OF_A_PAGE, OneOf, options
 from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
-from symobs.errors import ProblemErrors, SymobsError
+from symobs.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import OPEN, validate
-from symobs.specification import KINDS
+from symobs.result import methods
+from symobs.specification import CHOICES, KINDS
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -32,13 +33,15 @@ PLANT_OPTIONS = {
 def task_command(task: Any) -> click.Command:
     """Return the command of a task: the plant's options, then the task's keywords."""
 
-    def option(group: str, name: str, described: str) -> click.Option:
-        return click.Option(
-            [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name], help=described
-        )
+    def option(group: str, name: str, described: str, words: OneOf | None = None) -> click.Option:
+        names = [*dict.fromkeys([f"--{name}", f"--{name.replace('_', '-')}"]), group + name]
+        return click.Option(names, help=described, type=words, multiple=True, callback=_once)
 
     parameters: list[click.Parameter] = [option("plant_", name, text) for name, text in PLANT_OPTIONS.items()]
-    parameters += [option("given_", name, KINDS[kind]["description"]) for name, kind in task.keywords.items()]
+    for name, kind in task.keywords.items():
+        words = _words(task, name) if kind == "Name" else None
+        described = KINDS[kind]["description"] if words is None else f"the {name}"
+        parameters.append(option("given_", name, described, words))
     signs = "For example omega=positive; repeat it. With it, no other names exist."
     parameters.append(click.Option(["--symbol", "symbols"], multiple=True, metavar="NAME=SIGN", help=signs))
     first, _, rest = (inspect.getdoc(task.function) or "").partition("\n\n")
@@ -50,6 +53,22 @@ def task_command(task: Any) -> click.Command:
         short_help=task.summary,
     )
     return options(*OF_A_PAGE)(command)
+
+
+def _words(task: Any, name: str) -> OneOf | None:
+    """Return the words a keyword may be: the methods of a task, or what the kind of keyword has."""
+    if name == "method":
+        return OneOf(lambda: ["auto", *(found.name for found in methods(task.name).values())])
+    return OneOf(lambda: CHOICES[name]) if name in CHOICES else None
+
+
+def _once(_: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> str | None:
+    """Return the one value of an option; raises `UsageError` where it is given twice."""
+    if len(values) > 1:
+        several = f' in one text: {parameter.opts[0]} "{", ".join(values)[:60]}"' if "pole" in parameter.opts[0] else ""
+        repair = f"write them{several}" if several else "keep one of them"
+        raise UsageError(f"it is given {len(values)} times", where=parameter.opts[0], repair=repair)
+    return values[0] if values else None
 
 
 def _run_task(task: Any, options_given: dict[str, Any]) -> None:
@@ -73,13 +92,14 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     convention = convention_of(options_given["convention_name"])
 
     def work(report_progress: Progress) -> Outcome:
+        told = progress_on_terminal(report_progress)
         return solved(
             validate(data),
             chosen,
             options_given["target"],
             options_given["plot"],
             convention,
-            report_progress,
+            told,
             bibliography=options_given["bibliography"],
             **page,
         )
@@ -90,6 +110,8 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         for error in raised.errors if isinstance(raised, ProblemErrors) else (raised,):
             error.where = re.sub(r"^(plant|specification)\.", "--", error.where)
             error.where = re.sub(r"^symbols\.", "--symbol ", error.where)
+            if error.where.startswith("--symbol") and re.match(r"'[-+.\d]", error.message):
+                error.repair += "; it declares a sign: a value is written in place of the letter"
         raise
 
 

@@ -25,7 +25,7 @@ from symobs.cli.shared.common import (
     read_file,
     write_message,
 )
-from symobs.cli.shared.options import LIMITS, options
+from symobs.cli.shared.options import LIMITS, AFile, options
 from symobs.cli.shared.outcome import convention_of, page_of
 from symobs.cli.shared.output import check_target, write
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
@@ -64,7 +64,7 @@ class _Wanted:
 
 
 @click.command("sheet")
-@click.argument("files", nargs=-1, metavar="FILE...")
+@click.argument("files", nargs=-1, type=AFile(), metavar="FILE...")
 @options("format", "target")
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")

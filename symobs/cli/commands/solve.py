@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
-from symobs.cli.shared.options import OF_A_PAGE, options, quoted
+from symobs.cli.shared.options import OF_A_PAGE, AFile, OneOf, options, quoted
 from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
 from symobs.errors import UsageError
 from symobs.problem import parse, validate
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 
 @click.command("solve")
-@click.argument("file")
-@click.option("--task", "task_name", metavar="NAME", help="Run this task only.")
+@click.argument("file", type=AFile())
+@click.option("--task", "task_name", type=OneOf(tasks), metavar="NAME", help="Run this task only.")
 @options(*OF_A_PAGE)
 def command(
     file: str,
@@ -50,7 +50,7 @@ def command(
 
     def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)
-        report_progress = progress_on_terminal(found, report_progress)
+        report_progress = progress_on_terminal(report_progress)
         return solved(
             found,
             chosen,

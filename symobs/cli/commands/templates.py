@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from symobs.cli.shared.common import place_of
-from symobs.cli.shared.output import write, write_all
-from symobs.errors import InputError, reason_of
+from symobs.cli.shared.options import AFile
+from symobs.cli.shared.output import copied, write
 from symobs.render.formats.templates import template_folder
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @click.group("templates", invoke_without_command=True)
@@ -21,19 +23,10 @@ def command(ctx: click.Context) -> None:
 
 
 @command.command()
-@click.argument("folder")
+@click.argument("folder", type=AFile("dir"))
 def copy(folder: str) -> None:
     """Copy the built-in LaTeX templates into FOLDER; no file there is overwritten."""
-    target = Path(folder)
-    taken = [path.name for path in _templates() if (target / path.name).exists()]
-    if taken:
-        message = f"{taken[0]} is already there"
-        raise InputError(message, where=folder[:200], repair="name another folder, or move the file away")
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(reason_of(error), where=place_of(folder), repair="name a folder that can be written") from None
-    write_all([(path.read_bytes(), str(target / path.name)) for path in _templates()])
+    copied(_templates(), folder)
 
 
 def _templates() -> list[Path]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -23,12 +24,14 @@ if TYPE_CHECKING:
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
 
 
+#: Seconds of work before anything is said of it.
+SILENT = 2.0
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"
 
 
 def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> None:
     """Do the work within its time and memory, write its outputs and messages, and exit with its code."""
-    if timeout is None and memory is None:
+    if timeout is None and memory is None and not _somebody_waits():
         outcome = work(lambda _: None)
     else:
         from symobs.cli.shared.outcome import bounded  # noqa: PLC0415 - it is there already, with the work
@@ -46,16 +49,29 @@ def write_message(text: str) -> None:
         click.echo(text, err=True)
 
 
-def progress_on_terminal(found: Any, report_progress: Progress) -> Progress:
-    """Return a progress report that also writes the name of the task begun, if standard error is a terminal."""
-    if sys.stderr is None or not sys.stderr.isatty() or len(found.tasks) < 2:
+def _somebody_waits() -> bool:
+    """Return whether someone at a terminal may interrupt: work in a child ends at once, also within a call into FLINT."""
+    return hasattr(os, "fork") and sys.stderr is not None and sys.stderr.isatty()
+
+
+def progress_on_terminal(report_progress: Progress) -> Progress:
+    """Return a progress report that writes what is at work on a terminal: after two seconds, and what begins later."""
+    if sys.stderr is None or not sys.stderr.isatty():
         return report_progress
+    from threading import Timer  # noqa: PLC0415 - on a terminal only
+
+    at_work: list[str] = []
 
     def shown(reached: object) -> None:
         if isinstance(reached, str):
-            write_message(f"{reached} …")
+            at_work.append(reached)
+            if not waiting.is_alive():
+                write_message(f"{reached} …")
         report_progress(reached)
 
+    waiting = Timer(SILENT, lambda: write_message(f"{at_work[-1]} …") if at_work else None)
+    waiting.daemon = True
+    waiting.start()
     return shown
 
 

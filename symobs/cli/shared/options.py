@@ -6,11 +6,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from symobs.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 Optioned = TypeVar("Optioned", bound="Callable[..., Any] | click.Command")
 
@@ -52,29 +53,95 @@ def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[st
     return names
 
 
+class OneOf(click.ParamType):  # type: ignore[type-arg]  # generic in the newest click alone
+    """A word of a few, which help and completion show; whoever reads it refuses another one, with what to do."""
+
+    name = "word"
+
+    def __init__(self, choices: Callable[[], Iterable[str]]) -> None:
+        """Take the words, which are looked up where they are shown."""
+        self.choices = choices
+
+    def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:  # noqa: ARG002 - click's signature
+        """Return the words as help shows them."""
+        return f"[{'|'.join(self.choices())}]"
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Return the words that begin like this."""
+        return [CompletionItem(word) for word in self.choices() if word.startswith(incomplete)]
+
+
+class AFile(click.ParamType):  # type: ignore[type-arg]  # as above
+    """The path of a file, or of a folder, which the shell completes; whoever opens it says what is wrong with it."""
+
+    name = "path"
+
+    def __init__(self, kind: str = "file") -> None:
+        """Take what the shell is to complete: file or dir."""
+        self.kind = kind
+
+    def shell_complete(
+        self,
+        ctx: click.Context,  # noqa: ARG002 - click's signature
+        param: click.Parameter,  # noqa: ARG002
+        incomplete: str,
+    ) -> list[CompletionItem]:
+        """Leave the completion to the shell."""
+        return [CompletionItem(incomplete, type=self.kind)]
+
+
+def _formats() -> Iterable[str]:
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - for help and completion only
+
+    return format_suffixes(symobs.FORMAT_PACKAGE)
+
+
+def _conventions() -> Iterable[str]:
+    from symobs.convention import conventions  # noqa: PLC0415 - for help and completion only
+
+    return conventions()
+
+
+def _details() -> Iterable[str]:
+    from symobs.render.page.detail_level import DETAILS  # noqa: PLC0415 - for help and completion only
+
+    return DETAILS
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
         "--format",
         "format_name",
-        metavar="NAME",
-        help="latex (default), html, markdown, text, json, pdf, …; a program: c, python, matlab, modelica; "
-        "numbers alone: numpy, csv.",
+        type=OneOf(_formats),
+        help="The output format: of a page, of a program (c, python, matlab, modelica) or of numbers alone (numpy, csv); "
+        "latex where nothing is said.",
     ),
     "target": click.option(
-        "-o", "target", metavar="PATH", help="Write to PATH; its suffix names the format where --format does not."
+        "-o",
+        "target",
+        type=AFile(),
+        metavar="PATH",
+        help="Write to PATH; its suffix names the format where --format does not.",
     ),
     "detail": click.option(
         "--detail",
         default="full",
-        metavar="NAME",
-        help="Level of detail of the derivation: full (default), outline or answer.",
+        type=OneOf(_details),
+        help="Level of detail of the derivation; full where nothing is said.",
     ),
     "templates": click.option(
-        "--templates", metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."
+        "--templates", type=AFile("dir"), metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."
     ),
     "plot": click.option(
         "--plot",
+        type=AFile(),
         metavar="PATH",
         help="Write the picture of the first result that has one to PATH: .svg, .png, .pdf or .tex.",
     ),
@@ -84,6 +151,7 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
     "convention": click.option(
         "--convention",
         "convention_name",
+        type=OneOf(_conventions),
         metavar="NAME",
         help='Write the page in this convention: standard, a law such as "u = K x_hat, A + M C", a name that '
         "`symobs conventions` lists, or the path of a TOML file.",

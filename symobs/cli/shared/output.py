@@ -47,6 +47,21 @@ def write_all(outputs: Sequence[tuple[str | bytes, str | None]]) -> None:
             temporary.unlink(missing_ok=True)
 
 
+def copied(paths: Sequence[Path], folder: str) -> None:
+    """Copy files into a folder; raises `InputError` where one of their names is taken there."""
+    target = Path(folder)
+    taken = [path.name for path in paths if (target / path.name).exists()]
+    if taken:
+        message = f"{taken[0]} is already there"
+        raise InputError(message, where=_shown(folder), repair="name another folder, or move the file away")
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        repair = "name a folder that can be written"
+        raise InputError(reason_of(error), where=_shown(folder), repair=repair) from None
+    write_all([(path.read_bytes(), str(target / path.name)) for path in paths])
+
+
 def check_target(target: str | None) -> None:
     """Raise `InputError`, before any work, if a result cannot be written."""
     if target is None or target == "-":

@@ -14,6 +14,7 @@ import pickle
 import select
 import signal
 import sys
+import threading
 import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
@@ -71,6 +72,27 @@ def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -
         said, status = _heard(stream, child, budget.seconds)
     value: Value = _answer(said, status, budget, where)
     return value
+
+
+def bounded(work: Callable[[], Value], *, timeout: float | None = None, memory: float | None = None) -> Value:
+    """Return the value of a function of no arguments, computed within its time and memory.
+
+    timeout   seconds; memory   megabytes; None is unlimited
+    The work is done by a child process and its value handed back: `bounded(lambda: symobs.observer(plant, poles="-1,
+    -2"), timeout=10)`.  What it prints is lost, and its errors are raised here.  Raises `OutOfBudget` where time or
+    memory is not enough, `UsageError` where the system cannot bound them.
+    """
+    for name, amount in (("timeout", timeout), ("memory", memory)):
+        if amount is not None and not 0 < amount < float("inf"):
+            raise UsageError(f"{amount} is not a positive number", where=name, repair=f"write for example {name}=60")
+    if threading.current_thread() is not threading.main_thread():
+        message = "only the main thread can wait for a computation that is to be ended"
+        raise UsageError(message, where="bounded", repair="call it in the main thread, or in a process of its own")
+    try:
+        return within(Budget(timeout, memory), lambda _: work())
+    except (OutOfBudget, UsageError) as error:
+        error.where, error.repair = error.where.replace("--", ""), error.repair.replace("--", "")
+        raise
 
 
 def _require_child_processes(budget: Budget) -> None:
@@ -246,7 +268,7 @@ def _end(child: int, stream: io.FileIO, said: bytearray) -> None:
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         os.kill(child, signal.SIGINT)
-        end = time.monotonic() + GRACE
+        end = time.monotonic() + GRACE / 2  # who interrupts is not to wait a second
         while os.waitpid(child, os.WNOHANG)[0] == 0:
             if time.monotonic() > end:
                 _kill(child, stream, said)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Self
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
-from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.compensator.output_feedback import Asked, OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
-from symobs.design.gain.gain_cases import design_of, places_where
+from symobs.design.gain.gain_cases import half_of, places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError, together
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
@@ -19,7 +19,7 @@ from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.result import Result, choose, method, task
-from symobs.specification import DesiredPolynomial, Name, Poles, PolynomialText, desired_polynomial
+from symobs.specification import GainText, Name, Poles, PolynomialText, desired_polynomial, read_gain, reject_both
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,10 +36,10 @@ class CompensatorDesign(OutputFeedback):
     estimator: ObserverDesign
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
-        """Return the compensator for these polynomials."""
-        feedback = design_of(StateFeedbackDesign, plant, control)
-        estimator = design_of(ObserverDesign, plant, observer)
+    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+        """Return the compensator for these polynomials, or with these gains."""
+        feedback = half_of(StateFeedbackDesign, plant, control)
+        estimator = half_of(ObserverDesign, plant, observer)
         return cls.of(feedback, estimator, name)
 
     @classmethod
@@ -133,13 +133,13 @@ def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tu
 
 
 @method("compensator/separation", source="luenberger1964; luenberger1971")
-def separation(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
+def separation(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDesign:
     """Design K as if x were known, design the observer of order n, use x̂ for x."""
     return CompensatorDesign.designed(plant, control, observer, "separation")
 
 
 @method("compensator/duality", source="kalman1960")
-def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial) -> CompensatorDesign:
+def duality(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDesign:
     """Place the eigenvalues of Aᵀ − CᵀLᵀ and of A − BK side by side, transpose; then use x̂ for x."""
     if not plant.inputs == plant.outputs == 1:
         message = f"the method duality needs one input and one output, the plant has {plant.inputs} and {plant.outputs}"
@@ -148,9 +148,7 @@ def duality(plant: StateSpace, control: DesiredPolynomial, observer: DesiredPoly
 
 
 @method("compensator/minimal_order", source="luenberger1971; kailath1980, ch. 4")
-def minimal_order(
-    plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial
-) -> MinimalOrderCompensator:
+def minimal_order(plant: StateSpace, control: Asked, observer: Asked) -> MinimalOrderCompensator:
     """Design K as if x were known, estimate only what the outputs do not show, use x̂ for x."""
     from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator  # noqa: PLC0415 - paid for where used
 
@@ -169,6 +167,8 @@ def compensator(
     control_polynomial: PolynomialText = None,
     observer_poles: Poles = None,
     observer_polynomial: PolynomialText = None,
+    K: GainText = None,
+    L: GainText = None,
     observer: Name = "full",
     method: Name = "auto",
 ) -> Result:
@@ -181,7 +181,9 @@ def compensator(
     plant                                   n states, m inputs, p outputs, D allowed
     control_poles or control_polynomial     the n poles of A − BK
     observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of F
-    observer                                `full` or `minimal`
+    K, L                                    given gains (m×n, n×p) instead of poles, from LQR, a Kalman filter or
+                                            anywhere; the poles are found, an unstable loop is cautioned against
+    observer                                `full` or `minimal`; there L cannot be given
     Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop ((I + PF)⁻¹ P, F in the return path),
     closed_loop_matrix in (x, e) or (x, e₂) and closed_loop_matrix_estimate in (x, x̂) or (x, z).  Where I − N D is
     singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
@@ -189,7 +191,13 @@ def compensator(
     """
     control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
     found = observer_based(
-        plant, task="compensator", control=control, estimate=estimate, observer=observer, method_name=method
+        plant,
+        task="compensator",
+        control=control,
+        estimate=estimate,
+        observer=observer,
+        method_name=method,
+        gains=(K, L),
     )
     return found.asked(method)
 
@@ -202,15 +210,23 @@ def observer_based(
     estimate: tuple[object, object],
     observer: str,
     method_name: str = "auto",
+    gains: tuple[object, object] = (None, None),
 ) -> OutputFeedback:
-    """Return the compensator for what a task was given as poles or polynomial of each loop."""
-    plant = plant.knowing(*control, *estimate)
+    """Return the compensator for what a task was given as poles or polynomial of each loop, or as its gain."""
+    plant = plant.knowing(*control, *estimate, *gains)
     plant.require("B", "C", task=task)
 
-    def wanted(loop: str, given: tuple[object, object], degree: int) -> DesiredPolynomial | None:
+    def wanted(loop: str, given: tuple[object, object], degree: int) -> Asked | None:
+        gain, letter, shape = {
+            "control": (gains[0], "K", (plant.inputs, plant.order)),
+            "observer": (gains[1], "L", (plant.order, plant.outputs)),
+        }[loop]
+        if gain is not None:
+            reject_both(letter, gain, *given, other=f"{loop}_poles")
+            return read_gain(gain, plant, letter, shape)
         return desired_polynomial(plant, *given, names=(f"{loop}_poles", f"{loop}_polynomial"), degree=degree)
 
-    def of_observer() -> DesiredPolynomial | None:
+    def of_observer() -> Asked | None:
         try:
             return wanted("observer", estimate, estimated) if observer in _METHODS else None
         except InputError as error:
@@ -221,8 +237,9 @@ def observer_based(
 
     minimal = "minimal" in (observer, method_name.removesuffix("_order"))
     estimated = plant.order - (plant.outputs if minimal else 0)
-    _, chosen, control_wish, observer_wish = together(
+    _, _, chosen, control_wish, observer_wish = together(
         lambda: _require_kind(observer, plant, method_name),
+        lambda: _require_place(gains, method_name, minimal=minimal),
         lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
         lambda: wanted("control", control, plant.order),
         of_observer,
@@ -244,3 +261,13 @@ def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
     if "minimal" in (observer, method_name.removesuffix("_order")) and plant.order == plant.outputs:
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="specification.observer", repair="use state_feedback with x = C⁻¹ (y − D u)")
+
+
+def _require_place(gains: tuple[object, object], method_name: str, *, minimal: bool) -> None:
+    """Raise `InputError` where gains are given that the kind of observer, or the method, has no place for."""
+    if minimal and gains[1] is not None:
+        message = "the gain of an observer of minimal order depends on its coordinates, so L cannot be given here"
+        raise InputError(message, where="specification.L", repair='give observer_poles, or write observer = "full"')
+    if method_name == "duality" and gains != (None, None):
+        message = "the method duality places poles, but a gain is given"
+        raise InputError(message, where="specification.method", repair="leave the method out")

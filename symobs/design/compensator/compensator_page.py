@@ -50,12 +50,15 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
         write_side_by_side(page, design)
     else:
         with page.section("state_feedback"):
-            write_gain(page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+            write_gain(
+                page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1), of_loop=True
+            )
     if large:
         name_entries(page, "K")
     with page.section("observer"):
         if not beside:
-            write_gain(page, design.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+            style = page_style("auto", plant, several=plant.outputs > 1)
+            write_gain(page, design.estimator, OBSERVER, style, of_loop=True)
         if large:
             name_entries(page, "L")
         if design.answer["L"] is not None:
@@ -202,7 +205,8 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
     product = page.term(formula_of_factored(design.loop_polynomial))
-    page.equal(relation(determinant, parts, product), say="polynomial_splits")
+    page.equal(relation(determinant, parts, product), say=f"polynomial_splits{of_given(design)}")
+    caution_unstable_loop(page, design, determinant)
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
     states = block([[x], [page["x_hat"]]])
     members = [states.derivative, second @ states]
@@ -249,14 +253,28 @@ def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
     if lost.is_one and short:
         page.conclude("loop_poles", Roots(product.formula, poles), poles=Roots(page["G_cl"].formula, poles))
     elif lost.is_one:
-        page.conclude("loop_polynomial", relation(product / page.value(denominator), 1))
+        page.conclude(f"loop_polynomial{of_given(design)}", relation(product / page.value(denominator), 1))
     elif short:
         cancelled = roots_of(lost, variable)
         left = tuple((Counter(poles) - Counter(cancelled)).elements())
         rest = Roots((product / page.value(denominator)).formula, cancelled)
         _say_left(page, left, rest)
     else:
-        page.conclude("loop_polynomial_divides", predicate("polynomial", product / page.value(denominator)))
+        page.conclude(
+            f"loop_polynomial_divides{of_given(design)}", predicate("polynomial", product / page.value(denominator))
+        )
+
+
+def caution_unstable_loop(page: Page, design: OutputFeedback, determinant: Term) -> None:
+    """Warn where gains that were given surely leave the loop unstable."""
+    if design.has_given_gain and design.fields["stable"] == "no":
+        time = "discrete" if page.plant.is_discrete else "continuous"
+        page.caution(f"loop_unstable_{time}", predicate("unstable", determinant))
+
+
+def of_given(design: OutputFeedback) -> str:
+    """Return how sentences end that speak of polynomials which nobody asked for."""
+    return "_given" if design.has_given_gain else ""
 
 
 def _say_left(page: Page, left: tuple[Root, ...], lost: Roots) -> None:
@@ -354,7 +372,7 @@ def named_return_path(page: Page, design: OutputFeedback, own: Term) -> None:
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
     product = page.value(numerator) @ own / (page["phi_c"] @ page["phi_o"])
     page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
-    page.conclude("loop_polynomial")
+    page.conclude(f"loop_polynomial{of_given(design)}")
     draw_loop(page, page["P"], page["F"])
 
 

@@ -41,6 +41,11 @@ PHRASES: dict[str, str] = {
     "defective": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time and are not bounded by a constant multiple of the exponential alone.",
     "defective_instead": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time and are not bounded by a constant multiple of the exponential alone. Distinct poles avoid this, for example {instead}.",
     "side_by_side": "Pole placement for observer and state feedback.",
+    "polynomial_splits_given": "and the closed-loop characteristic polynomial is the product of the two:",
+    "loop_unstable_continuous": "Not all closed-loop poles lie in the open left half-plane: with these gains the closed loop is unstable.",
+    "loop_unstable_discrete": "Not all closed-loop poles lie inside the unit circle: with these gains the closed loop is unstable.",
+    "loop_polynomial_divides_given": "The denominator divides the product of the two polynomials, as expected.",
+    "loop_polynomial_given": "The denominator is the product of the two polynomials, as expected.",
     "left_observer": "Observer",
     "right_state_feedback": "State feedback",
     "test_observer": "The dual pair ($Aᵀ$, $Cᵀ$)§ has the controllability matrix",
@@ -57,6 +62,9 @@ QUESTIONS: dict[str, str] = {
     "ask compensator": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
     "ask compensator observer=full": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
     "ask compensator observer=minimal": "Design an observer-based compensator (state feedback with a reduced-order observer), and find the closed loop.",
+    "ask compensator K L": "Close the loop with the feedback gain $K$ and a full-order observer with the gain $L$, and find its poles.",
+    "ask compensator K": "Close the loop with the feedback gain $K$ and a full-order observer.",
+    "ask compensator L": "Close the loop with state feedback and a full-order observer with the gain $L$.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
@@ -69,6 +77,8 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "compensator_proper": ("strictly_proper",),
     "compensator_stable_if": ("strictly_proper",),
     "loop_no_poles": ("polynomial",),
+    "loop_unstable_continuous": ("unstable",),
+    "loop_unstable_discrete": ("unstable",),
     "no_stable_compensator": ("no_stable_compensator",),
 }
 

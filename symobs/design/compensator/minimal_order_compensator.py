@@ -13,9 +13,9 @@ from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
-from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.compensator.output_feedback import Asked, OutputFeedback
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
-from symobs.design.gain.gain_cases import design_of
+from symobs.design.gain.gain_cases import half_of
 from symobs.design.gain.gain_design import letters_of
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver, reduced_observer_of
 from symobs.errors import CertificateRejected
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from symobs.analysis.strata.strata import Place
     from symobs.result import Case
-    from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
 
@@ -43,9 +42,10 @@ class MinimalOrderCompensator(OutputFeedback):
     estimator: ReducedOrderObserver
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
-        """Return the compensator for these polynomials, in the coordinates [C; R]."""
-        return cls.of(design_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)
+    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+        """Return the compensator for these polynomials, or with this K, in the coordinates [C; R]."""
+        assert not isinstance(observer, Matrix)  # noqa: S101 - the task takes no L of a reduced-order observer
+        return cls.of(half_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)
 
     @classmethod
     def of(cls, feedback: StateFeedbackDesign, estimator: ReducedOrderObserver, method_name: str) -> Self:

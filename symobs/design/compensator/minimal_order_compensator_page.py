@@ -10,8 +10,10 @@ from symobs.derivation import Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.design.compensator.compensator_page import (
     Namer,
+    caution_unstable_loop,
     define_or_hold,
     named_return_path,
+    of_given,
     return_path,
     return_path_of_several,
     say_stability,
@@ -38,7 +40,8 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     large = design.exists and design.answer["F"].size > readability.COMPENSATOR
     with page.section("state_feedback"):
-        write_gain(page, design.feedback, FEEDBACK, page_style("auto", design.plant, several=design.plant.inputs > 1))
+        style = page_style("auto", design.plant, several=design.plant.inputs > 1)
+        write_gain(page, design.feedback, FEEDBACK, style, of_loop=True)
         if large:
             name_entries(page, "K")
     write_observer_of_rest(page, design.estimator)
@@ -214,9 +217,9 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
     parts = FEEDBACK.error_determinant(page) @ (page.s @ page.identity(estimated) - F).apply("det")
-    page.equal(
-        relation(determinant, parts, page.term(formula_of_factored(design.loop_polynomial))), say="polynomial_splits"
-    )
+    product = page.term(formula_of_factored(design.loop_polynomial))
+    page.equal(relation(determinant, parts, product), say=f"polynomial_splits{of_given(design)}")
+    caution_unstable_loop(page, design, determinant)
     H, G = page["H_z"], page["G_z"]
     driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])

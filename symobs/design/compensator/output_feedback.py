@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import places, solved
@@ -13,7 +13,7 @@ from symobs.derivation.builder import relation
 from symobs.design.gain.gain_cases import places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, transfer
+from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, roots_of, transfer
 from symobs.exact.linear_algebra.realisation import Realisation, closed
 from symobs.exact.linear_algebra.transfer_function import transfer_matrix
 from symobs.formula import Environment
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
+#: What one half of a compensator is asked for by: its polynomial, or its gain.
+Asked: TypeAlias = "DesiredPolynomial | Matrix"
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
 #: What an answer has none of where there is no loop.
@@ -55,8 +57,8 @@ class OutputFeedback(Result):
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: DesiredPolynomial, observer: DesiredPolynomial, name: str) -> Self:
-        """Return the compensator for these polynomials."""
+    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+        """Return the compensator for these polynomials, or with these gains."""
         raise NotImplementedError
 
     @classmethod
@@ -178,17 +180,21 @@ class OutputFeedback(Result):
 
     def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
         """Return the compensator on a stratum."""
-        assert self.feedback.desired is not None  # noqa: S101 - cases belong to desired polynomials
-        assert self.estimator.desired is not None  # noqa: S101
-        control, observer = self.feedback.desired.substitute(values), self.estimator.desired.substitute(values)
+        control, observer = (asked.substitute(values) for asked in self.asked_for[2:])
         kind, name = type(self), self.method
         found: Self = plant.once((kind, control, observer, name), lambda: kind.designed(plant, control, observer, name))
         return found
 
     @property
     def asked_for(self) -> tuple[Any, ...]:
-        """What a compensator of a plant is asked for by."""
-        return type(self), self.method, self.feedback.desired, self.estimator.desired
+        """What a compensator of a plant is asked for by: its kind and method, and the polynomial or the gain of each half."""
+        halves = (self.feedback, self.estimator)
+        return type(self), self.method, *(half.desired or half.answer[half.letter] for half in halves)
+
+    @property
+    def has_given_gain(self) -> bool:
+        """Whether one of the gains was given, so that its poles are found and not asked for."""
+        return None in (self.feedback.desired, self.estimator.desired)
 
     @property
     def is_single(self) -> bool:
@@ -346,6 +352,18 @@ class OutputFeedback(Result):
             "closed_loop_matrix": self.error_coordinates,
             "closed_loop_matrix_estimate": self.estimate_coordinates,
             "family": self.families,
+            **(self._found_poles if self.has_given_gain else {}),
+        }
+
+    @property
+    def _found_poles(self) -> Mapping[str, Any]:
+        """The poles of the loop and whether it is stable: what a given gain does."""
+        plant, whole = self.plant, self.loop_polynomial.value
+        told = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        return {
+            "poles": roots_of(whole, plant.variable),
+            "stable": told.verdict,
+            "stable_if": told.inequalities(plant.symbols.signs),
         }
 
     @property

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from symobs.analysis.strata.strata import common_places, places, places_of, solved
 from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+from symobs.exact import Matrix
 
 if TYPE_CHECKING:
     from symobs.analysis.strata.strata import Place
@@ -32,6 +33,11 @@ def design_of(
     question = kind, desired, method_name, zero, decoupled
     found: Design = plant.once(question, lambda: kind.of(plant, desired, method_name, zero, decoupled=decoupled))
     return found
+
+
+def half_of(kind: type[Design], plant: StateSpace, asked: DesiredPolynomial | Matrix) -> Design:
+    """Return the design of a half of a compensator: with a given gain, or with a polynomial to assign."""
+    return kind.of_given(plant, asked) if isinstance(asked, Matrix) else design_of(kind, plant, asked)
 
 
 def cases_of_gain(design: GainDesign) -> tuple[Case, ...]:

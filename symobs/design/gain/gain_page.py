@@ -40,10 +40,13 @@ if TYPE_CHECKING:
 _PAIR = 2
 
 
-def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
-    """Write how the gain is found, in the style of a method, and the check the reader is shown."""
+def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
+    """Write how the gain is found, in the style of a method, and the check the reader is shown.
+
+    Where it is given as a half of a loop, its polynomial has the letter that the page of the loop goes on with.
+    """
     if isinstance(design.kind, GivenGain):
-        _given_gain(page, design, side)
+        _given_gain(page, design, side, of_loop=of_loop)
         return
     _test(page, design, side, style)
     if not design.kind.exists:
@@ -244,7 +247,7 @@ def _fixed(page: Page, side: PlacementProblem, kernel: Matrix, restricted: Matri
     return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
 
 
-def _given_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
     """A gain is given: find its polynomial and say whether it is stable."""
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
@@ -255,7 +258,10 @@ def _given_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     members = [side.error_determinant(page), page.value(polynomial)]
     if len(polynomial.factors()[1]) > 1:
         members.append(shown)
-    page.equal(relation(*members), say="its_polynomial", answer=True)
+    if of_loop:
+        page.define(side.phi, *members, say="its_polynomial", answer=True)
+    else:
+        page.equal(relation(*members), say="its_polynomial", answer=True)
     say_stability(page, side.error_determinant(page))
 
 

@@ -47,6 +47,8 @@ def scalar_to_sympy(
     return sympy.Mul._from_args(factors, is_commutative=True)  # noqa: SLF001 - as every SymPy module does
 
 
+#: The bits of a float of double precision.
+_DOUBLE = 53
 #: Sums with more terms are sorted here: SymPy compares expressions one with another.
 _LONG = 50
 _SYMPYS_ORDER = cmp_to_key(sympy.Basic.compare)
@@ -216,7 +218,7 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
         found = _square_root(complex_from_sympy(expression.base, where, roots=roots), roots=roots)
         if found is not None:
             return found ** int(expression.exp.p)
-    message = f"{expression} is not a rational expression"
+    message = f"{str(expression)[:200]} is not a rational expression"
     repair = "use numbers, roots of rational numbers, symbols and + - * / with integer powers"
     raise InputError(message, where=where, repair=repair)
 
@@ -270,6 +272,13 @@ def matrix_from_sympy(matrix: Any, where: str) -> Matrix:
     return Matrix.of(
         [[scalar_from_sympy(matrix[i, j], f"{where}[{i}][{j}]") for j in range(columns)] for i in range(rows)], columns
     )
+
+
+def without_floats(value: Any) -> Any:
+    """Return an expression or a matrix with each float of double precision as the fraction of its shortest decimal."""
+    floats = value.atoms(sympy.Float) if hasattr(value, "atoms") else ()
+    exact = {number: sympy.Rational(repr(float(number))) for number in floats if number._prec <= _DOUBLE}  # noqa: SLF001 - SymPy tells the bits of a float in no other way
+    return value.xreplace(exact) if exact else value
 
 
 def sign_from_assumptions(symbol: Any) -> str:

@@ -35,6 +35,7 @@ PHRASES: dict[str, str] = {
     "observer_pole": "The desired observer pole is {poles}.",
     "observer_poles": "The desired observer poles are {poles}.",
     "observer_polynomial": "The desired observer polynomial is {polynomial}.",
+    "realised_minimal": "A minimal realisation is",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

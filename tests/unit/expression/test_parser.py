@@ -571,7 +571,7 @@ def test_no_name_is_declared() -> None:
         ([[float("inf")]], "A[0][0]", "inf is a float", '"1/10"'),
         ([[float("nan")]], "A[0][0]", "nan is a float", '"1/10"'),
         ([[1e300]], "A[0][0]", "1e+300 is a float", '"1e+300"'),
-        ([[1j]], "A[0][0]", "1j is a float", '"1j"'),
+        ([[0.5j]], "A[0][0]", "0.5j is a float", '"0.5j"'),
         ([[np.float32(0.1)]], "A[0][0]", "0.1 is a float", '"1/10"'),
         (np.array([[0.5, 1.0]]), "A[0][0]", "0.5 is a float", '"1/2"'),
     ],

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import sympy
-from sympy.physics.control import Series, TransferFunction, TransferFunctionMatrix
+from sympy.physics.control import Series, TransferFunction
 from sympy.physics.control import StateSpace as SymPyStateSpace
 
 import symobs
@@ -138,20 +138,12 @@ def test_systems_of_python_control_are_plants() -> None:
         ("1/s", 'a value of type str came; .*from_transfer_function\\("1/'),
         (1 / s, "a plant is expected, but a value of type Pow came"),
         (3, "a plant is expected, but a value of type int came"),
-        (TransferFunctionMatrix([[TransferFunction(1, s, s)]]), "with one input and one output is expected"),
         (TransferFunction(s**2, s + 1, s), "is not proper: degree 2 over degree 1"),
         (([1], [0]), "the denominator is 0"),
     ],
 )
 def test_what_is_no_plant_is_refused(system: Any, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
-        symobs.observability(system)
-
-
-def test_a_transfer_matrix_of_python_control_is_refused() -> None:
-    control = pytest.importorskip("control")
-    system = control.tf([[[1], [1]]], [[[1, 1], [1, 2]]])
-    with pytest.raises(InputError, match=r"a transfer matrix has several realisations; convert it by control\.ss"):
         symobs.observability(system)
 
 

@@ -1,0 +1,246 @@
+"""What a shell and a terminal are given: examples, choices, completion, progress, interruption, repairs."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.cli.shared import common
+from symobs.errors import InputError, OutOfBudget, UsageError
+from symobs.result import formats, methods, tasks
+from symobs.specification import CHOICES
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import environment, inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PLANT = ("--A", "[0 1; 0 -1]", "--B", "[0; 1]", "--C", "[1 0]")
+EXAMPLES = sorted(path.stem for path in (ROOT / "worked_examples").glob("*.toml"))
+
+
+# -- worked examples --------------------------------------------------------------------------------------------------
+
+
+def test_examples_are_listed_printed_and_copied(tmp_path: Path) -> None:
+    assert [line.split()[0] for line in inside("examples").out.splitlines()] == EXAMPLES
+    source = (ROOT / "worked_examples" / "servo_observer.toml").read_text(encoding="utf-8")
+    assert inside("examples", "servo_observer").out == inside("examples", "servo_observer.toml").out == source
+    folder = tmp_path / "mine"
+    assert inside("examples", "servo_observer", "--copy", str(folder)).code == 0
+    assert [path.read_text(encoding="utf-8") for path in folder.iterdir()] == [source]
+    again = inside("examples", "--copy", str(folder))
+    assert (again.code, len(list(folder.iterdir()))) == (3, 1)
+    assert "servo_observer.toml is already there" in again.err
+    assert inside("examples", "--copy", str(tmp_path / "all")).code == 0
+    assert sorted(path.stem for path in (tmp_path / "all").iterdir()) == EXAMPLES
+
+
+def test_an_example_that_is_none() -> None:
+    run = inside("examples", "observer_feed")
+    assert run.code == 2
+    assert 'there is no worked example "observer_feed"; did you mean servo_observer_feedthrough?' in run.err
+
+
+# -- choices ----------------------------------------------------------------------------------------------------------
+
+
+def test_help_shows_choices_as_choices() -> None:
+    told = inside("compensator", "--help").out
+    assert "--observer [full|minimal]" in told
+    assert "--detail [full|outline|answer]" in told
+    assert f"--format [{'|'.join(sorted(formats()))}]" in " ".join(told.split())
+    for name in methods("compensator").values():
+        assert name.name in told
+
+
+@pytest.mark.parametrize(
+    ("task", "name"),
+    [
+        (task, name)
+        for task, found in sorted(tasks().items())
+        for name, kind in found.keywords.items()
+        if kind == "Name" and name != "method"
+    ],
+)
+def test_choices_are_those_that_the_task_takes(task: str, name: str) -> None:
+    """No word of the table is refused as a word, and one outside of it is."""
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    for word in CHOICES[name]:
+        assert f"{word!r} is no" not in reason_of(task, plant, name, word)
+    assert "'other' is no" in reason_of(task, plant, name, "other")
+
+
+def reason_of(task: str, plant: symobs.StateSpace, name: str, word: str) -> str:
+    """What is said where a task refuses a word, or nothing."""
+    try:
+        tasks()[task].function(plant, **{name: word})
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+# -- completion -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        (["symobs", "detect"], ["plain,detectability"]),
+        (["symobs", "exam"], ["plain,examples"]),
+        (["symobs", "observer", "--member", ""], ["plain,simple", "plain,decoupled"]),
+        (["symobs", "solve", "--format", "html"], ["plain,html", "plain,html_fragment"]),
+        (["symobs", "solve", "--task", "pb"], ["plain,pbh"]),
+        (["symobs", "solve", "serv"], ["file,serv"]),
+        (["symobs", "examples", "servo_trac"], ["plain,servo_tracking"]),
+        (["symobs", "reduced_order_observer", "--method", "part"], ["plain,partition"]),
+    ],
+)
+def test_the_shell_completes(words: list[str], completed: list[str]) -> None:
+    asked = {"_SYMOBS_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+    run = subprocess.run(
+        [sys.executable, "-m", "symobs"], env=environment() | asked, capture_output=True, text=True, check=False
+    )
+    assert run.stdout.splitlines() == completed, run.stderr
+
+
+# -- repairs ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--poles", "-1", "--poles", "-2"], '--poles: it is given 2 times; write them in one text: --poles "-1, -2"'),
+        (["--poles", "-1, -2", "--A", "[1]"], "--A: it is given 2 times; keep one of them"),
+        (["--poles", "-1, -2", "--symbol", "k=4"], "it declares a sign: a value is written in place of the letter"),
+        (["--poles", "-1, -2", "--format", "tex"], "'tex' is not an output format; did you mean latex?"),
+    ],
+)
+def test_what_is_wrong_with_an_option_is_said_with_its_repair(arguments: list[str], said: str) -> None:
+    run = inside("observer", *PLANT, *arguments)
+    assert run.code in {2, 3}
+    assert said in run.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["1/(z - 1)"], "z is the variable in discrete time: give dt = true"),
+        (["1/(s - 1)", "--dt", "true"], "s is the variable in continuous time"),
+    ],
+)
+def test_the_variable_of_the_other_time_is_said(arguments: list[str], said: str) -> None:
+    assert said in inside("observer", "--poles", "0", "--transfer-function", *arguments).err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            'task = "observer"\n[plant]\nA = "[0]"\nC = "[1]"\n[spec]\npoles = [-1]\n',
+            "spec: unknown key; did you mean specification?",
+        ),
+        (
+            'task = "observer"\n[plant]\ntransfer_function = "1/(z-1)"\n[specification]\npoles = [0]\n',
+            'the name "z" is not declared, at column 4 of "1/(z-1)"; z is the variable in discrete time: give dt = true',
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_said_with_its_repair(text: str, said: str) -> None:
+    assert said in inside("solve", "-", stdin=text.encode()).err
+
+
+# -- a terminal -------------------------------------------------------------------------------------------------------
+
+
+class _Timer:
+    """A timer that fires when told to."""
+
+    last: Any = None
+
+    def __init__(self, seconds: float, tell: object) -> None:
+        assert seconds == 2.0
+        self.tell, self.waits, _Timer.last = tell, True, self
+
+    def start(self) -> None:
+        pass
+
+    def is_alive(self) -> bool:
+        return self.waits
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_progress_is_told_after_two_seconds_on_a_terminal(
+    *, is_terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(threading, "Timer", _Timer)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal)
+    reached: list[object] = []
+    told = common.progress_on_terminal(reached.append)
+    told("observability")
+    told("observer")
+    assert capsys.readouterr().err == ""
+    if is_terminal:
+        _Timer.last.waits = False
+        _Timer.last.tell()
+        told("the page")
+        assert capsys.readouterr().err == "observer …\nthe page …\n"
+    assert reached[:2] == ["observability", "observer"]
+
+
+LONG = """
+import flint, sys
+from symobs.__main__ import main
+from symobs.cli.commands import solve
+def long(*_):
+    print("begun", file=sys.stderr, flush=True)
+    flint.fmpz.fac_ui(10**9)
+solve.read_file = long
+sys.argv = ["symobs", "solve", "x.toml"]
+main()
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="there is no terminal here")
+def test_an_interruption_on_a_terminal_ends_a_call_into_flint() -> None:
+    mine, theirs = os.openpty()
+    with subprocess.Popen([sys.executable, "-c", LONG], stderr=theirs, env=environment(), cwd=ROOT) as run:
+        os.close(theirs)
+        assert b"begun" in os.read(mine, 100)
+        run.send_signal(signal.SIGINT)
+        assert run.wait() == 130
+        assert b"interrupted" in os.read(mine, 100)
+    os.close(mine)
+
+
+# -- time and memory in Python ----------------------------------------------------------------------------------------
+
+
+def test_work_in_python_is_bounded() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    wanted = symobs.observer(plant, poles=[-10, -10])
+    assert symobs.bounded(lambda: symobs.observer(plant, poles=[-10, -10]), timeout=60, memory=2000) == wanted
+
+    def forever() -> None:
+        while True:
+            pass
+
+    with pytest.raises(OutOfBudget, match=r"undecided: 0\.05 seconds were not enough; give more with timeout"):
+        symobs.bounded(forever, timeout=0.05)
+    with pytest.raises(OutOfBudget, match="100 MB of memory were not enough; give more with memory"):
+        symobs.bounded(lambda: len(bytearray(10**9)), memory=100)
+    with pytest.raises(InputError, match="poles are missing"):
+        symobs.bounded(lambda: symobs.observer(plant), timeout=60)
+
+
+@pytest.mark.parametrize("bound", [{"timeout": 0}, {"memory": float("inf")}, {"timeout": -1.0}])
+def test_bounds_that_are_none_are_refused(bound: dict[str, float]) -> None:
+    with pytest.raises(UsageError, match="is not a positive number; write for example"):
+        symobs.bounded(lambda: 1, **bound)

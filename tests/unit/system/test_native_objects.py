@@ -1,0 +1,308 @@
+"""Numbers, floats, transfer matrices and connections as Python, NumPy, SymPy and python-control have them."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import control  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+from sympy.physics.control import TransferFunction, TransferFunctionMatrix
+
+import symobs
+from symobs import StateSpace
+from symobs.errors import InexactInput, InputError, ShapeMismatch, SymobsError
+
+s, k = sympy.symbols("s k")
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+
+
+# -- numbers ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("given", "exact"),
+    [
+        (Fraction(3, 7), "3/7"),
+        (Decimal("0.1"), "1/10"),
+        (Decimal("-2.5E-3"), "-1/400"),
+        (Decimal(4), "4"),
+        (2 + 0j, "2"),
+        (np.int8(-3), "-3"),
+        (np.complex64(5), "5"),
+        (sympy.Rational(2, 3), "2/3"),
+    ],
+    ids=str,
+)
+def test_exact_numbers_are_entries(given: Any, exact: str) -> None:
+    wanted = sympy.Matrix([[sympy.Rational(exact), 1], [0, 1]])
+    for A in ([[given, 1], [0, 1]], np.array([[given, 1], [0, 1]], dtype=object)):
+        assert wanted == StateSpace(A).A
+
+
+@pytest.mark.parametrize(
+    "poles",
+    [[-2 + 3j, -2 - 3j], np.array([-2 + 3j, -2 - 3j]), (Decimal(-4), Decimal("-3.25")), sympy.Matrix([-1, -13])],
+)
+def test_poles_may_be_exact_numbers_of_any_kind(poles: Any) -> None:
+    """The error's characteristic polynomial from the given poles: trace and determinant of A - L C."""
+    error = SERVO.A - symobs.observer(SERVO, poles=poles).L * SERVO.C
+    numbers = [complex(pole) for pole in poles]
+    assert (float(error.trace()), float(error.det())) == (sum(numbers, 0j).real, float(np.prod(numbers).real))
+
+
+@pytest.mark.parametrize("gain", [[1, 2], np.array([1, 2]), (1, "2"), [[1], [2]]])
+def test_a_flat_gain_is_a_column_or_a_row(gain: Any) -> None:
+    assert sympy.Matrix([1, 2]) == symobs.observer(SERVO, L=gain).L
+    row = np.array(gain).T if isinstance(gain, list) else gain
+    assert sympy.Matrix([[1, 2]]) == symobs.state_feedback(SERVO, K=row).K
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (0.5, '0.5 is a float; write an exact value such as "1/2", or give the plant or the task floats="decimal"'),
+        (np.float32(0.5), "0.5 is a float"),
+        (1 + 0.5j, "is a float"),
+        (2.0**60 + 0j, "is a float"),
+        (Decimal("NaN"), "a value of type Decimal is not an exact number"),
+        (Decimal("1E+5000"), "more than 1000 digits"),
+        (True, "a truth value"),
+        (sympy.Function("f")(s), r"f\(s\) is not a rational expression"),
+    ],
+    ids=str,
+)
+def test_what_is_no_exact_number_is_refused(entry: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        StateSpace([[entry, 1], [0, 1]])
+
+
+# -- floats, where the caller says so ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        [[0.1, 1.0], [-2.5, 1e-3]],
+        np.array([[0.1, 1], [-2.5, 1e-3]]),
+        np.array([[0.1, 1], [-2.5, 1e-3]], dtype=np.float32),
+        sympy.Matrix([[0.1, 1], [-2.5, 1e-3]]),
+        [["0.1", 1], [sympy.Float(-2.5), Decimal("0.001")]],
+    ],
+)
+def test_floats_are_their_shortest_decimals(given: Any) -> None:
+    plant = StateSpace(given, floats="decimal")
+    tenth, thousandth = sympy.Rational(1, 10), sympy.Rational(1, 1000)
+    assert sympy.Matrix([[tenth, 1], [-sympy.Rational(5, 2), thousandth]]) == plant.A
+    assert "Floating-point numbers are read as their shortest decimals." in symobs.pbh(
+        StateSpace(given, C=[1, 0], floats="decimal")
+    ).to("text")
+
+
+def test_floats_are_specifications_where_the_task_is_told_so() -> None:
+    result = symobs.observer(SERVO, poles=[-1.5 + 0.5j, -1.5 - 0.5j], floats="decimal")
+    error = SERVO.A - result.L * SERVO.C
+    assert (error.trace(), error.det()) == (-3, sympy.Rational(5, 2))
+    assert "Floating-point numbers are read as their shortest decimals." in result.to("text")
+    assert "Floating-point" not in symobs.observer(SERVO, poles=["-1.5", -1], floats="decimal").to("text")
+    margin = symobs.stability_region(polynomial="s^2 + h s + 2", margin=0.5, floats="decimal")
+    assert "Floating-point" in margin.to("text")
+    assert margin.intervals == symobs.stability_region(polynomial="s^2 + h s + 2", margin="1/2").intervals
+    function = symobs.transfer_function(([1.0], [1, 0.25, 0]), floats="decimal")
+    assert sympy.simplify(function.transfer_function - 1 / (s**2 + s / 4)) == 0
+    with pytest.raises(InexactInput, match='floats="decimal"'):
+        symobs.observer(SERVO, poles=[-1.5, -1])
+
+
+def test_a_plant_is_not_marked_by_what_a_task_was_given() -> None:
+    symobs.observer(SERVO, poles=[-1.5, -1.0], floats="decimal")
+    assert not SERVO.is_from_floats
+
+
+@pytest.mark.parametrize(
+    ("given", "floats", "said"),
+    [
+        ([[float("nan")]], "decimal", "nan is not a finite number"),
+        (np.array([[np.inf]]), "decimal", "inf is not a finite number"),
+        ([[1]], "exact", "'exact' is no way to read floats; write floats=\"decimal\""),
+    ],
+)
+def test_floats_that_are_no_numbers_are_refused(given: Any, floats: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        StateSpace(given, floats=floats)
+
+
+# -- transfer matrices ------------------------------------------------------------------------------------------------
+
+a, b = sympy.symbols("a b")
+#: A transfer matrix, and the order of a minimal realisation: the McMillan degree, from the literature or by residues.
+MATRICES = [
+    # distinct simple poles: the sum of the ranks of the residues (Gilbert)
+    ([[1 / (s + 1), 1 / (s + 1)], [1 / (s + 1), 1 / (s + 1)]], 1),
+    ([[1 / (s + 1), 2 / (s + 1)], [2 / (s + 1), 1 / (s + 1)]], 2),
+    ([[1 / (s + 1), 1 / (s + 2)], [0, 1 / s]], 3),
+    ([[1 / ((s + 1) * (s + 2)), 1 / (s + 1)]], 2),
+    ([[1 / (s + 1)], [1 / (s + 1)], [s / (s + 1)]], 1),
+    # Kailath, Linear Systems: a double pole, McMillan degree 3
+    ([[1 / (s - 1) ** 2, 1 / ((s - 1) * (s + 3))], [-6 / ((s - 1) * (s + 3) ** 2), (s - 2) / (s + 3) ** 2]], 5),
+    ([[s / (s + 1), 1 / (s + 1)], [0, 2]], 1),
+    ([[1 / (s + a), 1 / (s + b)], [1 / (s + a), 1 / (s + b)]], 2),
+]
+
+
+def as_text(rows: Any) -> str:
+    return "[" + "; ".join(" ".join(str(entry).replace(" ", "") for entry in row) for row in rows) + "]"
+
+
+@pytest.mark.parametrize(("rows", "order"), MATRICES)
+def test_a_transfer_matrix_has_a_minimal_realisation(rows: Any, order: int) -> None:
+    """Held to SymPy: the function it came from, and both ranks, at a point of the parameters."""
+    for given in (rows, sympy.Matrix(rows), as_text(rows)):
+        plant = StateSpace.from_transfer_function(given)
+        found = plant.C * (s * sympy.eye(plant.order) - plant.A).inv() * plant.B + plant.D
+        assert (found - sympy.Matrix(rows)).applyfunc(sympy.simplify) == sympy.zeros(*found.shape)
+        assert plant.order == order
+        A, B, C = (M.subs({a: 3, b: 5}) for M in (plant.A, plant.B, plant.C))
+        assert sympy.Matrix.vstack(*(C * A**i for i in range(order))).rank() == order
+        assert sympy.Matrix.hstack(*(A**i * B for i in range(order))).rank() == order
+
+
+def test_transfer_matrices_of_other_programs_are_plants() -> None:
+    wanted = sympy.Matrix([[1 / (s + 1), 2 / (s + sympy.Rational(5, 2))]])
+    p = sympy.Symbol("p")
+    for system in (
+        control.tf([[[1], [2]]], [[[1, 1], [1, 2.5]]]),
+        TransferFunctionMatrix([[TransferFunction(1, p + 1, p), TransferFunction(4, 2 * p + 5, p)]]),
+    ):
+        function = symobs.transfer_function(system).transfer_function
+        assert (function - wanted).applyfunc(sympy.simplify) == sympy.zeros(1, 2)
+
+
+def test_a_transfer_matrix_is_stated_with_what_cancels_in_it() -> None:
+    plant = StateSpace.from_transfer_function("[1/(s+1) (s-1)/((s-1)(s+2)); 0 1/s]")
+    page = " ".join(str(symobs.observability(plant).to("text")).split())
+    assert "A minimal realisation of this is" in page
+    assert "A caution. The pole 1 cancels" in page
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ([["1/s", "1/s"], ["1/s"]], r"rows of different lengths \[1, 2\]"),
+        ([["1/s", "s"]], r"transfer_function\[0\]\[1\]: s is not proper"),
+        ("[1 2 + s - s]", "the transfer matrix has no pole"),
+        ([["1/s", "1/"]], r"transfer_function\[0\]\[1\]: .* is expected"),
+        (sympy.Matrix([[1 / s, sympy.sin(s)]]), "is not a rational expression"),
+    ],
+)
+def test_transfer_matrices_that_are_no_plants_are_refused(given: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        StateSpace.from_transfer_function(given)
+
+
+# -- connections ------------------------------------------------------------------------------------------------------
+
+LAG = StateSpace("[-2]", "[1]", "[2]", "3")
+TWO = StateSpace("[1 2; 3 4]", "[1 0; 2 1]", "[1 0]", "[0 1]")
+
+
+def of_control(plant: StateSpace) -> Any:
+    return control.ss(*(np.array(matrix, dtype=float) for matrix in (plant.A, plant.B, plant.C, plant.D)))
+
+
+@pytest.mark.parametrize(
+    "connect",
+    [
+        lambda ss: ss(SERVO) * ss(LAG),
+        lambda ss: ss(LAG) * ss(SERVO),
+        lambda ss: ss(SERVO) * ss(TWO),
+        lambda ss: ss(SERVO) + ss(LAG),
+        lambda ss: ss(TWO) + ss(TWO),
+        lambda ss: ss(SERVO).feedback(ss(LAG)),
+        lambda ss: ss(LAG).feedback(ss(LAG), 1),
+        lambda ss: ss(LAG).feedback(),
+        lambda ss: (ss(LAG) * ss(SERVO)).feedback(2),
+    ],
+)
+def test_connections_are_those_of_python_control(connect: Any) -> None:
+    mine, theirs = connect(lambda plant: plant), connect(of_control)
+    for name in "ABCD":
+        assert np.allclose(np.array(getattr(mine, name), dtype=float), getattr(theirs, name)), name
+
+
+def test_parameters_of_both_plants_are_those_of_the_connection() -> None:
+    first = StateSpace([[-k]], 1, 1, symbols={k: "positive"})
+    loop = (first * StateSpace([["-h"]], 1, 1)).feedback("[g]")
+    assert loop.symbols.signs["k"] == "positive"
+    polynomial = symobs.characteristic_polynomial(loop).polynomial
+    h, g = sympy.symbols("h g")
+    assert sympy.expand(polynomial - (s + k) * (s + h) - g) == 0
+
+
+@pytest.mark.parametrize(
+    ("connect", "said"),
+    [
+        (lambda: TWO * SERVO, "plants of 1×2 and 1×1 outputs by inputs cannot be connected in series"),
+        (lambda: TWO + SERVO, "cannot be connected in parallel"),
+        (lambda: SERVO.feedback(TWO), "cannot be connected in feedback"),
+        (lambda: SERVO * StateSpace([[0]], 1, 1, dt=1), "different sampling periods, 0 and 1"),
+        (lambda: LAG.feedback(StateSpace([[0]], 1, 1, "-1/3")), "the loop is algebraic"),
+        (lambda: StateSpace([[0]]) * SERVO, "a connection needs B"),
+        (lambda: SERVO * StateSpace("[t]", "1", "1"), "varies in time"),
+        (
+            lambda: (
+                StateSpace([["k"]], 1, 1, symbols={"k": "positive"}) + StateSpace([["k"]], 1, 1, symbols={"k": "real"})
+            ),
+            "k is positive in one plant and real in the other",
+        ),
+        (lambda: StateSpace([[k]], 1, 1) + StateSpace([[sympy.Dummy("k")]], 1, 1), "two different symbols"),
+    ],
+)
+def test_plants_that_do_not_fit_are_refused(connect: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        connect()
+    assert issubclass(ShapeMismatch, InputError)
+
+
+# -- what is none of these --------------------------------------------------------------------------------------------
+
+
+class Foreign:
+    """An object of nobody's."""
+
+    shape, dtype, num, den = (2, 2), "f", 1, 2
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda: StateSpace(np.zeros((2, 2, 2))),
+        lambda: StateSpace(np.array([[None]]), floats="decimal"),
+        lambda: StateSpace([[np.datetime64("2020")]], floats="decimal"),
+        lambda: StateSpace([[1]], floats=np.array([1, 2])),  # type: ignore[arg-type]
+        lambda: StateSpace([[1]], dt=np.array([1, 2])),
+        lambda: StateSpace(Foreign(), floats="decimal"),
+        lambda: StateSpace(control.ss([[1]], [[1]], [[1]], 0), floats="decimal"),
+        lambda: StateSpace(sympy.Array([1, 2])),
+        lambda: StateSpace.from_transfer_function([]),
+        lambda: StateSpace.from_transfer_function([[], []]),
+        lambda: StateSpace.from_transfer_function(TransferFunction(1, s, s)),
+        lambda: StateSpace.from_control(TransferFunction(1, s, s)),
+        lambda: StateSpace.from_control(Foreign()),
+        lambda: symobs.observer(None, poles=[-1]),  # type: ignore[arg-type]
+        lambda: symobs.observer(SERVO, poles=[s, -1]),
+        lambda: symobs.observer(SERVO, poles="s, -1"),
+        lambda: symobs.observer(SERVO, poles=[-1, -2], member=np.array([1, 2])),  # type: ignore[arg-type]
+        lambda: symobs.compensator(SERVO, method=3),  # type: ignore[arg-type]
+        lambda: symobs.gramian(SERVO, of=True),  # type: ignore[arg-type]
+        lambda: SERVO * object(),
+        lambda: SERVO.feedback(np.array([1, 2, 3])),
+    ],
+)
+def test_foreign_objects_are_refused_with_a_reason(ask: Any) -> None:
+    with pytest.raises(SymobsError) as caught:
+        ask()
+    assert str(caught.value)
