@@ -11,6 +11,10 @@ from typing import Any
 #: Where tasks and methods are discovered, and where output formats are.
 TASK_PACKAGES = ("symobs.analysis", "symobs.design")
 FORMAT_PACKAGE = "symobs.render.formats"
+#: The functions that are no tasks, and where they are.
+FUNCTIONS = {
+    "check": "symobs.checking",
+}
 
 
 def __getattr__(name: str) -> Any:
@@ -21,6 +25,8 @@ def __getattr__(name: str) -> Any:
         return importlib.import_module("symobs.system").StateSpace
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
+    if name in FUNCTIONS:
+        return getattr(importlib.import_module(FUNCTIONS[name]), name)
     if name[:1].isupper():
         if name in _errors():
             return _errors()[name]
@@ -35,7 +41,7 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     from symobs.result import tasks  # noqa: PLC0415
 
-    return sorted(["StateSpace", "__version__", *_errors(), *tasks()])
+    return sorted(["StateSpace", "__version__", *_errors(), *FUNCTIONS, *tasks()])
 
 
 def _errors() -> dict[str, type[Exception]]:

@@ -21,9 +21,10 @@ _MOST_LINES = 100
 #: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called.
 COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
+    "check": "Check an ANSWER, or those of a class, against a PROBLEM file: any valid answer is right.",
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "methods": "List every task and its methods.",
-    "schema": "Print the JSON schema of problem files.",
+    "schema": "Print the JSON schema of problem files, or that of the results of the command NAME.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "templates": "List the built-in LaTeX templates, or copy them.",

@@ -17,6 +17,7 @@ from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.problem.file_tables import Decimal, came
+from symobs.problem.marking import Marking, read_marking
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.in_convention import Viewed, names_in
@@ -51,6 +52,7 @@ class Problem:
     convention: Convention = STANDARD
     text: str = ""
     printed: tuple[Mapping[str, Any], ...] = ()
+    marking: Marking = Marking()
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.
@@ -138,8 +140,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = _table(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
+    marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed)
+        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed, marking)
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention).solve()
