@@ -6,6 +6,7 @@ in, and `report` holds and writes what is said of it.
 """
 
 from symobs.checking.checker import Checked, check
-from symobs.checking.report.report import SHOW, CheckReport, Line, Part
+from symobs.checking.report.data import SHOW, Line, Part
+from symobs.checking.report.report import CheckReport
 
 __all__ = ["SHOW", "CheckReport", "Checked", "Line", "Part", "check"]

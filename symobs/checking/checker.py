@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,8 @@ from symobs.checking.derivations.lines import judge_lines
 from symobs.checking.judgement.judge import judge_task
 from symobs.checking.judgement.parts import asked_of, exists
 from symobs.checking.marks import missing, part_of
-from symobs.checking.report.report import SHOW, CheckReport, Part
+from symobs.checking.report.data import SHOW, Part
+from symobs.checking.report.report import CheckReport
 from symobs.convention import Convention, convention_named
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 from symobs.expect import available
@@ -125,6 +127,21 @@ class Checked:
             report = replace(report, hints=(hint,))
         if show == "solution":
             report = replace(report, page=self.solution(chosen))
+        return report.bounded(show)
+
+    def without_answer(
+        self, student: str, variant: str | None, verdict: str, reason: str, show: str = "reason"
+    ) -> CheckReport:
+        """Return the report on an answer that as a whole cannot be read (`unreadable`), or checked (`undecided`)."""
+        credit = None if verdict == "undecided" else Fraction(0)
+        marking, title = self.problem.marking, self.problem.title
+        parts = tuple(
+            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=credit)
+            for view, name in self.asked(self.views())
+        )
+        points = tuple((each.relation, each.points, False) for each in marking.milestones)
+        name = self.problem.convention.name
+        report = CheckReport(title, student, variant, name, show, parts, (), points, marking.total)
         return report.bounded(show)
 
     def report_of_text(self, text: str, where: str, show: str, convention: str | None = None) -> CheckReport:

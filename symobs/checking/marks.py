@@ -13,7 +13,7 @@ from symobs.checking.faults.gains import explain_gain
 from symobs.checking.faults.values import explain_value
 from symobs.checking.judgement.gains import design_with
 from symobs.checking.judgement.parts import GAINS, IN_COORDINATES
-from symobs.checking.report.report import Part
+from symobs.checking.report.data import Part
 from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.errors import SymobsError
 from symobs.exact import Factored, Matrix, Scalar

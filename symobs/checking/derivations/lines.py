@@ -18,7 +18,7 @@ from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
 from symobs.checking.judgement.parts import GAINS
 from symobs.checking.judgement.regions import compare
-from symobs.checking.report.report import Line
+from symobs.checking.report.data import Line
 from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, SymobsError
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.expect import names_of

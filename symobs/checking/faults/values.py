@@ -61,23 +61,45 @@ def _sign(mine: Matrix, exact: Matrix, letter: str) -> Iterator[Fault]:
 
 
 def _entry(mine: Matrix, exact: Matrix, letter: str, variable: str) -> Iterator[Fault]:
-    """Yield the one entry, or the one coefficient of a polynomial, that is another one."""
+    """Yield the one entry, or the one coefficient of a polynomial or a fraction, that is another one."""
     if exact.shape == (1, 1):
-        one, other = mine[0, 0], exact[0, 0]
-        if one.is_polynomial_in(variable) and other.is_polynomial_in(variable) and other.degree(variable) > 0:
-            said = differences.polynomial_reason(one, other, variable)
-            powers = [
-                k
-                for k in range(max(one.degree(variable), other.degree(variable)) + 1)
-                if _at(one, k, variable) != _at(other, k, variable)
-            ]
-            if len(powers) == 1:
-                yield Fault("one_coefficient", said, {"coefficient": powers[0]})
+        off = _coefficients_off(mine[0, 0], exact[0, 0], variable)
+        if len(off) == 1:
+            ((of, power, came, right),) = off
+            name = (
+                "the constant term" if not power else f"the coefficient of {variable}{f'^{power}' if power > 1 else ''}"
+            )
+            place = {"coefficient": power} | ({"of": of} if of else {})
+            yield Fault("one_coefficient", f"{name}{f' of the {of}' if of else ''} is {right}, not {came}", place)
         return
     wrong = differences.wrong_entries(mine, exact, whole=letter)
     if len(wrong) == 1:
         places = [(i, j) for i in range(exact.shape[0]) for j in range(exact.shape[1]) if mine[i, j] != exact[i, j]]
         yield Fault("entry", str(wrong[0]), [places[0][0] + 1, places[0][1] + 1])
+
+
+def _coefficients_off(mine: Scalar, exact: Scalar, variable: str) -> list[tuple[str, int, Scalar, Scalar]]:
+    """Return where two polynomials, or two fractions with monic denominators, differ: the part, the power, both values."""
+    if variable not in exact.names:
+        return []
+    pairs = [_parts(value, variable) for value in (mine, exact)]
+    whole = all(below.is_one for _, below in pairs)
+    found = []
+    for place, of in enumerate(("",) if whole else ("numerator", "denominator")):
+        one, other = pairs[0][place], pairs[1][place]
+        for power in range(max(one.degree(variable), other.degree(variable)) + 1):
+            came, right = _at(one, power, variable), _at(other, power, variable)
+            if came != right:
+                found.append((of, power, came, right))
+    return found
+
+
+def _parts(value: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return numerator and monic denominator."""
+    if value.is_polynomial_in(variable):
+        return value, Scalar.of(1)
+    lead = value.denominator.coefficients(variable)[0]
+    return value.numerator / lead, value.denominator / lead
 
 
 def _at(polynomial: Scalar, power: int, variable: str) -> Scalar:

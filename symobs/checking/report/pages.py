@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from textwrap import wrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from symobs.checking.report.report import decimal
+from symobs.checking.report.data import decimal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.checking.report.report import CheckReport, Line, Part
+    from symobs.checking.report.data import Line, Part, ReportData
 
 _WIDTH = 100
 
 
-def text(report: CheckReport) -> str:
+def text(report: ReportData) -> str:
     """Return a report as plain text of at most 100 columns."""
     from symobs.render.formats.text import printable  # noqa: PLC0415 - each format pays for its own
 
@@ -24,7 +25,9 @@ def text(report: CheckReport) -> str:
     for part in report.parts:
         head = f"{part.letter:<{width}}  {part.verdict}"
         credit = f"  {part.credit}" if part.weight and part.credit is not None and 0 < part.credit < 1 else ""
-        lines += _wrapped(printable("  ".join(filter(None, (head + credit, "; ".join(sentences(part)))))), width + 2)
+        lines += _wrapped(
+            printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
+        )
     for line in shown_lines(report):
         said = f": {line.reason}" if line.reason else ""
         right = f" (right: {line.right})" if line.right else ""
@@ -34,7 +37,7 @@ def text(report: CheckReport) -> str:
     return "\n".join([*lines, ""])
 
 
-def markdown(report: CheckReport) -> str:
+def markdown(report: ReportData) -> str:
     """Return a report as Markdown."""
     from symobs.render.formats.markdown import plain  # noqa: PLC0415 - each format pays for its own
 
@@ -42,7 +45,9 @@ def markdown(report: CheckReport) -> str:
     lines += ["| part | verdict | credit | |", "|---|---|---|---|"]
     for part in report.parts:
         credit = "" if part.credit is None else str(part.credit)
-        lines.append(f"| {plain(part.letter)} | {part.verdict} | {credit} | {plain('; '.join(sentences(part)))} |")
+        lines.append(
+            f"| {plain(part.letter)} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
+        )
     for line in shown_lines(report):
         said = f": {line.reason}" if line.reason else ""
         lines += ["", plain(f"{line.where} is {line.verdict}: {line.relation}{said}")]
@@ -55,30 +60,45 @@ def _wrapped(line: str, indent: int) -> list[str]:
     return wrap(line, _WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False) or [""]
 
 
-def sentences(part: Part) -> Iterator[str]:
-    """Yield what is said of a part."""
-    if part.reason:
+def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:
+    """Yield what is said of a part; with `effect` also what its value does, and what is right."""
+    if part.reason and (effect or not part.effect or part.slip is not None):
         yield part.reason
     yield from part.alternatives
     if part.origins:
         yield f"it follows from your {' and '.join(origin.partition('.')[2] for origin in part.origins)}, which is wrong"
-    if part.place and not part.reason and isinstance(part.place, list):
-        yield f"look at entry ({part.place[0]},{part.place[1]})"
-    if part.effect and part.verdict == "wrong" and "the polynomial is" not in part.reason:
-        yield f"with yours the polynomial is {part.effect['polynomial']}"
-    if part.effect.get("stable") == "no":
-        yield "which is not stable"
+    if part.place and not part.reason:
+        yield f"look at {_place(part.place)}"
+    if effect and part.effect and part.verdict == "wrong":
+        if part.effect["polynomial"] not in part.reason:
+            yield f"with yours the polynomial is {part.effect['polynomial']}"
+        if part.effect.get("stable") == "no":
+            yield "which is not stable"
     yield from part.hints
-    if part.right is not None and part.verdict != "right":
+    if effect and part.right is not None and part.verdict != "right":
         yield f"right: {part.right}"
 
 
-def shown_lines(report: CheckReport) -> list[Line]:
+def _place(place: Any) -> str:
+    """Return a place in words."""
+    if isinstance(place, list):
+        return f"entry ({place[0]},{place[1]})"
+    if "coefficient" in place:
+        return f"the coefficient of the power {place['coefficient']}"
+    return "the point " + ", ".join(f"{name} = {value}" for name, value in place.items())
+
+
+def of_numbers(text: str) -> str:
+    """Return a sentence with powers as one writes them by hand: s^2 + 3 s in place of s**2 + 3*s."""
+    return re.sub(r"(?<=[0-9A-Za-z)])\*(?=[A-Za-z(])", " ", text.replace("**", "^"))
+
+
+def shown_lines(report: ReportData) -> list[Line]:
     """Return the lines that need a word: false, unreadable and undecided ones."""
     return [line for line in report.lines if line.verdict not in {"true", "follows"}]
 
 
-def result(report: CheckReport) -> str:
+def result(report: ReportData) -> str:
     """Return the verdict and the score in one sentence."""
     if report.score is None:
         return f"{report.verdict}: this answer is to be marked by hand"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symobs.checking.report.report import SHOW
+from symobs.checking.report.data import SHOW
 
 _TEXT: dict[str, Any] = {"type": "string"}
 _TEXT_OR_NULL: dict[str, Any] = {"type": ["string", "null"]}

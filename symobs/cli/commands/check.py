@@ -13,7 +13,7 @@ from symobs.checking.asked import answer_file
 from symobs.cli.shared.common import place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, options, quoted
 from symobs.cli.shared.outcome import Outcome, convention_of
-from symobs.cli.shared.output import check_target
+from symobs.cli.shared.output import check_target, make_folder, write_all
 from symobs.errors import UsageError
 from symobs.problem import read
 
@@ -117,14 +117,17 @@ def _class(
         if shown and (done == total or done % 25 == 0):
             write_message(f"{done}/{total} …")
 
-    code = check_class(
+    files, code = check_class(
         read_file(problem),
         Path(problem).parent,
         Path(submissions),
-        Path(target),
         columns=columns,
         show=show,
         feedback=feedback,
         progress=progress,
     )
+    folder = Path(target)
+    for made in (folder, folder / "feedback") if feedback else (folder,):
+        make_folder(made)
+    write_all([(content, str(folder / name)) for name, content in files.items()])
     sys.exit(code)
