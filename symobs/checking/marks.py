@@ -168,7 +168,7 @@ def _rounds(judged: Judged, right: Matrix, *, turned: bool) -> bool:
 
 def _other_polynomial(result: Result, name: str) -> Scalar | None:
     """Return the polynomial of the other half of a compensator, where it has the same degree."""
-    loop = getattr(result, "loop", result)
+    loop = result if isinstance(result, OutputFeedback) else getattr(result, "loop", None)
     if not isinstance(loop, OutputFeedback):
         return None
     own, other = design_with(loop, name), design_with(loop, "L" if name == "K" else "K")

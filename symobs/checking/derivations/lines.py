@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.audit.printed_entries import printed_entries
 from symobs.audit.slips import SearchBudget
+from symobs.certificate.claims import EVALUATION_ERRORS
 from symobs.checking.derivations.line_auditor import LineAuditor, auditor
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
@@ -141,6 +142,8 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     except SymobsError as error:
         error.where = ""
         return Line(step.where, step.relation, "unreadable", reason=str(error))
+    except EVALUATION_ERRORS:
+        return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
 
 
 def _not_true(
@@ -163,7 +166,7 @@ def _not_true(
         desk = own
     try:
         corrected, reason = desk.explained(entry)
-    except CertificateRejected:
+    except (CertificateRejected, *EVALUATION_ERRORS):  # the search for the cause found none that stands
         corrected, reason = "", ""
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)

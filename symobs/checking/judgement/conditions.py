@@ -63,12 +63,25 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
     for part in parts:
         if not isinstance(part, str):
             raise InputError("a condition is a text", where=where, repair='write "h1 > 3"')
-        for text in re.split(r"\band\b|&&?|,", part):
+        for text in re.split(r"\band\b|&&?|,", _without_brackets(part)):
             if text.strip() == "False":
                 return None
             if text.strip() not in {"", "True"}:
                 found += _chain(text.strip(), names, where)
     return tuple(found)
+
+
+def _without_brackets(text: str) -> str:
+    """Return a text without the brackets around all of it."""
+    inner = text.strip()
+    if not inner.startswith("(") or not inner.endswith(")"):
+        return inner
+    depth = 0
+    for place, character in enumerate(inner):
+        depth += (character == "(") - (character == ")")
+        if not depth and place < len(inner) - 1:
+            return inner
+    return inner[1:-1] if _OPERATOR.search(inner) else inner
 
 
 def _chain(text: str, names: Any, where: str) -> list[Inequality]:

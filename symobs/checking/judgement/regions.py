@@ -67,7 +67,7 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
         return Separation("right") if not union else _somewhere(result, union)
     pieces = _pieces(region, union)
     off: list[tuple[Mapping[str, Fraction], bool]] = []
-    boundary = False
+    boundary = inside = False
     for fixed, name, height, right in pieces:
         mine = _holds(union, fixed, name, height)
         if mine == right:
@@ -75,12 +75,12 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
         if isinstance(height, Fraction) and not _on_a_curve(region, union, fixed, name, height):
             off.append(({**fixed, name: height}, mine))
         else:
-            boundary = True
+            boundary, inside = True, mine
     if off:
         point, inside = min(off, key=lambda entry: _length(entry[0]))
         return Separation("wrong", point, inside, polynomial=_at(result, point))
     if boundary:
-        return Separation("wrong", boundary=True)
+        return Separation("wrong", inside=inside, boundary=True)
     return Separation("right")
 
 
@@ -222,7 +222,8 @@ def _number_sign(value: Scalar, point: Mapping[str, Fraction]) -> int:
 def _explained(result: StabilityRegion, union: Union, found: Separation) -> Separation:
     """Return the separation with the slip that makes both equal, and what is wrong at the point."""
     if found.boundary:
-        return replace(found, slip="boundary", reason="both agree but on the boundary, where a root is not stable")
+        lies = "includes its boundary, where a root is not stable" if found.inside else "leaves out a part of no width"
+        return replace(found, slip="boundary", reason=f"the region is right, but yours {lies}")
     for slip, reason in _slips(result, union):
         return replace(found, slip=slip, reason=f"{reason}; {_at_point(result, found)}")
     return replace(found, reason=_at_point(result, found))
