@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,7 @@ from symobs.audit.equation_auditor import EquationAuditor
 from symobs.audit.equations.evaluation import value_of
 from symobs.audit.equations.matrix_functions import Misfit, Unknown
 from symobs.exact import Matrix, Scalar
-from symobs.expression.syntax_tree import letters_of
+from symobs.expression.syntax_tree import SyntaxNode, letters_of
 from symobs.formula.term import Term
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from symobs.audit.printed_entries import PrintedEntry
     from symobs.audit.slips import SearchBudget
     from symobs.convention import Convention
-    from symobs.expression.syntax_tree import SyntaxNode
     from symobs.problem import Problem
     from symobs.result import Result
 
@@ -34,13 +34,12 @@ class LineAuditor(EquationAuditor):
 
     def is_true(self, entry: PrintedEntry) -> bool:
         """Return whether a line holds in general; raises `UnknownName` for a letter without a meaning."""
-        for left, right in pairwise(self.members(entry)):
-            try:
-                if not self.true(left, right):
-                    return False
-            except Unknown as unknown:
-                raise self._unknown(unknown.name, self.environment(left, right)) from None
-        return True
+        members = self.members(entry)
+        reading = self.reading(members[0], members[-1])
+        for name in {*letters_of(*members)} - {*self.let}:
+            with suppress(Misfit):
+                self._value(SyntaxNode("letter", text=name), reading)
+        return all(self.true(left, right) for left, right in pairwise(members))
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:
         """Return the letter that a line defines, and its value; None for any other line."""
