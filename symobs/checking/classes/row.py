@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from symobs.checking.classes.submissions import Submission
     from symobs.checking.report.report import CheckReport
 
-_DAMAGED = "this answer could not be checked: please report it"
+DAMAGED = "this answer could not be checked: please report it"
 
 
 @lru_cache(maxsize=32)
@@ -35,7 +35,7 @@ def report_of(problem: str, folder: str, submission: Submission, show: str) -> C
     except SymobsError as error:
         return checked.without_answer(submission.student, submission.variant, "unreadable", str(error), show)
     except (ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError):
-        return checked.without_answer(submission.student, submission.variant, "undecided", _DAMAGED, show)
+        return checked.without_answer(submission.student, submission.variant, "undecided", DAMAGED, show)
 
 
 def answer_of(submission: Submission) -> Answer:

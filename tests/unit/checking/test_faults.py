@@ -112,7 +112,13 @@ def test_the_sign_of_F_may_be_left_to_the_student() -> None:
 def test_a_forgotten_feedthrough_is_found() -> None:
     problem = 'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
     problem += '[specification]\ncontrol_poles = "-2, -2"\nobserver_poles = "-10, -10"\n'
-    A, B, C, K, L = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]]), sp.Matrix([[4, 3]]), sp.Matrix([19, 81])
+    A, B, C, K, L = (
+        sp.Matrix([[0, 1], [0, -1]]),
+        sp.Matrix([0, 1]),
+        sp.Matrix([[1, 0]]),
+        sp.Matrix([[4, 3]]),
+        sp.Matrix([19, 81]),
+    )
     forgotten = (K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]
     part = check(problem, {"K": text(K), "L": text(L), "F": str(sp.cancel(forgotten))}).parts[2]
     assert part.slip == "forgot_D"
@@ -135,7 +141,9 @@ def test_a_gain_rounded_is_named_so() -> None:
     ],
 )
 def test_slips_of_the_only_right_matrix(matrix: str, slip: str | None) -> None:
-    problem = 'task = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n[marking]\nasked = ["observability.matrix"]\n'
+    problem = (
+        'task = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n[marking]\nasked = ["observability.matrix"]\n'
+    )
     assert check(problem, {"matrix": matrix}).parts[0].slip == slip
 
 

@@ -107,7 +107,15 @@ def test_a_changed_entry_is_right_only_if_the_poles_are(number: int, step: int) 
 
 
 def test_all_forms_of_a_value_are_read_exactly() -> None:
-    for gain in ([[19], [81]], "[19; 81]", "[38/2; 9^2]", "[19.0; 81.00]", [["19"], [81]], "[19; 8.1e1]", sp.Matrix([19, 81])):
+    for gain in (
+        [[19], [81]],
+        "[19; 81]",
+        "[38/2; 9^2]",
+        "[19.0; 81.00]",
+        [["19"], [81]],
+        "[19; 8.1e1]",
+        sp.Matrix([19, 81]),
+    ):
         assert one(check(SERVO, {"L": gain}), "L").verdict == "right"
     assert one(check(SERVO, {"L": "[19; 81.0001]"}), "L").verdict == "wrong"
     part = one(check(SERVO, {"L": [[19.5], [81]]}), "L")
@@ -115,7 +123,7 @@ def test_all_forms_of_a_value_are_read_exactly() -> None:
 
 
 def test_a_single_value_is_the_one_part_that_is_asked_for() -> None:
-    problem = "[plant]\nA = \"[0 1; 0 -1]\"\nC = \"[1 0]\"\n[specification]\npoles = \"-10, -10\"\n"
+    problem = '[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\npoles = "-10, -10"\n'
     assert check(f'task = "observer"\n{problem}', sp.Matrix([19, 81])).verdict == "right"
     with pytest.raises(InputError, match="3 parts are asked for"):
         check(SERVO, sp.Matrix([19, 81]))
@@ -222,9 +230,7 @@ def test_a_canonical_form_in_any_layout_is_right(name: str) -> None:
 
 def test_a_reduced_order_observer_for_another_estimate_is_right() -> None:
     """ż = F z + G u + H y with z for 2 P x: F the same, G and H doubled, the column of M halved."""
-    problem = (
-        'task = "reduced_order_observer"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
-    )
+    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
     # P = [-9 1]: P A - F P = [90 - 90... ], F = -10, H = P A e1 + 10 P e1 = -90, G = P B = 1, M = [1 0; 9 1]
     single = {"F": "[-10]", "G": "[1]", "H": "[-90]", "M": "[1 0; 9 1]"}
     double = {"F": "[-10]", "G": "[2]", "H": "[-180]", "M": "[1 0; 9 1/2]"}

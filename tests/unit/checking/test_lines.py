@@ -15,7 +15,9 @@ SERVO_CHECKED = Checked.of(SERVO)
 LETTERS = {"standard": ("L", "-"), "S0": ("L", "-"), "S1": ("M", "+"), "S4": ("L", "-")}
 
 
-def lines(text: str, convention: str | None = None, checked: Checked = SERVO_CHECKED) -> list[tuple[str, tuple[str, ...]]]:
+def lines(
+    text: str, convention: str | None = None, checked: Checked = SERVO_CHECKED
+) -> list[tuple[str, tuple[str, ...]]]:
     """The verdicts on lines, with the lines that they follow from."""
     return [(line.verdict, line.origins) for line in checked.report(text, "reason", convention).lines]
 
@@ -71,7 +73,7 @@ def test_the_first_false_line_is_named(line: str, place: int) -> None:
 )
 def test_lines_in_the_letters_of_a_convention(convention: str, right: str, wrong: str) -> None:
     observer = SERVO.replace('task = "compensator"', 'task = "observer"').replace('control_poles = "-2, -2"\n', "")
-    checked = SERVO_CHECKED if convention not in {"S4"} else Checked.of(observer)
+    checked = SERVO_CHECKED if convention != "S4" else Checked.of(observer)
     assert [verdict for verdict, _ in lines(f"{right}\n{wrong}", convention, checked)] == ["true", "false"]
 
 
@@ -156,7 +158,9 @@ def test_milestones() -> None:
 
 def test_lines_of_a_region_are_true_where_it_implies_them() -> None:
     name = "region_third_order_loop"
-    checked = Checked.of(read((ROOT / "worked_examples" / f"{name}.toml").read_text(encoding="utf-8"), name, ROOT / "worked_examples"))
+    checked = Checked.of(
+        read((ROOT / "worked_examples" / f"{name}.toml").read_text(encoding="utf-8"), name, ROOT / "worked_examples")
+    )
     conditions = checked.results[0].fields["stable_if"]
     text = "\n".join([conditions[0], f"{conditions[0]} and {conditions[-1]}"])
     assert {verdict for verdict, _ in lines(text, None, checked)} == {"true"}

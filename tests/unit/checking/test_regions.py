@@ -13,7 +13,9 @@ from symobs.checking import Checked
 CUBIC = 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h1 s + h2"\nparameters = "h1, h2"\n'
 CHECKED = Checked.of(CUBIC)
 # s^3 + 4 s^2 + h s + 6: h > 3/2.
-LINE = Checked.of('task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h s + 6"\nparameters = "h"\n')
+LINE = Checked.of(
+    'task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h s + 6"\nparameters = "h"\n'
+)
 # s^3 + a s^2 + h s + k with a > 0: k > 0 and a h > k.
 SYMBOLIC = Checked.of(
     'task = "stability_region"\n[symbols]\na = "positive"\n[specification]\npolynomial = "s^3 + a s^2 + h s + k"\nparameters = "h, k"\n'

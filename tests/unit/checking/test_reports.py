@@ -18,7 +18,7 @@ from symobs.checking.asked import answer_file
 from symobs.checking.report.schema import schema
 from symobs.errors import ProblemErrors, UsageError
 from symobs.problem import read
-from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L, text
+from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
 
 RIGHT = {"K": "[4 3]", "L": "[19; 81]", "F": "(319 s + 400)/(s^2 + 23 s + 161)"}
 ANSWERS: list[Any] = [
@@ -100,7 +100,9 @@ def test_marks_are_exact_fractions() -> None:
     report = check(SERVO + marking, {"K": "[4 3]", "L": "[19; 80]"})
     assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, 10)
     assert json.loads(report.to_json())["score_decimal"] == "2.22"
-    asked = check(f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"})
+    asked = check(
+        f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"}
+    )
     assert [part.part for part in asked.parts] == ["compensator.K", "compensator.closed_loop_polynomial"]
     assert (asked.verdict, asked.score) == ("incomplete", 1)
 
@@ -109,7 +111,7 @@ def test_marks_are_exact_fractions() -> None:
     ("marking", "message"),
     [
         ("total = -1", "marking.total: -1 is negative"),
-        ('credit = { sign = 2 }', "marking.credit.sign: 2 is not between 0 and 1"),
+        ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
         ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
         ('form = { "compensator.F" = "nice" }', "marking.form.compensator.F: this is no form"),
         ("guard = 1", "marking.guard: true or false is expected"),
@@ -124,7 +126,9 @@ def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
 
 
 def test_a_part_that_does_not_exist_is_named() -> None:
-    with pytest.raises(ProblemErrors, match=r"marking.asked\[0\]: there is no compensator.Q; known: compensator.verdict"):
+    with pytest.raises(
+        ProblemErrors, match=r"marking.asked\[0\]: there is no compensator.Q; known: compensator.verdict"
+    ):
         check(f'{SERVO}[marking]\nasked = ["compensator.Q"]\n', RIGHT)
 
 
@@ -184,7 +188,7 @@ def test_a_decimal_comma_is_told_so() -> None:
 
 def test_the_empty_answer_file_is_one() -> None:
     empty = answer_file(CHECKED)
-    assert "# L = \"\"    # a 2x1 matrix" in empty
+    assert '# L = ""    # a 2x1 matrix' in empty
     assert [part.verdict for part in CHECKED.report(empty).parts] == ["missing"] * 3
     filled = empty.replace('# K = ""', 'K = "[4 3]"')
     assert CHECKED.report(filled).parts[0].verdict == "right"
@@ -195,6 +199,6 @@ def test_in_python() -> None:
     result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", None, "[1 0]"), poles="-10, -10")
     report = symobs.check(result, {"L": "[19; 81]"})
     assert (report.verdict, report.score, report.total) == ("right", 1, 1)
-    assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}  # noqa: SLF001
+    assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}
     with pytest.raises(UsageError, match="is nothing to show"):
         symobs.check(result, {"L": "[19; 81]"}, show="all")
