@@ -23,6 +23,7 @@ from symobs.analysis.time_response.initial_state import InitialState as _Initial
 from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.checking import check as check
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
@@ -50,6 +51,7 @@ _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
+FUNCTIONS: dict[str, str]
 __version__: str
 
 class _CanonicalFormResult(_CanonicalForm):

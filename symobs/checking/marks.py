@@ -108,8 +108,8 @@ def _explained(part: Part, view: Viewed, judgement: TaskJudgement, judged: Judge
         return replace(part, slip=slip, place=place, credit=credit)
     found = _explanation(view, judgement, judged)
     reasons = tuple(fault.reason for fault in found.alternatives)
-    slips = [fault.slip for fault in found.alternatives] or [found.slip]
-    credit = min(marking.credit.get(slip or "", Fraction(0)) for slip in slips)
+    slips = [fault.slip for fault in found.alternatives] or [found.slip or ""]
+    credit = min(marking.credit.get(slip, Fraction(0)) for slip in slips)
     said = found.reason or part.reason
     if not said and "polynomial" in found.effect:
         said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"

@@ -9,6 +9,7 @@ import inspect
 from collections.abc import Mapping
 from typing import Any
 
+import symobs
 from symobs import errors
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 from symobs.problem import read
@@ -49,6 +50,7 @@ _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
+FUNCTIONS: dict[str, str]
 __version__: str
 """
 
@@ -136,6 +138,7 @@ def stub() -> str:
     raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
     imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
+    imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
 

@@ -85,4 +85,4 @@ def read_like(found: Any, value: Any, names: Any, variable: str, where: str) -> 
         return None
     free = None if names is not None and variable in names else variable
     read = parse_matrix if isinstance(right, Matrix) else parse_scalar
-    return read(exact(value), names, variable=free, where=where, functions=True)  # type: ignore[no-any-return,operator]
+    return read(exact(value), names, variable=free, where=where, functions=True)

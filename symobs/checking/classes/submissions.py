@@ -114,8 +114,8 @@ def _of_csv(text: str, path: Path, known: Collection[str], columns: Mapping[str,
         if row and len(row) != len(names)
     ]
     if errors:
-        for error in errors:
-            error.where = f"{shown(str(path), 200)}, {error.where}"
+        for wrong in errors:
+            wrong.where = f"{shown(str(path), 200)}, {wrong.where}"
         raise ProblemErrors(tuple(errors))
     found: list[tuple[str, Submission]] = []
     for number, row in enumerate(rows[1:], start=2):

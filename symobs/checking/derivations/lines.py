@@ -186,7 +186,7 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
     if view is None:
         return Line(step.where, step.relation, "unreadable", reason="no region is asked for here")
     names = names_of(view)
-    known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}  # type: ignore[attr-defined]
+    known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
     try:
         union = read_conditions(step.relation, known, step.where)
         ours = read_conditions(list(view.result.fields["stable_if"]), known)

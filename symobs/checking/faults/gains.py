@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from symobs.checking.faults.fault import Explained, Fault, first_kind
+from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 
@@ -36,8 +36,9 @@ def explain_gain(
     if shape is not None and value.shape != shape:
         return first_kind([partial(_transposed, design, value, letter)])
     search = _Search(design, value, letter, other, turned=turned)
-    kinds = [search.sign]
-    kinds += [lambda: [Fault("rounded", f"{letter} is rounded, and its exact value is asked for")]] if rounded else []
+    kinds: list[Kind] = [search.sign]
+    if rounded:
+        kinds.append(lambda: [Fault("rounded", f"{letter} is rounded, and its exact value is asked for")])
     if design.desired is not None and right is not None:
         kinds += [search.entry, search.one_coefficient, search.other_half]
         kinds += [search.mirrored, search.pole_repeated, search.pole_dropped, search.not_subtracted, search.reversed]

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 #: So many points are tried where there is no exact region, before the question is left open.
 _MOST_TRIED = 4000
-_TRIED = tuple(map(Fraction, (1, 2, -1, 3, "1/2", -2, 5, 10, "1/10", -5, 20, 100)))
+_TRIED = tuple(Fraction(value) for value in ("1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"))
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from symobs._dataclass import dataclass
 

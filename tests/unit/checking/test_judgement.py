@@ -135,7 +135,8 @@ def test_what_no_task_has_is_an_error_with_the_known_fields() -> None:
 
 
 def test_in_the_letters_and_signs_of_a_convention() -> None:
-    plant = 'task = "observer"\nconvention = "S1"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\npoles = "-10, -10"\n'
+    plant = 'task = "observer"\nconvention = "S1"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
+    plant += '[specification]\npoles = "-10, -10"\n'
     assert check(plant, {"M": "[-19; -81]"}).verdict == "right"
     part = one(check(plant, {"M": "[19; 81]"}), "L")
     assert (part.verdict, part.slip, part.letter) == ("wrong", "sign", "M")
@@ -230,8 +231,9 @@ def test_a_canonical_form_in_any_layout_is_right(name: str) -> None:
 
 def test_a_reduced_order_observer_for_another_estimate_is_right() -> None:
     """ż = F z + G u + H y with z for 2 P x: F the same, G and H doubled, the column of M halved."""
-    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
-    # P = [-9 1]: P A - F P = [90 - 90... ], F = -10, H = P A e1 + 10 P e1 = -90, G = P B = 1, M = [1 0; 9 1]
+    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\npoles = "-10"\n'
+    # P = [-9 1], F = -10: P A - F P = [-90 0] = H C, G = P B = 1, [1 0; -9 1]^-1 = [1 0; 9 1]
     single = {"F": "[-10]", "G": "[1]", "H": "[-90]", "M": "[1 0; 9 1]"}
     double = {"F": "[-10]", "G": "[2]", "H": "[-180]", "M": "[1 0; 9 1/2]"}
     assert check(problem, single).verdict == check(problem, double).verdict == "right"
@@ -242,7 +244,8 @@ def test_a_reduced_order_observer_for_another_estimate_is_right() -> None:
 
 
 def test_a_modal_form_in_any_order_and_scaling_is_right() -> None:
-    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\nkind = "modal"\n'
+    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\nkind = "modal"\n'
     A, B, C = sp.Matrix([[0, 1], [-2, -3]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
     vectors = {-1: sp.Matrix([1, -1]), -2: sp.Matrix([1, -2])}
     for order, (first, second) in itertools.product([(-1, -2), (-2, -1)], [(1, 1), (3, sp.Rational(-1, 2))]):
@@ -252,7 +255,8 @@ def test_a_modal_form_in_any_order_and_scaling_is_right() -> None:
 
 
 def test_rows_of_a_block_may_be_permuted_and_kernels_have_any_basis() -> None:
-    problem = 'task = "observability"\n[plant]\nA = "[0 1 0; 0 0 0; 0 0 0]"\nC = "[1 0 0; 1 1 0]"\n[marking]\nasked = ["observability.matrix", "observability.kernel"]\n'
+    problem = 'task = "observability"\n[plant]\nA = "[0 1 0; 0 0 0; 0 0 0]"\nC = "[1 0 0; 1 1 0]"\n'
+    problem += '[marking]\nasked = ["observability.matrix", "observability.kernel"]\n'
     report = check(problem, {"matrix": "[1 1 0; 1 0 0; 0 1 0; 0 1 0; 0 0 0; 0 0 0]", "kernel": ["[0; 0; -7]"]})
     assert report.verdict == "right"
     assert "another order" in report.parts[0].hints[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from symobs.checking import Checked
@@ -148,11 +150,12 @@ def test_what_cannot_be_read_does_not_stop_the_rest() -> None:
 
 
 def test_milestones() -> None:
-    problem = f'{SERVO}[[marking.milestone]]\nrelation = "rank(O) = 2"\npoints = 1\n[[marking.milestone]]\nrelation = "K = [4 3]"\npoints = 2\n'
+    problem = f'{SERVO}[[marking.milestone]]\nrelation = "rank(O) = 2"\npoints = 1\n'
+    problem += '[[marking.milestone]]\nrelation = "K = [4 3]"\npoints = 2\n'
     checked = Checked.of(problem)
     report = checked.report("K = [4 3]\nrank(O) = 2")
     assert [met for _, _, met in report.milestones] == [True, True]
-    assert (report.score, report.total) == (4, 6)
+    assert (report.score, report.total) == (Fraction(4), Fraction(6))
     assert [met for _, _, met in checked.report("rank(O) = 1").milestones] == [False, False]
 
 

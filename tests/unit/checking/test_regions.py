@@ -18,7 +18,8 @@ LINE = Checked.of(
 )
 # s^3 + a s^2 + h s + k with a > 0: k > 0 and a h > k.
 SYMBOLIC = Checked.of(
-    'task = "stability_region"\n[symbols]\na = "positive"\n[specification]\npolynomial = "s^3 + a s^2 + h s + k"\nparameters = "h, k"\n'
+    'task = "stability_region"\n[symbols]\na = "positive"\n[specification]\n'
+    'polynomial = "s^3 + a s^2 + h s + k"\nparameters = "h, k"\n'
 )
 
 EQUAL: list[Any] = [

@@ -98,13 +98,13 @@ def test_each_level_shows_more() -> None:
 def test_marks_are_exact_fractions() -> None:
     marking = '[marking]\ntotal = 10\nparts = { "compensator.F" = 4 }\n[marking.credit]\nentry = "1/3"\n'
     report = check(SERVO + marking, {"K": "[4 3]", "L": "[19; 80]"})
-    assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, 10)
+    assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, Fraction(10))
     assert json.loads(report.to_json())["score_decimal"] == "2.22"
     asked = check(
         f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"}
     )
     assert [part.part for part in asked.parts] == ["compensator.K", "compensator.closed_loop_polynomial"]
-    assert (asked.verdict, asked.score) == ("incomplete", 1)
+    assert (asked.verdict, asked.score) == ("incomplete", Fraction(1))
 
 
 @pytest.mark.parametrize(
@@ -198,7 +198,7 @@ def test_the_empty_answer_file_is_one() -> None:
 def test_in_python() -> None:
     result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", None, "[1 0]"), poles="-10, -10")
     report = symobs.check(result, {"L": "[19; 81]"})
-    assert (report.verdict, report.score, report.total) == ("right", 1, 1)
+    assert (report.verdict, report.score, report.total) == ("right", Fraction(1), Fraction(1))
     assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}
     with pytest.raises(UsageError, match="is nothing to show"):
         symobs.check(result, {"L": "[19; 81]"}, show="all")
