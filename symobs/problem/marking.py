@@ -29,9 +29,6 @@ CREDIT = {
     "other_half": Fraction(1, 4),
     "boundary": Fraction(3, 4),
 }
-#: What `form` may demand of a value that is right, besides `decimal:3`.
-FORMS = ("lowest_terms", "factored", "monic")
-_DECIMAL = re.compile(r"decimal:[1-9][0-9]?")
 _PART = re.compile(r"[a-z_]+\.[A-Za-z][A-Za-z0-9_]*")
 _MOST_MILESTONES = 50
 _CHOICES = {"decimals": ("exact", "accept"), "sign_of_F": ("convention", "either")}
@@ -50,12 +47,6 @@ MARKING: dict[str, dict[str, Any]] = {
     "follow_through": {"description": "the credit of a part that is right from an earlier wrong one", **_NUMBER},
     "guard": {"description": "no such credit where the wrong one makes the part easy", "type": "boolean"},
     "credit": {"description": "the credit of a part by its slip", **_PARTS},
-    "form": {
-        "description": "the form of a part: lowest_terms, factored, monic or decimal:3",
-        "type": "object",
-        "additionalProperties": {"type": "string", "pattern": f"^({'|'.join(FORMS)}|{_DECIMAL.pattern})$"},
-    },
-    "form_credit": {"description": "the credit of a right value in another form", **_NUMBER},
     "decimals": {"description": "whether a rounded value is right", "enum": list(_CHOICES["decimals"])},
     "sign_of_F": {"description": "whether -F is right, too", "enum": list(_CHOICES["sign_of_F"])},
     "milestone": {
@@ -89,8 +80,6 @@ class Marking:
     follow_through: Fraction = Fraction(1)
     guard: bool = True
     credit: Mapping[str, Fraction] = field(default_factory=lambda: dict(CREDIT))
-    form: Mapping[str, str] = field(default_factory=dict)
-    form_credit: Fraction = Fraction(1)
     decimals: str = "exact"
     sign_of_F: str = "convention"  # noqa: N815 - the key of the file
     milestones: tuple[Milestone, ...] = ()
@@ -111,7 +100,7 @@ def read_marking(table: object, tasks: Collection[str], note: Note) -> Marking:
         match key:
             case "total":
                 found[key] = _number(value, where, note, most=None)
-            case "follow_through" | "form_credit":
+            case "follow_through":
                 found[key] = _number(value, where, note)
             case "guard":
                 found[key] = value
@@ -131,22 +120,17 @@ def read_marking(table: object, tasks: Collection[str], note: Note) -> Marking:
     return Marking(**found)
 
 
-def _by_name(key: str, value: object, where: str, tasks: Collection[str], note: Note) -> dict[str, Any]:
-    """Return a table by part, or by slip: weights, credits, forms."""
+def _by_name(key: str, value: object, where: str, tasks: Collection[str], note: Note) -> dict[str, Fraction]:
+    """Return a table of numbers by part, or by slip."""
     if not isinstance(value, Mapping):
         note("a table is expected", where, f"write [{where}] and its keys below")
         return {}
-    found: dict[str, Any] = dict(CREDIT) if key == "credit" else {}
+    found = dict(CREDIT) if key == "credit" else {}
     for name, entry in value.items():
         place = f"{where}.{shown(name, 40)}"
         if key != "credit":
             _part(name, place, tasks, note)
-        if key == "form":
-            if not isinstance(entry, str) or (entry not in FORMS and not _DECIMAL.fullmatch(entry)):
-                note("this is no form", place, f"write one of {', '.join(FORMS)}, decimal:3")
-            found[name] = str(entry)
-        else:
-            found[name] = _number(entry, place, note, most=1 if key == "credit" else None)
+        found[name] = _number(entry, place, note, most=1 if key == "credit" else None)
     return found
 
 

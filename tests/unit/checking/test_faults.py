@@ -184,7 +184,7 @@ def explained_truly(slip: str, value: sp.Matrix, part: object) -> bool:
         equations = sp.Poly((A - changed * C).charpoly(S).as_expr() - PHI.as_expr(), S).all_coeffs()
         return bool(sp.solve(equations, [t]))
     if slip == "one_coefficient":
-        return sum(a != b for a, b in zip(mine.all_coeffs(), PHI.all_coeffs(), strict=True)) == 1
+        return bool(sum(a != b for a, b in zip(mine.all_coeffs(), PHI.all_coeffs(), strict=True)) == 1)
     return bool(value == GAINS[slip])
 
 

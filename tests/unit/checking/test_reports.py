@@ -113,7 +113,6 @@ def test_marks_are_exact_fractions() -> None:
         ("total = -1", "marking.total: -1 is negative"),
         ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
         ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
-        ('form = { "compensator.F" = "nice" }', "marking.form.compensator.F: this is no form"),
         ("guard = 1", "marking.guard: true or false is expected"),
         ("extra = 1", "marking.extra: unknown key"),
         ('decimals = "sometimes"', "marking.decimals: this is no choice"),
