@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.audit.printed_entries import printed_entries
 from symobs.audit.slips import SearchBudget
-from symobs.certificate.claims import EVALUATION_ERRORS
+from symobs.certificate.claims import UNREADABLE
 from symobs.checking.derivations.line_auditor import LineAuditor, auditor
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
@@ -142,7 +142,7 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     except SymobsError as error:
         error.where = ""
         return Line(step.where, step.relation, "unreadable", reason=str(error))
-    except EVALUATION_ERRORS:
+    except UNREADABLE:
         return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
 
 
@@ -166,7 +166,7 @@ def _not_true(
         desk = own
     try:
         corrected, reason = desk.explained(entry)
-    except (CertificateRejected, *EVALUATION_ERRORS):  # the search for the cause found none that stands
+    except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)

@@ -149,6 +149,12 @@ def test_what_cannot_be_read_does_not_stop_the_rest() -> None:
     assert 'the letter "Q" means nothing' in report.lines[1].reason
 
 
+def test_a_false_line_without_a_cause_is_false_all_the_same() -> None:
+    """The search for a slip meets products of signals here, which have no value."""
+    checked = Checked.of(TWO_OUTPUTS)
+    assert lines("det(s I - A - + + C) = (s L 1)^3", None, checked) == [("false", ())]
+
+
 def test_milestones() -> None:
     problem = f'{SERVO}[[marking.milestone]]\nrelation = "rank(O) = 2"\npoints = 1\n'
     problem += '[[marking.milestone]]\nrelation = "K = [4 3]"\npoints = 2\n'
