@@ -15,6 +15,7 @@ FORMAT_PACKAGE = "symobs.render.formats"
 FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",
     "batch": "symobs.batching",
+    "check": "symobs.checking",
     "sweep": "symobs.batching.sweep",
 }
 
@@ -29,6 +30,8 @@ def __getattr__(name: str) -> Any:
         return getattr(importlib.import_module(FUNCTIONS[name]), name)
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
+    if name in FUNCTIONS:
+        return getattr(importlib.import_module(FUNCTIONS[name]), name)
     if name[:1].isupper():
         if name in _errors():
             return _errors()[name]

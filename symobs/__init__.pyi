@@ -27,6 +27,7 @@ from symobs.analysis.time_varying.time_varying_observability import TimeVaryingO
 from symobs.batching import batch as batch
 from symobs.batching.sweep import sweep as sweep
 from symobs.cli.shared.time_and_memory import bounded as bounded
+from symobs.checking import check as check
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
@@ -55,6 +56,7 @@ _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
+FUNCTIONS: dict[str, str]
 __version__: str
 
 class _CanonicalFormResult(_CanonicalForm):

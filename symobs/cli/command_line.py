@@ -25,10 +25,11 @@ _MOST_LINES = 100
 COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
     "batch": "Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.",
+    "check": "Check an ANSWER, or those of a class, against a PROBLEM file: any valid answer is right.",
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "examples": "List the worked examples, or print the one called NAME.",
     "methods": "List every task and its methods.",
-    "schema": "Print the JSON schema of problem files.",
+    "schema": "Print the JSON schema of problem files, or that of the results of the command NAME.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "sweep": "Design at every point of a grid, each exact and checked, into a table.",

@@ -45,12 +45,12 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
     lines: list[str] = []
     errors: list[SymobsError] = []
     for result in results:
-        expected = {key: (entry, f"expect.{key}") for key, entry in expect.items() if key in _available(result)}
+        expected = {key: (entry, f"expect.{key}") for key, entry in expect.items() if key in available(result)}
         own = expect.get(result.task)
         if isinstance(own, Mapping):
             expected |= {key: (entry, f"expect.{result.task}.{shown(key, 40)}") for key, entry in own.items()}
         lines += _held_against(result, expected, errors)
-    known = sorted({name for result in results for name in _available(result)})
+    known = sorted({name for result in results for name in available(result)})
     found = applicable(results, expect)
     strange = [key for key in expect if key not in found]
     errors += [_no_field(f"expect.{shown(key, 40)}", "no task here has such a field", known) for key in strange]
@@ -62,7 +62,7 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
 def applicable(results: Sequence[Answered], expect: Mapping[str, Any]) -> dict[str, Any]:
     """Return the expected answers of these results."""
     tasks = {result.task for result in results}
-    fields = {name for result in results for name in _available(result)}
+    fields = {name for result in results for name in available(result)}
     return {
         key: entry for key, entry in expect.items() if key in fields or (key in tasks and isinstance(entry, Mapping))
     }
@@ -75,14 +75,14 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
     for name, (entry, where) in expected.items():
         chosen = _with_member(chosen, name, entry, where) if name in result.answer else chosen
     for name, (entry, where) in expected.items():
-        if name not in _available(result):
-            errors.append(_no_field(where, f"{result.task} has no such field", _available(result)))
+        if name not in available(result):
+            errors.append(_no_field(where, f"{result.task} has no such field", available(result)))
             continue
         try:
             if not met(chosen, name, entry, where):
-                found = _shown(_found(chosen, name))
+                found = shown_value(found_in(chosen, name))
                 lines.append(
-                    f"{where}: expected {shown(_shown(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}"
+                    f"{where}: expected {shown(shown_value(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}"
                 )
         except SymobsError as error:
             errors.append(error)
@@ -95,7 +95,7 @@ def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answere
     if not isinstance(answer, Matrix) or result.fields.get("family") is None:
         return result
     try:
-        wanted = parse_matrix(entry, _names(result), where=where)
+        wanted = parse_matrix(entry, names_of(result), where=where)
         other = wanted.shape == answer.shape and wanted != answer
         return result.with_answer(name, wanted) if other else result
     except (CertificateRejected, InputError):  # no member, or unreadable, which `met` will say
@@ -134,11 +134,13 @@ def _no_field(where: str, message: str, known: Sequence[str]) -> InputError:
     return InputError(message, where=where, repair=f"known fields are {', '.join(known)}")
 
 
-def _available(result: Answered) -> list[str]:
+def available(result: Answered) -> list[str]:
+    """Return the names of what a result can be asked for."""
     return ["verdict", "conditions", *result.fields]
 
 
-def _found(result: Answered, name: str) -> Any:
+def found_in(result: Answered, name: str) -> Any:
+    """Return the value of a field of a result."""
     if name == "verdict":
         return result.verdict
     if name == "conditions":
@@ -146,7 +148,7 @@ def _found(result: Answered, name: str) -> Any:
     return result.fields[name]
 
 
-def _names(result: Answered) -> Any:
+def names_of(result: Answered) -> Any:
     """Return the declared names, and the names introduced by answers, such as t and t0."""
     declared, plant = result.plant.symbols.names, result.plant
     if declared is None:
@@ -161,17 +163,18 @@ def _names(result: Answered) -> Any:
     return {**dict.fromkeys(sorted(used), "real"), **declared}
 
 
-def _shown(value: Any) -> str:
+def shown_value(value: Any) -> str:
+    """Return a value as text."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key} = {_shown(entry)}" for key, entry in value.items()) + "}"
+        return "{" + ", ".join(f"{key} = {shown_value(entry)}" for key, entry in value.items()) + "}"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_shown(entry) for entry in value) + "]"
+        return "[" + ", ".join(shown_value(entry) for entry in value) + "]"
     return "none" if value is None else str(value)
 
 
 def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Return whether an expected answer equals that of the result."""
-    found, names, variable = _found(result, name), _names(result), result.plant.variable
+    found, names, variable = found_in(result, name), names_of(result), result.plant.variable
     if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
@@ -205,7 +208,7 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
 
 
 def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
-    names, variable = _names(result), result.plant.variable
+    names, variable = names_of(result), result.plant.variable
     if not found or not expected:
         return not found and not expected
     if all(isinstance(entry, Root) for entry in found):
@@ -295,7 +298,7 @@ def _modes_agree(found: list[Any], expected: list[Any], result: Answered, where:
 def _is_mode(mode: Mapping[str, Any], wanted: Any, result: Answered, where: str) -> bool:
     if not isinstance(wanted, Mapping) or not set(wanted) <= set(mode):
         return False
-    names, variable = _names(result), result.plant.variable
+    names, variable = names_of(result), result.plant.variable
     for key, entry in wanted.items():
         value = mode[key]
         if isinstance(value, Root):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import SIGNS
 from symobs.convention import conventions
+from symobs.problem.marking import MARKING
 from symobs.result import tasks
 from symobs.result.in_convention import names_in
 from symobs.specification import CHOICES, KINDS
@@ -39,6 +40,7 @@ TOP: dict[str, dict[str, Any]] = {
     "values": {"description": "values of symbols, k = 4: the answers are those at these values"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
     "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
+    "marking": {"description": "what counts of an answer, for symobs check"},
 }
 #: What one entry of [[printed]] may say.
 PRINTED: dict[str, dict[str, Any]] = {
@@ -124,6 +126,7 @@ def schema() -> dict[str, Any]:
             "additionalProperties": False,
         },
         "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
+        "marking": {"type": "object", "properties": MARKING, "additionalProperties": False},
         "printed": {
             "type": "array",
             "items": {

@@ -18,6 +18,7 @@ from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.problem.constants import with_constants
 from symobs.problem.file_tables import Decimal, came
+from symobs.problem.marking import Marking, read_marking
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.in_convention import Viewed, names_in
@@ -53,6 +54,7 @@ class Problem:
     text: str = ""
     printed: tuple[Mapping[str, Any], ...] = ()
     values: Mapping[str, Any] = field(default_factory=dict)  # of symbols: the results are those there
+    marking: Marking = Marking()
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.
@@ -143,8 +145,11 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     expect = _table(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
     values = _table(data, "values", errors)
+    marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
     if not errors.found and plant is not None:
-        return Problem(title, source, ids, wanted, plant, specification, expect, convention, text, printed, values)
+        return Problem(
+            title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
+        )
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()

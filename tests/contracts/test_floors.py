@@ -50,8 +50,9 @@ FLOORS = {
     "problem": 12,
     "audit": 13,
     "batching": 13,
-    "cli": 14,
-    "__main__": 15,
+    "checking": 14,
+    "cli": 15,
+    "__main__": 16,
 }
 # The package itself (`__init__.py`) stands above all floors. It lists the modules in which methods and formats
 # register, and two modules may look at it or load by name: the registry (the only way up) and the command line.

@@ -1,4 +1,4 @@
-"""The command `schema`: the JSON schema of problem files."""
+"""The command `schema`: the JSON schemas of problem files and of results."""
 
 from __future__ import annotations
 
@@ -6,11 +6,22 @@ import json
 
 import click
 
+from symobs.checking.report.schema import schema as of_check
 from symobs.cli.shared.output import write
-from symobs.problem import schema as whole
+from symobs.errors import UsageError
+from symobs.problem import schema as of_problem
+
+#: What has a schema, by the name that the command takes.
+SCHEMAS = {"problem": of_problem, "check": of_check}
 
 
 @click.command("schema")
-def command() -> None:
-    """Print the JSON schema of problem files."""
-    write(json.dumps(whole(), indent=2, ensure_ascii=False) + "\n")
+@click.argument("name", default="problem")
+def command(name: str) -> None:
+    """Print the JSON schema of problem files, or that of the results of the command NAME.
+
+    NAME is problem (default) or check.
+    """
+    if name not in SCHEMAS:
+        raise UsageError(f"{name[:40]!r} has no schema", repair=f"take {', '.join(SCHEMAS)}")
+    write(json.dumps(SCHEMAS[name](), indent=2, ensure_ascii=False) + "\n")

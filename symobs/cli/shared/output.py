@@ -81,6 +81,12 @@ def check_target(target: str | None) -> None:
             raise InputError("the folder cannot be written", where=_shown(target), repair=_ELSEWHERE)
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder for results, unless it is there; raises `InputError` where it cannot be made."""
+    with _explained(str(folder)):
+        folder.mkdir(exist_ok=True)
+
+
 def binary(stream: Any) -> Any:
     """Return the binary stream of a standard stream, which is None if it was closed."""
     if stream is None:

@@ -27,7 +27,7 @@ from symobs.problem.question import question_of
 from symobs.result import formats, tasks
 from symobs.result.in_convention import names_in
 from symobs.specification import read_entries, read_names
-from tests.programs.fuzz import corpus, mutate, printing, problems, texts
+from tests.programs.fuzz import answers, corpus, mutate, printing, problems, texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -302,12 +302,13 @@ def _run_command(call: Call) -> str:
 TARGETS = {
     target.name: target
     for target in (
-        Target("grammar", 700, _grammar, _read_expression),
+        Target("grammar", 690, _grammar, _read_expression),
         Target("problem_toml", 55, problems.toml, _read_problem),
         Target("problem_json", 55, problems.json, _read_problem),
         Target("command_line", 6, _call, _run_command, seconds=20.0, megabytes=500, writes=True),
         Target("printing", 34, lambda source: source, printing.roundtrip),
         Target("audit", 90, _relation, _read_printed, seconds=5.0),
+        Target("check", 10, answers.submission, answers.checked, seconds=5.0, megabytes=400),
         Target("convention", 60, problems.convention, _read_convention, writes=True),
     )
 }

@@ -38,6 +38,7 @@ SLICE = {
     "command_line": 40,
     "printing": 120,
     "audit": 400,
+    "check": 150,
     "convention": 300,
 }
 #: The slice runs apart from the tests: the hook that watches it stays for the life of its process.

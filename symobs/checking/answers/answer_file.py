@@ -1,0 +1,153 @@
+"""The file of an answer: TOML, JSON, or a text of lines; nothing of it is executed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import field
+from typing import Any
+
+from symobs._dataclass import dataclass
+from symobs.checking.answers.values import plain
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expression import declared_name
+from symobs.expression.source import shown
+from symobs.problem import parse
+
+MAX_BYTES, MAX_LINES = 64 * 1024, 200
+MAX_NAME = 200
+#: The keys of an answer file.
+KEYS = ("student", "convention", "symbols", "let", "answer", "step")
+_STEP = ("relation", "where", "let")
+#: What tells a file of tables from a text of lines.
+_TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
+_DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)[ \t]*=([^=<>!]*)")
+_RELATION = re.compile(r"[=<>]|!=")
+_MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
+
+
+@dataclass(frozen=True)
+class Step:
+    """One line of a derivation, its place, and what letters stand for in it."""
+
+    relation: str
+    where: str
+    let: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a student hands in.
+
+    values    by field, or by task a table by field; `loose` where some may be lines of a derivation only
+    symbols   letters of the student's own, which are real
+    """
+
+    student: str = ""
+    convention: str = ""
+    symbols: tuple[str, ...] = ()
+    let: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, Any] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
+    loose: bool = False
+
+
+def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer:
+    """Return the answer of a text, or of a mapping from fields to values; raises `ProblemErrors` with every error."""
+    if isinstance(given, Mapping):
+        tables = set(given) & {"answer", "step"}
+        return _of_tables(given if tables else {"answer": given})
+    if len(given.encode(errors="surrogatepass")) > MAX_BYTES:
+        message = f"the answer is larger than {MAX_BYTES // 1024} kB"
+        raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
+    text = given.removeprefix("\ufeff").translate(_MINUS)
+    if text.lstrip().startswith("{") or _TABLES.search(text):
+        return _of_tables(parse(text, where))
+    return _of_lines(text, where)
+
+
+def _of_lines(text: str, where: str) -> Answer:
+    """Return the answer of lines: the last `NAME = value` of a name is the answer, and every line is a step."""
+    lines = [(i, line.split("#")[0].strip()) for i, line in enumerate(text.splitlines(), start=1)]
+    kept = [(i, line) for i, line in lines if line]
+    if len(kept) > MAX_LINES:
+        message = f"{len(kept)} lines, more than {MAX_LINES}"
+        raise ProblemErrors((InputError(message, where=where, repair="hand in what leads to the answer"),))
+    values: dict[str, Any] = {}
+    steps: list[Step] = []
+    errors: list[SymobsError] = []
+    for number, line in kept:
+        place = f"line {number}"
+        defined = _DEFINITION.fullmatch(line)
+        if defined:
+            task, _, name = defined[1].rpartition(".")
+            (values.setdefault(task, {}) if task else values)[name] = defined[2].strip()
+        if not _RELATION.search(line):
+            message = f'"{shown(line, 60)}" is no relation'
+            errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
+        elif not defined or "." not in defined[1]:
+            steps.append(Step(line, place))
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return Answer(values=values, steps=tuple(steps), loose=True)
+
+
+def _of_tables(data: Mapping[str, Any]) -> Answer:
+    """Return the answer of the tables of a file."""
+    errors: list[SymobsError] = []
+
+    def note(message: str, where: str, repair: str) -> None:
+        errors.append(InputError(message, where=where, repair=repair))
+
+    def table(source: Mapping[str, Any], name: str, where: str) -> Mapping[str, Any]:
+        value = source.get(name, {})
+        if isinstance(value, Mapping):
+            return value
+        note("a table is expected", where, f"write [{name}] and its keys below")
+        return {}
+
+    def text(source: Mapping[str, Any], name: str, where: str, most: int = MAX_NAME) -> str:
+        value = source.get(name, "")
+        if isinstance(value, str) and len(value) <= most:
+            return value.translate(_MINUS)
+        note(f"a text of at most {most} characters is expected", where, "write it in quotes")
+        return ""
+
+    def letters(source: Mapping[str, Any], where: str) -> dict[str, str]:
+        found = table(source, "let", where)
+        for name, meaning in found.items():
+            if not isinstance(meaning, str):
+                note("a text is expected", f"{where}.{shown(name, 40)}", 'write let = { M = "[m1; m2]" }')
+        return {name: str(meaning).translate(_MINUS) for name, meaning in found.items()}
+
+    for key in data:
+        if key not in KEYS:
+            note("unknown key", shown(str(key), 40), f"known keys are {', '.join(KEYS)}; answers belong to [answer]")
+    symbols = data.get("symbols", [])
+    if not isinstance(symbols, list) or not all(isinstance(name, str) for name in symbols):
+        note("a list of names is expected", "symbols", 'write symbols = ["m1", "m2"]')
+        symbols = []
+    for i, name in enumerate(symbols):
+        try:
+            declared_name(name, f"symbols[{i}]")
+        except SymobsError as error:
+            errors.append(error)
+    steps = data.get("step", [])
+    if not isinstance(steps, list) or len(steps) > MAX_LINES:
+        note(f"a list of at most {MAX_LINES} steps is expected", "step", "write [[step]], one a line")
+        steps = []
+    read: list[Step] = []
+    for i, step in enumerate(steps, start=1):
+        place = f"step[{i - 1}]"
+        if not isinstance(step, Mapping) or not set(step) <= set(_STEP) or not isinstance(step.get("relation"), str):
+            note("a table with relation is expected", place, f"known keys are {', '.join(_STEP)}")
+            continue
+        said = text(step, "where", f"{place}.where") or f"line {i}"
+        relation = text(step, "relation", f"{place}.relation", MAX_BYTES)
+        read.append(Step(relation, said, letters(step, f"{place}.let")))
+    student, convention = text(data, "student", "student"), text(data, "convention", "convention")
+    values = {str(key): plain(value) for key, value in table(data, "answer", "answer").items()}
+    let = letters(data, "let")
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return Answer(student, convention, tuple(symbols), let, values, tuple(read))

@@ -1,0 +1,88 @@
+"""The values of an answer: texts, lists and numbers, always exact."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from symobs.exact import Factored, Matrix, Scalar
+from symobs.expect.structure import factored_table
+from symobs.expression import parse_matrix, parse_scalar
+
+#: A decimal number, not a part of a name or of a longer number.
+_DECIMAL = re.compile(
+    r"(?<![A-Za-z0-9_.])(?:(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|[0-9]+[eE][+-]?[0-9]{1,3})(?![A-Za-z0-9_.])"
+)
+#: A decimal comma stands between two digits, with no space around it, outside brackets of rows.
+_COMMA = re.compile(r"(?<![0-9.])[0-9]+,[0-9]+(?![0-9.,])")
+_MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
+
+
+def plain(value: Any) -> Any:
+    """Return a value as texts, integers and lists of them: arrays and SymPy objects are written out.
+
+    A float stays one, so that whoever reads it refuses it and says what to write.
+    """
+    if isinstance(value, str):
+        return value.translate(_MINUS)
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    if hasattr(value, "free_symbols"):
+        return str(value)
+    return value
+
+
+def has_decimals(value: Any) -> bool:
+    """Return whether a decimal stands in a value."""
+    if isinstance(value, Mapping):
+        return any(map(has_decimals, value.values()))
+    if isinstance(value, list):
+        return any(map(has_decimals, value))
+    return isinstance(value, str) and _DECIMAL.search(value) is not None
+
+
+def decimal_comma(value: Any) -> str:
+    """Return the number with a decimal comma in a text, empty where there is none."""
+    found = _COMMA.search(value) if isinstance(value, str) and "[" not in value else None
+    return found[0] if found else ""
+
+
+def exact(value: Any) -> Any:
+    """Return the same value with every decimal as the fraction that it is: 0.333 is 333/1000."""
+    if isinstance(value, Mapping):
+        return {key: exact(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [exact(entry) for entry in value]
+    return _DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
+
+
+def text_of(value: Any) -> str:
+    """Return a value as a student may have written it."""
+    if isinstance(value, list):
+        rows = [" ".join(map(text_of, row)) if isinstance(row, list) else text_of(row) for row in value]
+        return f"[{('; ' if any(isinstance(row, list) for row in value) else ', ').join(rows)}]"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {text_of(entry)}" for key, entry in value.items()) + "}"
+    return str(value)
+
+
+def read_like(found: Any, value: Any, names: Any, variable: str, where: str) -> Matrix | Scalar | None:
+    """Return the value of an answer as a matrix or a number, as the right one is; None where that is neither.
+
+    Raises what reading it raises.
+    """
+    table = factored_table(found)
+    right = found.value if isinstance(found, Factored) else table if table is not None else found
+    if isinstance(right, int) and not isinstance(right, bool):
+        right = Scalar.of(right)
+    if not isinstance(right, (Matrix, Scalar)):
+        return None
+    free = None if names is not None and variable in names else variable
+    read = parse_matrix if isinstance(right, Matrix) else parse_scalar
+    return read(exact(value), names, variable=free, where=where, functions=True)

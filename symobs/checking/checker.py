@@ -1,0 +1,236 @@
+"""The check of an answer: read, judged by the claims of the results, marked, and bounded by what may be shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symobs.checking.answers.answer_file import Answer, read_answer
+from symobs.checking.answers.values import plain
+from symobs.checking.derivations.lines import judge_lines
+from symobs.checking.judgement.judge import judge_task
+from symobs.checking.judgement.parts import asked_of, exists
+from symobs.checking.marks import missing, part_of
+from symobs.checking.report.data import SHOW, Part
+from symobs.checking.report.report import CheckReport
+from symobs.convention import Convention, convention_named
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
+from symobs.expect import available
+from symobs.expression.source import shown
+from symobs.problem import MAX_BYTES, Problem, read
+from symobs.result import Result
+from symobs.result.in_convention import Viewed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.checking.judgement.judge import TaskJudgement
+
+
+def check(
+    problem: str | Path | Problem | Result | Sequence[Result],
+    answer: object,
+    *,
+    show: str = "reason",
+    convention: str | None = None,
+) -> CheckReport:
+    """Check an answer: each part is right if and only if its claim holds, det(sI − A + LC) = φ(s) for a gain L.
+
+    problem      a problem file (its path or its text), a result, or a list of results
+    answer       an answer file (its path or its text), a mapping from fields to values, or one value where one is asked for
+    show         what the report gives away: verdict, place, reason or solution
+    convention   the letters the answer is written in; the problem's where nothing is said
+    Returns a `CheckReport`.  Raises `ProblemErrors` where the problem or the answer as a whole cannot be read, and
+    `InexactInput` for floats.
+    """
+    if show not in SHOW:
+        raise UsageError(f"{shown(show, 40)!r} is nothing to show", where="show", repair=f"write {', '.join(SHOW)}")
+    return Checked.of(problem).report(answer, show, convention)
+
+
+class Checked:
+    """A solved problem that answers are held against."""
+
+    def __init__(self, problem: Problem, results: tuple[Result, ...]) -> None:
+        self.problem = problem
+        self.results = results
+
+    @staticmethod
+    def of(problem: str | Path | Problem | Result | Sequence[Result]) -> Checked:
+        """Return a problem with its results; raises `ProblemErrors` where it cannot be read or solved."""
+        if isinstance(problem, Result):
+            problem = (problem,)
+        if isinstance(problem, (list, tuple)):
+            results = tuple(problem)
+            return Checked(Problem("", "", (), (), results[0].plant, {}), results)
+        if isinstance(problem, (str, Path)):
+            text, folder = _text_of(problem)
+            problem = read(text, "problem" if folder is None else str(problem), folder)
+        assert isinstance(problem, Problem)  # noqa: S101 - nothing else is left
+        return Checked(problem, problem.solve())
+
+    def views(self, convention: Convention | None = None) -> list[Viewed]:
+        """Return the results as a convention writes them."""
+        return [Viewed(result, convention or self.problem.convention) for result in self.results]
+
+    def asked(self, views: Sequence[Viewed]) -> list[tuple[Viewed, str]]:
+        """Return the parts that count: each with its result, named in the standard convention."""
+        wanted = self.problem.marking.asked
+        if not wanted:
+            return [(view, name) for view in views for name in asked_of(view.result)]
+        found: list[tuple[Viewed, str]] = []
+        errors: list[SymobsError] = []
+        for i, part in enumerate(wanted):
+            task, _, letter = part.partition(".")
+            view = next((view for view in views if view.task == task), None)
+            name = view.standard(letter)[0] if view is not None else letter
+            if view is None or not exists(view.result, name):
+                known = ", ".join(f"{each.task}.{field}" for each in views for field in available(each))
+                errors.append(InputError(f"there is no {part}", where=f"marking.asked[{i}]", repair=f"known: {known}"))
+            else:
+                found.append((view, name))
+        if errors:
+            raise ProblemErrors(tuple(errors))
+        return found
+
+    def report(
+        self, answer: object, show: str = "reason", convention: str | None = None, variant: str | None = None
+    ) -> CheckReport:
+        """Return the report on an answer."""
+        handed_in = self._answer(answer)
+        name = convention or handed_in.convention
+        chosen = convention_named(name) if name else self.problem.convention
+        views = self.views(chosen)
+        given = _given(handed_in, views)
+        judged = {
+            view.task: judge_task(view, given[view.task], handed_in.symbols, self.problem.marking) for view in views
+        }
+        parts = self._parts(views, judged)
+        lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
+        report = CheckReport(
+            self.problem.title,
+            handed_in.student,
+            variant,
+            chosen.name,
+            show,
+            parts,
+            lines,
+            milestones,
+            self.problem.marking.total,
+            tuple(claim for each in judged.values() for part in each.parts for claim in part.claims),
+        )
+        if report.verdict == "right" and report.first_false is not None:
+            hint = f"{report.first_false} does not lead to your (right) result"
+            report = replace(report, hints=(hint,))
+        if show == "solution":
+            report = replace(report, page=self.solution(chosen))
+        return report.bounded(show)
+
+    def without_answer(
+        self, student: str, variant: str | None, verdict: str, reason: str, show: str = "reason"
+    ) -> CheckReport:
+        """Return the report on an answer that as a whole cannot be read (`unreadable`), or checked (`undecided`)."""
+        credit = None if verdict == "undecided" else Fraction(0)
+        marking, title = self.problem.marking, self.problem.title
+        parts = tuple(
+            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=credit)
+            for view, name in self.asked(self.views())
+        )
+        points = tuple((each.relation, each.points, False) for each in marking.milestones)
+        name = self.problem.convention.name
+        report = CheckReport(title, student, variant, name, show, parts, (), points, marking.total)
+        return report.bounded(show)
+
+    def report_of_text(self, text: str, where: str, show: str, convention: str | None = None) -> CheckReport:
+        """Return the report on the text of an answer file; its errors name the file."""
+        return self.report(read_answer(text, where), show, convention)
+
+    def solution(self, convention: Convention) -> str:
+        """Return the derivation of the solution as HTML."""
+        from symobs.result import render  # noqa: PLC0415 - only where the solution is shown
+
+        return str(render(self.problem.document(self.results, convention), "html_fragment"))
+
+    def _answer(self, answer: object) -> Answer:
+        """Return what was handed in: read, or the one value that is asked for."""
+        if isinstance(answer, Answer):
+            return answer
+        if isinstance(answer, Path) or (isinstance(answer, str) and not _is_text(answer)):
+            return read_answer(_text_of(answer, limit=MAX_BYTES)[0], "answer")
+        if isinstance(answer, (str, Mapping)):
+            return read_answer(answer)
+        views = self.views()
+        asked = self.asked(views)
+        if len(asked) != 1:
+            parts = ", ".join(f"{view.task}.{name}" for view, name in asked)
+            message = f"one value came, but {len(asked)} parts are asked for"
+            raise InputError(message, where="answer", repair=f"give a mapping with {parts}")
+        view, name = asked[0]
+        return Answer(values={view.task: {name: plain(answer)}})
+
+    def _parts(self, views: Sequence[Viewed], judged: Mapping[str, TaskJudgement]) -> tuple[Part, ...]:
+        """Return the parts that are asked for, and behind them what else was given."""
+        marking = self.problem.marking
+        asked = self.asked(views)
+        parts: list[Part] = []
+        for view, name in asked:
+            part = next((part for part in judged[view.task].parts if part.name == name), None)
+            counted = (
+                part_of(view, judged[view.task], part, marking, counts=True) if part else missing(view, name, marking)
+            )
+            parts.append(counted)
+        counted_names = {part.part for part in parts}
+        for view in views:
+            others = [part for part in judged[view.task].parts if f"{view.task}.{part.name}" not in counted_names]
+            parts += [part_of(view, judged[view.task], part, marking, counts=False) for part in others]
+        return tuple(parts)
+
+
+def _given(answer: Answer, views: Sequence[Viewed]) -> dict[str, dict[str, Any]]:
+    """Return what is given for each task; raises `ProblemErrors` for what no task has."""
+    found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
+    errors: list[SymobsError] = []
+    tasks = set(found)
+    for key, value in answer.values.items():
+        if key in tasks and isinstance(value, Mapping):
+            view = next(view for view in views if view.task == key)
+            for name, entry in value.items():
+                if name in available(view):
+                    found[key][name] = entry
+                else:
+                    errors.append(_unknown(f"{key}.{name}", [view]))
+            continue
+        having = [view for view in views if key in available(view)]
+        for view in having:
+            if key not in found[view.task]:
+                found[view.task][key] = value
+        if not having and not answer.loose:
+            errors.append(_unknown(key, views))
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return found
+
+
+def _unknown(name: str, views: Sequence[Viewed]) -> InputError:
+    known = ", ".join(dict.fromkeys(field for view in views for field in available(view)))
+    return InputError("no task here has such a field", where=f"answer.{shown(name, 60)}", repair=f"known: {known}")
+
+
+def _is_text(given: str) -> bool:
+    return "\n" in given or "=" in given or given.lstrip().startswith("{") or not given.strip()
+
+
+def _text_of(given: str | Path, limit: int = MAX_BYTES) -> tuple[str, Path | None]:
+    """Return the text of a path, with its folder, or a text itself."""
+    if isinstance(given, str) and _is_text(given):
+        return given, None
+    path = Path(given)
+    try:
+        with path.open("rb") as stream:
+            return stream.read(limit + 1).decode("utf-8-sig"), path.parent
+    except (OSError, ValueError) as error:
+        repair = "give the path of a file, or its text"
+        raise InputError(reason_of(error), where=shown(str(given), 200), repair=repair) from None

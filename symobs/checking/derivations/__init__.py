@@ -1,0 +1,1 @@
+"""The lines of a derivation: the first false one, and what follows from it."""

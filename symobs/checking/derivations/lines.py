@@ -1,0 +1,212 @@
+"""The lines of a derivation: true with the right values, following from earlier wrong ones, or false.
+
+A line that defines a letter binds it for the lines behind it.  A gain that meets its claim takes the place of the right one; a
+wrong value is what later lines may follow from.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import field
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.audit.printed_entries import printed_entries
+from symobs.audit.slips import SearchBudget
+from symobs.certificate.claims import UNREADABLE
+from symobs.checking.derivations.line_auditor import LineAuditor, auditor
+from symobs.checking.judgement.conditions import read_conditions
+from symobs.checking.judgement.gains import from_gains, with_gain
+from symobs.checking.judgement.parts import GAINS
+from symobs.checking.judgement.regions import compare
+from symobs.checking.report.data import Line
+from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, SymobsError
+from symobs.exact import Matrix, Scalar, TooLarge
+from symobs.expect import names_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from fractions import Fraction
+
+    from symobs.audit.printed_entries import PrintedEntry
+    from symobs.checking.answers.answer_file import Answer, Step
+    from symobs.checking.judgement.judge import TaskJudgement
+    from symobs.problem import Problem
+    from symobs.problem.marking import Milestone
+    from symobs.result import Result
+    from symobs.result.in_convention import Viewed
+
+#: What a line may raise that is too large to be decided, or that the correction of a false one could not confirm.
+_OPEN = (NotShown, TooLarge, BudgetExceeded)
+_ORDER = re.compile(r"[<>]")
+
+
+@dataclass()
+class _Derivation:
+    """What the lines so far have defined: right gains, and the values of letters that are not right."""
+
+    problem: Problem
+    views: Sequence[Viewed]
+    symbols: Mapping[str, Scalar]
+    right: dict[str, Result]
+    budget: SearchBudget = field(default_factory=SearchBudget)
+    bound: dict[str, tuple[Any, str]] = field(default_factory=dict)
+    rightly: set[str] = field(default_factory=set)
+
+    def auditor_of_right(self) -> LineAuditor:
+        """Return the auditor with the right values."""
+        return auditor(self.problem, list(self.right.values()), self.views[0].convention, self.budget, self.symbols)
+
+    def auditor_of_own(self) -> LineAuditor:
+        """Return the auditor with the student's values of letters, and with what follows from the student's gains."""
+        results = []
+        for view in self.views:
+            result = self.right[view.task]
+            gains = {
+                view.standard(letter)[0]: -value if view.standard(letter)[1] < 0 else value
+                for letter, (value, _) in self.bound.items()
+                if view.standard(letter)[0] in GAINS.get(view.task, ()) and isinstance(value, Matrix)
+            }
+            try:
+                results.append(from_gains(result, gains) if gains else result)
+            except (SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
+                results.append(result)
+        own = {letter: value for letter, (value, _) in self.bound.items()}
+        return auditor(self.problem, results, self.views[0].convention, self.budget, {**self.symbols, **own})
+
+    def origins(self, letters: set[str]) -> tuple[str, ...]:
+        """Return the lines that bound the letters of a line, or those that bound gains."""
+        named = [where for letter, (_, where) in self.bound.items() if letter in letters]
+        return tuple(dict.fromkeys(named or [where for _, where in self.bound.values()]))
+
+    def takes(self, letter: str, value: Any) -> bool:
+        """Return whether a value of a gain meets its claim; then it takes the place of the right one."""
+        for view in self.views:
+            name, sign = view.standard(letter)
+            right = self.right[view.task]
+            if name not in GAINS.get(view.task, ()) or not isinstance(value, Matrix):
+                continue
+            known = right.fields.get(name)
+            if not isinstance(known, Matrix) or known.shape != value.shape:
+                continue
+            try:
+                self.right[view.task] = with_gain(right, name, -value if sign < 0 else value)
+            except CertificateRejected:
+                continue
+            return True
+        return False
+
+
+def judge_lines(
+    problem: Problem,
+    views: Sequence[Viewed],
+    judged: Mapping[str, TaskJudgement],
+    answer: Answer,
+    milestones: Sequence[Milestone],
+) -> tuple[tuple[Line, ...], tuple[tuple[str, Fraction, bool], ...]]:
+    """Return the lines of an answer with their verdicts, and the milestones with whether they are met."""
+    symbols = {name: Scalar.symbol(name) for name in answer.symbols}
+    state = _Derivation(problem, views, symbols, {task: each.right for task, each in judged.items()})
+    if not answer.loose:
+        for each in judged.values():
+            for part in each.parts:
+                if part.verdict == "wrong" and part.name in GAINS.get(each.right.task, ()) and part.value is not None:
+                    view = next(view for view in views if view.task == each.right.task)
+                    value = -part.value if view.standard(part.letter)[1] < 0 else part.value
+                    state.bound[part.letter] = (value, "the answer")
+    lines = tuple(_judged(state, step, answer) for step in answer.steps)
+    right = {part.letter for each in judged.values() for part in each.parts if part.verdict == "right"}
+    met = tuple((each.relation, each.points, _is_met(each, lines, right | state.rightly)) for each in milestones)
+    return lines, met
+
+
+def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
+    """Return a line with its verdict."""
+    if _ORDER.search(step.relation) and " where " not in step.relation:
+        return _of_conditions(state, step)
+    try:
+        entry = _entry(state, step, answer)
+        right = state.auditor_of_right()
+        true = right.is_true(entry)
+        defined = right.defined(entry)
+        if defined is not None and not true and state.takes(*defined):
+            true = True
+        if true:
+            if defined is not None:
+                state.bound.pop(defined[0], None)
+                state.rightly.add(defined[0])
+            return Line(step.where, step.relation, "true")
+        return _not_true(state, step, entry, right, defined)
+    except _OPEN as error:
+        return Line(step.where, step.relation, "undecided", reason=str(error))
+    except SymobsError as error:
+        error.where = ""
+        return Line(step.where, step.relation, "unreadable", reason=str(error))
+    except UNREADABLE:
+        return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
+
+
+def _not_true(
+    state: _Derivation, step: Step, entry: PrintedEntry, right: LineAuditor, defined: tuple[str, Any] | None
+) -> Line:
+    """Return a line that is not true: it follows from earlier lines that are wrong, or is false itself."""
+    desk = right
+    if state.bound:
+        own = state.auditor_of_own()
+        if defined is not None:  # a letter that was bound before is bound anew, by what it follows from
+            before = state.bound.pop(defined[0], None)
+            own = state.auditor_of_own() if state.bound else right
+            if before is not None and not state.bound:
+                state.bound[defined[0]] = before
+        if state.bound and own.is_true(entry):
+            origins = state.origins(own.letters(entry) - ({defined[0]} if defined else set()))
+            if defined is not None:
+                state.bound[defined[0]] = (defined[1], step.where)
+            return Line(step.where, step.relation, "follows", origins)
+        desk = own
+    try:
+        corrected, reason = desk.explained(entry)
+    except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
+        corrected, reason = "", ""
+    if defined is not None:
+        state.bound[defined[0]] = (defined[1], step.where)
+    return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)
+
+
+def _entry(state: _Derivation, step: Step, answer: Answer) -> PrintedEntry:
+    """Return a line as the audit reads it; raises `ProblemErrors` where it cannot."""
+    table: dict[str, Any] = {"relation": step.relation, "let": {**answer.let, **step.let}}
+    (entry,) = printed_entries([table], state.views[0].convention, state.problem.plant.symbols.signs)
+    return entry
+
+
+def _of_conditions(state: _Derivation, step: Step) -> Line:
+    """Return a line of conditions: true where the region implies them."""
+    view = next((view for view in state.views if view.task == "stability_region"), None)
+    if view is None:
+        return Line(step.where, step.relation, "unreadable", reason="no region is asked for here")
+    names = names_of(view)
+    known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
+    try:
+        union = read_conditions(step.relation, known, step.where)
+        ours = read_conditions(list(view.result.fields["stable_if"]), known)
+        both = tuple((*mine, *theirs) for mine in ours for theirs in union)
+        found = compare(view.result, both)  # type: ignore[arg-type]
+    except _OPEN as error:
+        return Line(step.where, step.relation, "undecided", reason=str(error))
+    except SymobsError as error:
+        error.where = ""
+        return Line(step.where, step.relation, "unreadable", reason=str(error))
+    verdict = {"right": "true", "undecided": "undecided"}.get(found.verdict, "false")
+    return Line(step.where, step.relation, verdict)
+
+
+def _is_met(milestone: Milestone, lines: Sequence[Line], right: set[str]) -> bool:
+    """Return whether a milestone is among the true lines, or defines a letter that was rightly defined."""
+    sides = _sides(milestone.relation)
+    letter = milestone.relation.split("=")[0].strip()
+    return letter in right or any(line.verdict == "true" and _sides(line.relation) == sides for line in lines)
+
+
+def _sides(relation: str) -> frozenset[str]:
+    return frozenset(re.sub(r"\s+", "", side) for side in relation.split("="))

@@ -1,0 +1,179 @@
+"""Answers that are right in many coordinates: canonical forms, decompositions, observers of reduced order.
+
+For the coordinates that the student took a result of the task's own type is made; what it claims decides, and the other
+values of the student are compared with those that it has there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from symobs.analysis.realization.canonical_form import CanonicalForm
+from symobs.analysis.realization.kalman_decomposition import Decomposition
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.errors import CertificateRejected
+from symobs.exact import Matrix, Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.result import Result
+
+#: A result in the coordinates of an answer, and what is said of them.
+Found = tuple["Result", str]
+
+
+def in_coordinates(result: Result, given: Mapping[str, Matrix]) -> Iterator[Found]:
+    """Yield results of the same task in coordinates that may be those of the given matrices, the likeliest first."""
+    if isinstance(result, ReducedOrderObserver):
+        yield from _reduced(result, given)
+    elif isinstance(result, CanonicalForm):
+        yield from _canonical(result, given)
+    elif isinstance(result, Decomposition) and (T := given.get("T")) is not None:
+        for matrix, said in _both_directions(T, result.plant.order):
+            try:
+                yield replace(result, answer={**result.answer, **_moved(result, matrix)}), said
+            except CertificateRejected:
+                continue
+
+
+def _both_directions(T: Matrix, order: int) -> Iterator[tuple[Matrix, str]]:
+    """Yield T, and T⁻¹ with what is to be said of it, where T is regular."""
+    if T.shape == (order, order) and not T.determinant().is_zero:
+        yield T, ""
+        yield T.inverse().normal(), "you gave T^-1: here the new state is T x"
+
+
+def _moved(result: Result, T: Matrix) -> dict[str, Any]:
+    """Return the plant in the coordinates T x."""
+    m, S = result.plant.matrices, T.inverse().normal()
+    found: dict[str, Any] = {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
+    found |= {"B": (T @ m.B).normal()} if m.has_input else {}
+    return found | ({"C": (m.C @ S).normal()} if m.has_output else {})
+
+
+# -- canonical forms --------------------------------------------------------------------------------------------------
+
+
+def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[Found]:
+    """Yield the form in the four layouts in use; the modal form in the order and scaling of the given T."""
+    if result.kind == "modal":
+        for T, said in _both_directions(given["T"], result.plant.order) if "T" in given else ():
+            moved = _moved(result, T)
+            if _same_blocks(moved["A"], result.answer["A"]):
+                yield _Other(result, moved), said  # type: ignore[misc]
+        return
+    for turn, layout in _layouts(result):
+        T = (turn @ result.answer["T"]).normal()
+        moved = _moved(result, T)
+        yield _Other(result, moved), layout  # type: ignore[misc]
+        if "T" in given and given["T"] == T.inverse():
+            inverse = f"{layout}; " if layout else ""
+            yield _Other(result, {**moved, "T": given["T"]}), f"{inverse}you gave T^-1: here the new state is T x"  # type: ignore[misc]
+
+
+class _Other:
+    """A form in another layout or scaling: the fields of a result, with those of its coordinates in place of its own."""
+
+    def __init__(self, result: CanonicalForm, moved: Mapping[str, Any]) -> None:
+        self.result = result
+        self.fields = {**result.fields, **moved}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.result, name)
+
+
+def _layouts(result: CanonicalForm) -> Iterator[tuple[Matrix, str]]:
+    """Yield the changes of coordinates to the layouts in use: χ in the last or first row, or in the last or first column."""
+    n, A = result.plant.order, result.answer["A"]
+    reverse = Matrix.of([[int(i + j == n - 1) for j in range(n)] for i in range(n)])
+    one = Matrix.identity(n)
+    if result.kind == "controllable":
+        columns = [result.answer["B"]]
+        while len(columns) < n:
+            columns.append((A @ columns[-1]).normal())
+        other, names = Matrix.block([columns]).inverse().normal(), ("row", "column")
+    else:
+        rows = [result.answer["C"]]
+        while len(rows) < n:
+            rows.append((rows[-1] @ A).normal())
+        other, names = Matrix.block([[row] for row in rows]), ("column", "row")
+    yield one, ""
+    yield reverse, f"the coefficients stand in the first {names[0]} here"
+    yield other, f"the coefficients stand in the last {names[1]} here"
+    yield reverse @ other, f"the coefficients stand in the first {names[1]} here"
+
+
+def _same_blocks(found: Matrix, right: Matrix) -> bool:
+    """Return whether a matrix consists of the same diagonal blocks in some order; blocks of order 2 may be transposed."""
+    mine, theirs = _blocks(found), _blocks(right)
+    for block in mine:
+        match = next((other for other in theirs if other in {block, block.T} and block.shape[0] < 3), None)
+        match = block if match is None and block in theirs else match
+        if match is None:
+            return False
+        theirs.remove(match)
+    return not theirs
+
+
+def _blocks(matrix: Matrix) -> list[Matrix]:
+    """Return the diagonal blocks of a matrix, as fine as neighbours allow."""
+    n, found, start = matrix.shape[0], [], 0
+    for end in range(1, n + 1):
+        inside, outside = range(start, end), range(end, n)
+        apart = matrix.select(inside, outside).is_zero and matrix.select(outside, inside).is_zero if end < n else True
+        if apart:
+            found.append(matrix.select(inside, inside))
+            start = end
+    return found
+
+
+# -- observers of reduced order ---------------------------------------------------------------------------------------
+
+
+def _reduced(result: ReducedOrderObserver, given: Mapping[str, Matrix]) -> Iterator[Found]:
+    """Yield the observer whose state is the estimate of P x; P are the lower rows of M⁻¹, or solve P A − F P = H C."""
+    plant, n, p = result.plant, result.plant.order, result.plant.outputs
+    M = given.get("M")
+    if M is not None and M.shape == (n, n) and not M.determinant().is_zero:
+        P = M.inverse().normal().select(range(p, n), range(n))
+    elif {"F", "H"} <= given.keys():
+        solved = _estimated(result, given["F"], given["H"])
+        if solved is None:
+            return
+        P = solved
+    else:
+        return
+    T = Matrix.block([[plant.matrices.C], [P]])
+    if T.determinant().is_zero:
+        return
+    try:
+        there = ReducedOrderObserver.of(plant, result.desired, T, result.method)
+        inner = there.inner.with_answer("L", Matrix.zeros(n - p, p))
+        yield type(result).assembled(plant, inner, result.desired, T, result.method), ""
+    except CertificateRejected:
+        return
+
+
+def _estimated(result: ReducedOrderObserver, F: Matrix, H: Matrix) -> Matrix | None:
+    """Return P of P A − F P = H C, None where the sizes do not fit or it is not the only one."""
+    A, C = result.plant.matrices.A, result.plant.matrices.C
+    n, r = A.shape[0], A.shape[0] - C.shape[0]
+    if F.shape != (r, r) or H.shape != (r, C.shape[0]):
+        return None
+    right = H @ C
+    rows = []
+    for i in range(r):
+        for j in range(n):
+            row = [Scalar.of(0)] * (r * n)
+            for k in range(n):
+                row[i * n + k] = row[i * n + k] + A[k, j]
+            for k in range(r):
+                row[k * n + j] = row[k * n + j] - F[i, k]
+            rows.append(row)
+    system = Matrix.of(rows)
+    if system.determinant().is_zero:
+        return None
+    found = system.solve(Matrix.column([right[i, j] for i in range(r) for j in range(n)]))
+    return Matrix.of([[found[i * n + j, 0] for j in range(n)] for i in range(r)])

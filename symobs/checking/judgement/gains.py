@@ -1,0 +1,78 @@
+"""Results with other gains: those of a student, right or wrong.
+
+A gain that meets its claim replaces that of the result.  From any other the rest follows as well: a design with a given
+gain claims no poles, so that F of a compensator, a closed loop or an observer follows from what the student computed before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.full_order.observer import ObserverDesign
+from symobs.design.gain.gain_design import GainDesign
+from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.design.reference.feedforward import FeedforwardDesign, response
+from symobs.design.reference.tracking import TrackingDesign
+from symobs.specification import DesiredPolynomial
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Matrix
+    from symobs.result import Result
+
+
+def with_gain(result: Result, name: str, gain: Matrix) -> Result:
+    """Return the result with another gain; raises `CertificateRejected` where its claim does not hold."""
+    if isinstance(result, (FeedforwardDesign, TrackingDesign)):
+        return _remade(result, result.loop.with_answer(name, gain))
+    return result.with_answer(name, gain)
+
+
+def with_claimed(result: Result, name: str, value: Matrix) -> Result:
+    """Return the result with another K_d or feedforward F; raises `CertificateRejected` where its claim does not hold."""
+    if not isinstance(result, FeedforwardDesign):
+        return result.with_answer(name, value)
+    response_to = response(result.loop, value).function(result.plant.variable)
+    single = value.shape == (1, 1)
+    answer = {"F": value[0, 0] if single else value, "transfer_function": response_to[0, 0] if single else response_to}
+    return replace(result, answer={**result.answer, **answer})
+
+
+def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
+    """Return the result that follows from given gains, wherever they place the poles."""
+    if isinstance(result, (FeedforwardDesign, TrackingDesign)):
+        loop = from_gains(result.loop, gains)
+        assert isinstance(loop, OutputFeedback)  # noqa: S101 - of the same type as before
+        return _remade(result, loop)
+    if isinstance(result, OutputFeedback):
+        feedback, estimator = (from_gains(half, gains) for half in (result.feedback, result.estimator))
+        return type(result).of(feedback, estimator, result.method)  # type: ignore[arg-type]
+    if isinstance(result, ReducedOrderObserver):
+        if "L" not in gains:
+            return result
+        inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
+        placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
+        return type(result).assembled(result.plant, inner, placed, result.answer["T"], result.method)
+    assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
+    return type(result).of_given(result.plant, gains[result.letter]) if result.letter in gains else result
+
+
+def design_with(result: Result, name: str) -> GainDesign:
+    """Return the design that owns the claim of a gain of a result."""
+    if isinstance(result, (FeedforwardDesign, TrackingDesign)):
+        return design_with(result.loop, name)
+    if isinstance(result, OutputFeedback):
+        return design_with(result.feedback if name == "K" else result.estimator, name)
+    if isinstance(result, ReducedOrderObserver):
+        return result.inner
+    assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
+    return result
+
+
+def _remade(result: FeedforwardDesign | TrackingDesign, loop: OutputFeedback) -> Result:
+    if isinstance(result, TrackingDesign):
+        return type(result).of(loop, result.reference, result.start, result.method)
+    return type(result).of(loop, result.method)

@@ -1,0 +1,70 @@
+"""The parts of an answer: what each task asks for, and which fields are inputs of others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from symobs.result import Result
+
+#: The fields that a task asks for where the file says nothing.
+ASKED: dict[str, tuple[str, ...]] = {
+    "canonical_form": ("T", "A", "B", "C"),
+    "characteristic_polynomial": ("polynomial",),
+    "compensator": ("K", "L", "F"),
+    "controllability": ("rank",),
+    "decomposition": ("T", "sizes"),
+    "detectability": ("verdict",),
+    "dual": ("A", "B", "C"),
+    "feedforward": ("F",),
+    "gramian": ("matrix",),
+    "initial_state": ("x0",),
+    "initial_state_covariance": ("covariance",),
+    "matrix_exponential": ("matrix",),
+    "observability": ("rank",),
+    "observer": ("L",),
+    "pbh": ("verdict",),
+    "pole_advice": ("poles",),
+    "reduced_order_observer": ("F", "G", "H", "M"),
+    "stability_region": ("stable_if",),
+    "stabilizability": ("verdict",),
+    "state_feedback": ("K",),
+    "time_varying_observability": ("verdict",),
+    "tracking": ("K_d",),
+    "transfer_function": ("transfer_function",),
+}
+#: The gains of a task.  Each is right where its claim holds, and the other fields follow from them.
+GAINS: dict[str, tuple[str, ...]] = {
+    "compensator": ("K", "L"),
+    "feedforward": ("K", "L"),
+    "observer": ("L",),
+    "reduced_order_observer": ("L",),
+    "state_feedback": ("K",),
+    "tracking": ("K", "L"),
+}
+#: Fields besides gains that many values meet: their claim decides, given the gains.
+CLAIMED = {("tracking", "K_d"), ("feedforward", "F")}
+#: Tasks whose fields are right in many coordinates, and these fields.
+IN_COORDINATES: dict[str, tuple[str, ...]] = {
+    "canonical_form": ("T", "A", "B", "C"),
+    "decomposition": ("T", "A", "B", "C", "sizes"),
+    "reduced_order_observer": ("F", "G", "H", "M"),
+}
+#: The order in which parts are judged where one follows from the other.
+_FIRST = ("K", "L", "T")
+
+
+def asked_of(result: Result) -> tuple[str, ...]:
+    """Return the fields that a task asks for; the verdict where there is nothing else to be found."""
+    there = tuple(name for name in ASKED.get(result.task, ("verdict",)) if exists(result, name))
+    return there or ("verdict",)
+
+
+def exists(result: Result, name: str) -> bool:
+    """Return whether a field has a value, or is the verdict."""
+    return name in {"verdict", "conditions"} or result.fields.get(name) is not None
+
+
+def in_order(names: list[str]) -> list[str]:
+    """Return fields so that each stands behind those that it may follow from."""
+    return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))

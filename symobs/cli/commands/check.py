@@ -1,0 +1,133 @@
+"""The command `check`: one answer, or those of a class, against a problem."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from symobs.checking import SHOW, Checked
+from symobs.checking.asked import answer_file
+from symobs.cli.shared.common import place_of, read_file, run_work, write_message
+from symobs.cli.shared.options import LIMITS, options, quoted
+from symobs.cli.shared.outcome import Outcome, convention_of
+from symobs.cli.shared.output import check_target, make_folder, write_all
+from symobs.errors import UsageError
+from symobs.problem import read
+
+if TYPE_CHECKING:
+    from symobs.checking import CheckReport
+    from symobs.cli.shared.time_and_memory import Progress
+
+FORMATS = ("text", "markdown", "html", "json")
+
+
+@click.command("check")
+@click.argument("problem")
+@click.argument("answer", required=False)
+@click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown, html or json.")
+@click.option(
+    "--show",
+    default="reason",
+    metavar="LEVEL",
+    help="What is given away: verdict, place, reason (default) or solution.",
+)
+@click.option("-o", "target", metavar="PATH", help="Write to PATH; for a class the folder of the results.")
+@click.option("--asked", is_flag=True, help="Print an empty answer file: what an answer may hold.")
+@click.option("--submissions", metavar="PATH", help="Check a class: a CSV or JSON Lines file, or a folder of answers.")
+@click.option("--map", "mapped", multiple=True, metavar="COLUMN=FIELD", help="Read a column of the CSV as a field.")
+@click.option("--feedback", is_flag=True, help="Write a page of feedback for each student of a class.")
+@options("convention", *LIMITS)
+def command(
+    problem: str,
+    answer: str | None,
+    format_name: str,
+    show: str,
+    target: str | None,
+    asked: bool,  # noqa: FBT001 - click's signature
+    submissions: str | None,
+    mapped: tuple[str, ...],
+    feedback: bool,  # noqa: FBT001 - click's signature
+    convention_name: str | None,
+    timeout: float | None,
+    memory: float | None,
+) -> None:
+    """Check an ANSWER, or those of a class, against a PROBLEM file: any valid answer is right.
+
+    Exit code 0: right; 4: wrong or incomplete; 3: unreadable; 5: undecided. For a class 0 where all have a verdict.
+    """
+    if format_name not in FORMATS:
+        raise UsageError(f"{quoted(format_name)} is not a format of this command", repair=f"take {', '.join(FORMATS)}")
+    if show not in SHOW:
+        raise UsageError(f"{quoted(show)} is nothing to show", where="--show", repair=f"take {', '.join(SHOW)}")
+    if sum((asked, submissions is not None, answer is not None)) != 1:
+        repair = "give the ANSWER, or --submissions PATH, or --asked"
+        raise UsageError("one thing is to be done at a time", repair=repair)
+    if problem == answer == "-":
+        raise UsageError("standard input holds one file", repair="give one of the two as a path")
+    convention = convention_of(convention_name)
+    if submissions is not None:
+        _class(problem, submissions, target, mapped, show, feedback=feedback)
+        return
+    check_target(target)
+
+    def work(report_progress: Progress) -> Outcome:
+        report_progress("the problem")
+        checked = Checked.of(read(read_file(problem), problem, Path(problem).parent))
+        if asked:
+            return Outcome(((answer_file(checked, convention), target),))
+        assert answer is not None  # noqa: S101 - one of the three is there
+        name = None if convention is None else convention_name
+        return _outcome(checked.report_of_text(read_file(answer), place_of(answer), show, name), format_name, target)
+
+    run_work(work, timeout, memory, place_of(problem))
+
+
+def _outcome(report: CheckReport, format_name: str, target: str | None) -> Outcome:
+    writers = {
+        "text": report.to_text,
+        "markdown": report.to_markdown,
+        "html": report.to_html,
+        "json": report.to_json,
+    }
+    return Outcome(((writers[format_name](), target),), (), report.exit_code)
+
+
+def _class(
+    problem: str, submissions: str, target: str | None, mapped: tuple[str, ...], show: str, *, feedback: bool
+) -> None:
+    """Check a class and write its results into a folder."""
+    from symobs.checking.classes.classroom import check_class  # noqa: PLC0415 - a single answer does not pay for it
+
+    if target is None:
+        raise UsageError("the results of a class need a folder", where="-o", repair="write -o RESULTS/")
+    columns: dict[str, str] = {}
+    for entry in mapped:
+        column, found, name = entry.rpartition("=")
+        if not found or not column or not name:
+            raise UsageError(
+                f"{quoted(entry)} maps nothing", where="--map", repair='write --map "Email address=student"'
+            )
+        columns[column] = name
+    shown = sys.stderr is not None and sys.stderr.isatty()
+
+    def progress(done: int, total: int) -> None:
+        if shown and (done == total or done % 25 == 0):
+            write_message(f"{done}/{total} …")
+
+    files, code = check_class(
+        read_file(problem),
+        Path(problem).parent,
+        Path(submissions),
+        columns=columns,
+        show=show,
+        feedback=feedback,
+        progress=progress,
+    )
+    folder = Path(target)
+    for made in (folder, folder / "feedback") if feedback else (folder,):
+        make_folder(made)
+    write_all([(content, str(folder / name)) for name, content in files.items()])
+    sys.exit(code)

@@ -1,0 +1,138 @@
+"""Regions: any form of the right one is right, and a wrong one comes with a point that parts both."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from symobs.checking import Checked
+
+# s^3 + 4 s^2 + h1 s + h2 is stable if and only if h2 > 0 and 4 h1 > h2 (Routh).
+CUBIC = 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h1 s + h2"\nparameters = "h1, h2"\n'
+CHECKED = Checked.of(CUBIC)
+# s^3 + 4 s^2 + h s + 6: h > 3/2.
+LINE = Checked.of(
+    'task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h s + 6"\nparameters = "h"\n'
+)
+# s^3 + a s^2 + h s + k with a > 0: k > 0 and a h > k.
+SYMBOLIC = Checked.of(
+    'task = "stability_region"\n[symbols]\na = "positive"\n[specification]\n'
+    'polynomial = "s^3 + a s^2 + h s + k"\nparameters = "h, k"\n'
+)
+
+EQUAL: list[Any] = [
+    "h2 > 0 and 4 h1 > h2",
+    "8 h1 > 2 h2 and 3 h2 > 0",
+    "0 < h2 < 4 h1",
+    ["h2 > 0", "4*h1 - h2 > 0"],
+    "h1/h2 > 1/4 and h2 > 0",
+    "h2 > 0 and 4 h1 > h2 and h1 > 0",
+    "h2 > 0 and 4 h1 > h2 and h1 > -5",
+    "h2^3 > 0, h1 > 0.25 h2",
+    "h2 (4 h1 - h2) > 0 and h2 > 0",
+    "(-h2 < 0 and h2 - 4 h1 < 0)",
+    [["h2 > 0", "4 h1 > h2", "h1 < 1"], ["h2 > 0", "4 h1 > h2", "h1 >= 1"]],
+    "0 < h2 < 4 h1 or h2 > 0 and 4 h1 > h2 and h1 > 7",
+]
+WRONG: list[tuple[Any, str | None]] = [
+    ("h2 > 0", "condition_missing"),
+    ("4 h1 > h2", "condition_missing"),
+    ("h1 > 0 and h2 > 0", "only_positive_coefficients"),
+    ("h2 > 0 and 4 h1 < h2", "half_plane"),
+    ("h2 > 0 and 4 h1 > h2 and h1 > 1", None),
+    ("0 < h2 < 4 h1 or h1 > 100", None),
+    ("h2 > 0 and 3 h1 > h2", None),
+    ("False", None),
+]
+BOUNDARY: list[Any] = [
+    "h2 >= 0 and 4 h1 > h2",
+    "h2 > 0 and 4 h1 >= h2",
+    "h2 > 0 and 4 h1 > h2 and h1 != 3",
+    [["h2 > 0", "4 h1 > h2", "h1 < 1"], ["h2 > 0", "4 h1 > h2", "h1 > 1"]],
+]
+
+
+def part(checked: Checked, conditions: Any) -> Any:
+    return checked.report({"stable_if": conditions}).parts[0]
+
+
+@pytest.mark.parametrize("conditions", EQUAL, ids=str)
+def test_every_form_of_the_region_is_right(conditions: Any) -> None:
+    assert part(CHECKED, conditions).verdict == "right"
+
+
+@pytest.mark.parametrize(("conditions", "slip"), WRONG, ids=str)
+def test_a_wrong_region_comes_with_a_point_that_parts_both(conditions: Any, slip: str | None) -> None:
+    found = part(CHECKED, conditions)
+    assert (found.verdict, found.slip) == ("wrong", slip)
+    h1, h2 = (Fraction(found.place[name]) for name in ("h1", "h2"))
+    stable = h2 > 0 and 4 * h1 > h2
+    given = {
+        "h2 > 0": h2 > 0,
+        "4 h1 > h2": 4 * h1 > h2,
+        "h1 > 0 and h2 > 0": h1 > 0 and h2 > 0,
+        "h2 > 0 and 4 h1 < h2": h2 > 0 and 4 * h1 < h2,
+        "h2 > 0 and 4 h1 > h2 and h1 > 1": stable and h1 > 1,
+        "0 < h2 < 4 h1 or h1 > 100": stable or h1 > 100,
+        "h2 > 0 and 3 h1 > h2": h2 > 0 and 3 * h1 > h2,
+        "False": False,
+    }[conditions]
+    assert stable is not given
+    assert ("your conditions hold" in found.reason) is given
+
+
+@pytest.mark.parametrize("conditions", BOUNDARY, ids=str)
+def test_a_boundary_is_told_apart(conditions: Any) -> None:
+    found = part(CHECKED, conditions)
+    assert (found.verdict, found.slip, found.credit) == ("wrong", "boundary", Fraction(3, 4))
+
+
+def test_a_margin_that_was_forgotten() -> None:
+    checked = Checked.of(f'{CUBIC}margin = "1/2"\n')
+    assert part(checked, "h2 > 0 and 4 h1 > h2").slip == "margin_forgotten"
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict", "slip"),
+    [
+        ("h > 3/2", "right", None),
+        ("h > 1.5", "right", None),
+        ("3/2 < h < 2 or h >= 2", "right", None),
+        ("3/2 < h < 2 or h > 2", "wrong", "boundary"),
+        ("h >= 3/2", "wrong", "boundary"),
+        ("h > 0", "wrong", "only_positive_coefficients"),
+        ("h^2 > 9/4 and h > 0", "right", None),
+        ("h^2 > 2", "wrong", "condition_missing"),
+        ("h > 2", "wrong", None),
+    ],
+)
+def test_one_parameter(conditions: str, verdict: str, slip: str | None) -> None:
+    found = part(LINE, conditions)
+    assert (found.verdict, found.slip) == (verdict, slip)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("a h > k and k > 0", "right"),
+        ("a h - k > 0 and k > 0 and h > 0", "right"),
+        ("h > 0 and k > 0", "wrong"),
+        ("a h > k and k > 0 or k < -100", "undecided"),
+    ],
+)
+def test_with_other_symbols_equality_is_proved_or_a_point_found(conditions: str, verdict: str) -> None:
+    found = part(SYMBOLIC, conditions)
+    assert found.verdict == verdict
+    assert found.credit == {"right": 1, "wrong": 0, "undecided": None}[verdict]
+
+
+@pytest.mark.parametrize("conditions", ["h1", "h1 = 3", "q > 1", ["h1 > 1 or h2 > 1", "h1 > 2"], 7, "h1 > 1 and"])
+def test_what_is_no_condition_is_unreadable(conditions: Any) -> None:
+    found = part(CHECKED, conditions)
+    if conditions == "h1 > 1 and":
+        assert found.verdict == "wrong"
+    else:
+        assert found.verdict == "unreadable"
+        assert found.reason

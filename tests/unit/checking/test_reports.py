@@ -1,0 +1,203 @@
+"""Reports: marks, formats, what is given away, and answers that cannot be read."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import re
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+import symobs
+from symobs.checking import SHOW, Checked, check
+from symobs.checking.answers.answer_file import read_answer
+from symobs.checking.asked import answer_file
+from symobs.checking.report.schema import schema
+from symobs.errors import ProblemErrors, UsageError
+from symobs.problem import read
+from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
+
+RIGHT = {"K": "[4 3]", "L": "[19; 81]", "F": "(319 s + 400)/(s^2 + 23 s + 161)"}
+ANSWERS: list[Any] = [
+    RIGHT,
+    {"K": "[4 3"},
+    {"K": "[4 4]", "L": "[-19; -81]", "F": "1/s"},
+    {},
+    "K = [4 3]\nL = [19; 80]\nA - L C = [-19 1; -80 -1]\ndet(s I - A) = s^2",
+]
+CHECKED = Checked.of(SERVO)
+VALID = Draft202012Validator(schema())
+
+
+@pytest.mark.parametrize("show", SHOW)
+@pytest.mark.parametrize("answer", ANSWERS, ids=str)
+def test_every_report_keeps_its_schema_and_its_width(answer: Any, show: str) -> None:
+    report = CHECKED.report(answer, show)
+    VALID.validate(json.loads(report.to_json()))
+    assert max(map(len, report.to_text().split("\n"))) <= 100
+    assert "\x1b" not in report.to_text()
+    assert pickle.loads(pickle.dumps(report)) == report  # noqa: S301 - our own bytes
+    for page in (report.to_markdown(), report.to_html()):
+        assert report.verdict in page
+
+
+def test_the_schema_refuses_another_document() -> None:
+    whole = json.loads(CHECKED.report(RIGHT).to_json())
+    Draft202012Validator.check_schema(schema())
+    assert not VALID.is_valid(whole | {"verdict": "perhaps"})
+    assert not VALID.is_valid({key: value for key, value in whole.items() if key != "score"})
+
+
+# -- what is given away -----------------------------------------------------------------------------------------------
+
+
+def _body(page: str) -> str:
+    """A page without its styles, and without numbers in attributes."""
+    return re.sub(r"<[a-z][^>]*>", lambda tag: tag[0].split()[0] + ">", page.rpartition("</style>")[2])
+
+
+@pytest.mark.parametrize("show", ["verdict", "place"])
+@pytest.mark.parametrize(
+    ("problem", "wrong"),
+    [
+        (SERVO, {"K": "[1 1]", "L": "[-19; 5]", "F": "1/s"}),
+        (SERVO, "K = [1 1]\nL = [1; 5]\ndet(s I - A + L C) = s^2 + 7\nF = 3"),
+        (THIRD_ORDER, {"K": "[1 1 1]", "L": "[1; 1; 1]", "F": "7"}),
+        (TWO_OUTPUTS, {"L": "[1 1; 1 1; 1 1]"}),
+    ],
+)
+def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem: str, wrong: Any, show: str) -> None:
+    report = Checked.of(problem).report(wrong, show)
+    right = {
+        SERVO: ["19", "81", "319", "400", "161", "23"],
+        THIRD_ORDER: [number for value in (K, L, F) for number in re.findall(r"\d+/?\d*", str(value))],
+        TWO_OUTPUTS: [],
+    }[problem]
+    handed_in = str(wrong)
+    for written in (report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())):
+        for number in right:
+            if len(number) > 1 and number not in handed_in:
+                assert not re.search(rf"(?<![0-9#]){re.escape(number)}(?![0-9])", written), number
+        assert not re.search(r"\bs\*\*|\bs\^[0-9]|<msup>", written.replace("s^2 + 7", ""))
+    if show == "verdict":
+        assert (report.lines, report.certificates, report.parts[0].slip) == ((), (), None)
+
+
+def test_each_level_shows_more() -> None:
+    answer = {"L": "[19; 80]"}
+    by_level = {show: CHECKED.report(answer, show).parts[1] for show in SHOW}
+    assert [part.place for part in by_level.values()] == [None, [2, 1], [2, 1], [2, 1]]
+    assert [bool(part.reason) for part in by_level.values()] == [False, False, True, True]
+    assert [part.right for part in by_level.values()] == [None, None, None, "[19; 81]"]
+    assert "<math" in CHECKED.report(answer, "solution").to_html()
+
+
+def test_marks_are_exact_fractions() -> None:
+    marking = '[marking]\ntotal = 10\nparts = { "compensator.F" = 4 }\n[marking.credit]\nentry = "1/3"\n'
+    report = check(SERVO + marking, {"K": "[4 3]", "L": "[19; 80]"})
+    assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, Fraction(10))
+    assert json.loads(report.to_json())["score_decimal"] == "2.22"
+    asked = check(
+        f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"}
+    )
+    assert [part.part for part in asked.parts] == ["compensator.K", "compensator.closed_loop_polynomial"]
+    assert (asked.verdict, asked.score) == ("incomplete", Fraction(1))
+
+
+@pytest.mark.parametrize(
+    ("marking", "message"),
+    [
+        ("total = -1", "marking.total: -1 is negative"),
+        ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
+        ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
+        ("guard = 1", "marking.guard: true or false is expected"),
+        ("extra = 1", "marking.extra: unknown key"),
+        ('decimals = "sometimes"', "marking.decimals: this is no choice"),
+        ("milestone = [{ relation = 1, points = 1 }]", r"marking.milestone\[0\].relation: a text is expected"),
+    ],
+)
+def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
+    with pytest.raises(ProblemErrors, match=message):
+        read(f"{SERVO}[marking]\n{marking}\n")
+
+
+def test_a_part_that_does_not_exist_is_named() -> None:
+    with pytest.raises(
+        ProblemErrors, match=r"marking.asked\[0\]: there is no compensator.Q; known: compensator.verdict"
+    ):
+        check(f'{SERVO}[marking]\nasked = ["compensator.Q"]\n', RIGHT)
+
+
+# -- the answer file --------------------------------------------------------------------------------------------------
+
+
+def test_the_three_forms_of_an_answer_say_the_same() -> None:
+    lines = "# by hand\nL = [1; 2]\nK = [4 3]\n\nL = [19; 81]   # better\n"
+    toml = 'student = "s1"\n[answer]\nK = "[4 3]"\nL = "[19; 81]"\n'
+    as_json = json.dumps({"answer": {"K": [[4, 3]], "L": [["19"], [81]]}})
+    for form in (lines, toml, as_json, {"K": "[4 3]", "L": "[19; 81]"}):
+        assert [part.verdict for part in CHECKED.report(form).parts] == ["right", "right", "missing"]
+    assert CHECKED.report(toml).student == "s1"
+    assert [step.where for step in read_answer(lines).steps] == ["line 2", "line 3", "line 5"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ("no relation here\n", 'line 1: "no relation here" is no relation'),
+        ("[answer]\nK = 1\nK = 2", "this is not TOML"),
+        ('[answer]\nK = "1"\n[extra]\n', "extra: unknown key"),
+        ('symbols = "a"\n[answer]\n', "symbols: a list of names is expected"),
+        ('[answer]\n[[step]]\nwhere = "x"\n', r"step\[0\]: a table with relation is expected"),
+        ("K = 1\n" * 201, "201 lines, more than 200"),
+        ("K = " + "1" * 70_000, "the answer is larger than 64 kB"),
+        ('{"answer": {"Q": 1}}', r"answer\.Q: no task here has such a field"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_refused_with_its_place(answer: str, message: str) -> None:
+    with pytest.raises(ProblemErrors, match=message):
+        CHECKED.report(answer)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("[4 q]", 'the name "q" is not declared'),
+        ("[4 3", "never closed"),
+        ("__import__('os')", ""),
+        ("[1/0 3]", "division by zero"),
+        ("[4 9^9^9]", ""),
+    ],
+)
+def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str) -> None:
+    report = CHECKED.report({"K": value, "L": "[19; 81]"})
+    assert [part.verdict for part in report.parts] == ["unreadable", "right", "missing"]
+    assert report.verdict == "unreadable"
+    assert message in report.parts[0].reason
+
+
+def test_a_decimal_comma_is_told_so() -> None:
+    problem = 'task = "characteristic_polynomial"\n[plant]\nA = "[-1/2]"\n'
+    part = check(problem, {"polynomial": "s + 0,5"}).parts[0]
+    assert (part.verdict, "write 0.5 with a decimal point" in part.reason) == ("unreadable", True)
+
+
+def test_the_empty_answer_file_is_one() -> None:
+    empty = answer_file(CHECKED)
+    assert '# L = ""    # a 2x1 matrix' in empty
+    assert [part.verdict for part in CHECKED.report(empty).parts] == ["missing"] * 3
+    filled = empty.replace('# K = ""', 'K = "[4 3]"')
+    assert CHECKED.report(filled).parts[0].verdict == "right"
+    assert "81" not in empty
+
+
+def test_in_python() -> None:
+    result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", None, "[1 0]"), poles="-10, -10")
+    report = symobs.check(result, {"L": "[19; 81]"})
+    assert (report.verdict, report.score, report.total) == ("right", Fraction(1), Fraction(1))
+    assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}
+    with pytest.raises(UsageError, match="is nothing to show"):
+        symobs.check(result, {"L": "[19; 81]"}, show="all")
