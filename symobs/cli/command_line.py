@@ -24,6 +24,7 @@ COMMANDS = {
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files.",
+    "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "templates": "List the built-in LaTeX templates, or copy them.",

@@ -49,6 +49,7 @@ FLOORS = {
     "expect": 11,
     "problem": 12,
     "audit": 13,
+    "live": 13,
     "cli": 14,
     "__main__": 15,
 }
