@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 #: Solved problems that are kept: those of the tabs that are open, and what a drag comes back to.
 _KEPT = 8
-_REASONS = {"time": "time was not enough", "memory": "memory was not enough"}
 
 
 @dataclass(frozen=True)
@@ -61,6 +60,7 @@ def answer(request: object) -> dict[str, Any]:
     head: dict[str, Any] = {"schema": SCHEMA, "id": identity if isinstance(identity, (int, str)) else None}
     try:
         asked = read(request)
+        _require_at(asked)
         return head | _WANTED[asked.want](asked)
     except (CertificateRejected, DerivationRejected) as error:
         return head | _bug(error)
@@ -69,7 +69,7 @@ def answer(request: object) -> dict[str, Any]:
     except SymobsError as error:
         return head | {"status": "bad", "errors": errors_of(error)}
     except MemoryError:
-        return head | {"status": "undecided", "message": _REASONS["memory"]}
+        return head | {"status": "undecided", "message": "memory was not enough"}
     except RecursionError:
         return head | {"status": "undecided", "message": "nested too deep"}
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
@@ -102,24 +102,12 @@ def _solve(key: str, find: Callable[[], Problem]) -> Solved:
 
 
 def _as_given(asked: Request) -> Solved:
-    return _solve(asked.key, lambda: _with_declared(asked))
+    return _solve(asked.key, asked.problem)
 
 
 def _there(asked: Request) -> Solved:
-    """Return the problem with the values of `at`, which must be of the declared signs."""
-    if not asked.at:
-        return _as_given(asked)
-    return _solve(asked.key_there, lambda: _put_in(asked))
-
-
-def _with_declared(asked: Request) -> Problem:
-    _require_at(asked)
-    return asked.problem()
-
-
-def _put_in(asked: Request) -> Problem:
-    _require_at(asked)
-    return asked.problem_there()
+    """Return the problem with the values of `at`."""
+    return _solve(asked.key_there, asked.problem_there) if asked.at else _as_given(asked)
 
 
 def _require_at(asked: Request) -> None:
@@ -318,6 +306,19 @@ def _marks(result: Result) -> list[dict[str, str]]:
 
 
 def _notes(result: Result) -> list[str]:
-    """Return what a look at the curves may miss."""
-    stable = {"F_stable": "F is not stable by itself.", "stable": "A pole is not in the region of stability."}
-    return [text for name, text in stable.items() if result.fields.get(name) == "no"]
+    """Return why there is no design, and what a look at the curves may miss."""
+    whole: Any = result
+    parts = [getattr(whole, name) for name in ("feedback", "estimator") if name in vars(result)] or [result]
+    notes = []
+    for part in parts if result.verdict == "no" else []:
+        fixed = part.fields.get("fixed_modes") or ()
+        pair = "(A, B)" if part.task == "state_feedback" else "(C, A)"
+        if fixed:
+            notes.append(
+                f"No gain moves the mode{'s' if len(fixed) > 1 else ''} {', '.join(map(str, fixed))} of {pair}."
+            )
+    stable = {
+        "compensator_stable": "F is not stable by itself.",
+        "stable": "A pole lies outside the region of stability.",
+    }
+    return notes + [text for name, text in stable.items() if result.fields.get(name) == "no"]

@@ -29,7 +29,7 @@ def link_of(data: Mapping[str, Any]) -> str:
         parts["symbols"] = ",".join(f"{name}:{sign}" for name, sign in signs.items())
     if "convention" in data:
         parts["convention"] = str(data["convention"])
-    return "&".join(f"{quote(name, safe='')}={quote(text, safe=',;:/+-*^()[]')}" for name, text in parts.items())
+    return "&".join(f"{quote(name, safe='')}={quote(text, safe=',;:/-*^()[]')}" for name, text in parts.items())
 
 
 def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -47,11 +47,11 @@ class Gone(Exception):
 class Child:
     """One process that answers."""
 
-    def __init__(self, context: BaseContext, megabytes: int) -> None:
+    def __init__(self, context: BaseContext, megabytes: int, target: Callable[[Connection, int], None]) -> None:
         """Start it."""
         self.connection, other = context.Pipe()
         process: Any = context.Process  # type: ignore[attr-defined]
-        self.process = process(target=work, args=(other, megabytes), daemon=True)
+        self.process = process(target=target, args=(other, megabytes), daemon=True)
         self.process.start()
         other.close()
         self.answers = 0
@@ -79,13 +79,14 @@ class Child:
 class Children:
     """At most two children; a third question waits until one is free."""
 
-    def __init__(self, budget: Budget) -> None:
-        """Prepare; the first child is started with the first question, or by `warm`."""
+    def __init__(self, budget: Budget, target: Callable[[Connection, int], None] | None = None) -> None:
+        """Prepare; the first child is started with the first question, or by `warm`; `target` is what it does."""
         method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
         self.context: Any = multiprocessing.get_context(method)
         if method == "forkserver":
             self.context.set_forkserver_preload(["symobs.live.warm"])
-        self.budget = budget
+            _start_forkserver()
+        self.budget, self.target = budget, target or work
         self.idle: list[Child] = []
         self.free = threading.BoundedSemaphore(2)
         self.lock = threading.Lock()
@@ -93,7 +94,7 @@ class Children:
     def warm(self) -> None:
         """Start a child before it is needed."""
         with self.free:
-            child = Child(self.context, self.budget.megabytes)
+            child = Child(self.context, self.budget.megabytes, self.target)
             with suppress(TimeoutError, EOFError, OSError):
                 child.ask(b'{"schema": "symobs-live/1", "want": "start"}', self.budget.seconds, lambda: False)
             with self.lock:
@@ -105,7 +106,7 @@ class Children:
         with self.free:
             with self.lock:
                 child = self.idle.pop() if self.idle else None
-            child = child or Child(self.context, self.budget.megabytes)
+            child = child or Child(self.context, self.budget.megabytes, self.target)
             try:
                 found = child.ask(body, min(seconds, _MOST_SECONDS), left)
             except TimeoutError:
@@ -130,6 +131,19 @@ class Children:
             for child in self.idle:
                 child.kill()
             self.idle.clear()
+
+
+def _start_forkserver() -> None:
+    """Start the process that children are forked from, deaf to the Ctrl-C that ends this one."""
+    from multiprocessing import forkserver  # noqa: PLC0415 - not on every system
+
+    is_main = threading.current_thread() is threading.main_thread()
+    usual = signal.signal(signal.SIGINT, signal.SIG_IGN) if is_main else None
+    try:
+        forkserver.ensure_running()
+    finally:
+        if is_main:
+            signal.signal(signal.SIGINT, usual)
 
 
 def _wanted(body: bytes) -> object:

@@ -102,7 +102,7 @@ def root_boxes(coefficients: Sequence[Fraction], places: int) -> list[tuple[tupl
         box = []
         for part in (root.real, root.imag):
             scaled: Any = part * below
-            low, high = (scaled - scaled.rad()).floor(), (scaled + scaled.rad()).ceil()
+            low, high = scaled.lower().floor(), scaled.upper().ceil()
             box += [Fraction(int(low.unique_fmpz()), below), Fraction(int(high.unique_fmpz()), below)]
         found.append((tuple(box), multiplicity))
     return found

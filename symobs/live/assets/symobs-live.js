@@ -127,7 +127,7 @@ function encoded(state) {
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, snap: state.snap === "1/2" ? "" : state.snap });
   Object.assign(all, { closed: state.closed.join(","), x0: state.x0, xh0: state.xh0 });
-  const plain = (t) => encodeURIComponent(t).replace(/%(20|2C|3B|3A|2F|5B|5D|5E|2B|3D)/g, (c) => (c === "%20" || c === "%3D" ? c : decodeURIComponent(c)));
+  const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
 
@@ -147,7 +147,7 @@ function h(tag, attributes = {}, ...inside) {
     if (name.startsWith("on")) made.addEventListener(name.slice(2), entry);
     else if (entry !== undefined && entry !== false) made.setAttribute(name, entry === true ? "" : entry);
   }
-  made.append(...inside.flat().filter((part) => part !== null && part !== undefined));
+  made.append(...inside.flat(Infinity).filter((part) => part !== null && part !== undefined));
   return made;
 }
 
@@ -194,7 +194,7 @@ export function mount(element, transport, options = {}) {
   el.notes = h("p", { class: "notes" });
   el.list = h("div", { class: "list" });
   el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
-  el.plane = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": "Plane of the poles" });
+  el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": "Plane of the poles" });
   el.texts = h("div", { class: "fields" });
   el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
   el.legend = h("p", { class: "legend" });
@@ -209,7 +209,7 @@ export function mount(element, transport, options = {}) {
   root.append(
     h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.copy, h("details", { class: "menu" }, h("summary", {}, "Save"), h("div", {}, save("toml", "Problem file"), save("python", "Python"), save("latex", "LaTeX"), save("html", "Page")))),
     el.message,
-    h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.plane, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+    h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
     el.live,
   );
   el.planeBar.append(h("label", {}, "grid ", el.snap));
@@ -498,8 +498,8 @@ export function mount(element, transport, options = {}) {
       list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, "poles with letters, or off a pair, are in the text fields"));
-    el.plane.replaceChildren(...parts);
-    if (focus) el.plane.querySelector(`[data-handle="${focus}"]`)?.focus({ preventScroll: true });
+    el.poles.replaceChildren(...parts);
+    if (focus) el.poles.querySelector(`[data-handle="${focus}"]`)?.focus({ preventScroll: true });
   }
 
   function handle(group, list, p, k, count) {
@@ -516,7 +516,7 @@ export function mount(element, transport, options = {}) {
     const mine = h("svg:g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
       "aria-label": `${group.label} ${k + 1} of ${count}`, "aria-roledescription": "pole", "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
-      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { el.plane.dataset.before = JSON.stringify(sets); },
+      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { el.poles.dataset.before = JSON.stringify(sets); },
     }, places.map(glyph));
     if (isHeld || root.getRootNode().activeElement?.getAttribute?.("data-handle") === `${group.key}.${k}`) {
       const [x, y] = places[0], right = x < 300;
@@ -556,7 +556,7 @@ export function mount(element, transport, options = {}) {
   function grab(event, group, p) {
     if (event.button) return;
     event.preventDefault();
-    const before = JSON.stringify(sets), svg = el.plane;
+    const before = JSON.stringify(sets), svg = el.poles;
     held = { p };
     svg.setPointerCapture(event.pointerId);
     const follow = (e) => {
@@ -575,7 +575,7 @@ export function mount(element, transport, options = {}) {
       sets[group.key] = settled(sets[group.key]);
       fit();
       moved(true);
-      el.plane.querySelector(`[data-handle="${group.key}.${Math.max(0, k)}"]`)?.focus({ preventScroll: true });
+      el.poles.querySelector(`[data-handle="${group.key}.${Math.max(0, k)}"]`)?.focus({ preventScroll: true });
     };
     const let_go = () => done(false), cancel = () => done(true), escape = (e) => { if (e.key === "Escape") done(true); };
     svg.addEventListener("pointermove", follow);
@@ -594,17 +594,17 @@ export function mount(element, transport, options = {}) {
       case "ArrowUp": if (p.pair) p.im = plus(p.im, by); else place(group, p, value(p.re), Math.max(2 * step(), far) / GRID); break;
       case "ArrowDown": if (!p.pair) return; p.im = plus(p.im, back); if (p.im[0] < 0) p.im = [0, 1]; break;
       case "Enter": el.texts.querySelector(`[data-set="${group.key}"]`)?.focus(); event.preventDefault(); return;
-      case "Escape": if (el.plane.dataset.before) sets = JSON.parse(el.plane.dataset.before); moved(true); event.preventDefault(); return;
+      case "Escape": if (el.poles.dataset.before) sets = JSON.parse(el.poles.dataset.before); moved(true); event.preventDefault(); return;
       default: return;
     }
     event.preventDefault();
-    const before = el.plane.dataset.before;
+    const before = el.poles.dataset.before;
     sets[group.key] = settled(list);
     moved(true);
-    el.plane.dataset.before = before;
+    el.poles.dataset.before = before;
     if (!held && outside(p)) { fit(); drawPlane(); }
-    el.plane.querySelector(`[data-handle="${group.key}.${k}"]`)?.focus({ preventScroll: true });
-    el.plane.dataset.before = before;
+    el.poles.querySelector(`[data-handle="${group.key}.${k}"]`)?.focus({ preventScroll: true });
+    el.poles.dataset.before = before;
   }
   const outside = (p) => X(value(p.re)) < 48 || X(value(p.re)) > 456 || Y(value(p.im)) < 24;
 
