@@ -47,7 +47,7 @@ def test_a_card_shows_the_value_of_its_field(path: Path) -> None:
                 assert card.shown.values == card.answer
                 continue
             environment = Environment(variable=result.plant.variable)
-            shown = evaluate(card.shown.members[-1], environment, Exact())
+            shown = evaluate(card.shown.members[-1], environment, Exact(environment))
             assert shown == value_of(card.answer), (result.task, card.name)
         printer = CardPrinter(result, problem.convention)
         for card in cards(result, names_of(result), problem.convention):

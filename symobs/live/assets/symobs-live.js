@@ -176,7 +176,7 @@ export function mount(element, transport, options = {}) {
   element.append(root);
   let s = decoded(options.state || DEMO);
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null, point = null;
-  let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false;
+  let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
   let aborted = new AbortController();
   const el = {};
 
@@ -499,7 +499,14 @@ export function mount(element, transport, options = {}) {
     }
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, "poles with letters, or off a pair, are in the text fields"));
     el.poles.replaceChildren(...parts);
-    if (focus) el.poles.querySelector(`[data-handle="${focus}"]`)?.focus({ preventScroll: true });
+    if (focus) refocus(focus);
+  }
+
+  /** Give the focus back to a handle that was drawn again; where it stood when it came there stays known. */
+  function refocus(name) {
+    quiet = true;
+    el.poles.querySelector(`[data-handle="${name}"]`)?.focus({ preventScroll: true });
+    quiet = false;
   }
 
   function handle(group, list, p, k, count) {
@@ -516,7 +523,7 @@ export function mount(element, transport, options = {}) {
     const mine = h("svg:g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
       "aria-label": `${group.label} ${k + 1} of ${count}`, "aria-roledescription": "pole", "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
-      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { el.poles.dataset.before = JSON.stringify(sets); },
+      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) before = JSON.stringify(sets); },
     }, places.map(glyph));
     if (isHeld || root.getRootNode().activeElement?.getAttribute?.("data-handle") === `${group.key}.${k}`) {
       const [x, y] = places[0], right = x < 300;
@@ -556,7 +563,8 @@ export function mount(element, transport, options = {}) {
   function grab(event, group, p) {
     if (event.button) return;
     event.preventDefault();
-    const before = JSON.stringify(sets), svg = el.poles;
+    const svg = el.poles;
+    before = JSON.stringify(sets);
     held = { p };
     svg.setPointerCapture(event.pointerId);
     const follow = (e) => {
@@ -575,7 +583,7 @@ export function mount(element, transport, options = {}) {
       sets[group.key] = settled(sets[group.key]);
       fit();
       moved(true);
-      el.poles.querySelector(`[data-handle="${group.key}.${Math.max(0, k)}"]`)?.focus({ preventScroll: true });
+      refocus(`${group.key}.${Math.max(0, k)}`);
     };
     const let_go = () => done(false), cancel = () => done(true), escape = (e) => { if (e.key === "Escape") done(true); };
     svg.addEventListener("pointermove", follow);
@@ -594,17 +602,14 @@ export function mount(element, transport, options = {}) {
       case "ArrowUp": if (p.pair) p.im = plus(p.im, by); else place(group, p, value(p.re), Math.max(2 * step(), far) / GRID); break;
       case "ArrowDown": if (!p.pair) return; p.im = plus(p.im, back); if (p.im[0] < 0) p.im = [0, 1]; break;
       case "Enter": el.texts.querySelector(`[data-set="${group.key}"]`)?.focus(); event.preventDefault(); return;
-      case "Escape": if (el.poles.dataset.before) sets = JSON.parse(el.poles.dataset.before); moved(true); event.preventDefault(); return;
+      case "Escape": if (before) sets = JSON.parse(before); moved(true); event.preventDefault(); return;
       default: return;
     }
     event.preventDefault();
-    const before = el.poles.dataset.before;
     sets[group.key] = settled(list);
     moved(true);
-    el.poles.dataset.before = before;
-    if (!held && outside(p)) { fit(); drawPlane(); }
-    el.poles.querySelector(`[data-handle="${group.key}.${k}"]`)?.focus({ preventScroll: true });
-    el.poles.dataset.before = before;
+    if (outside(p)) { fit(); drawPlane(); }
+    refocus(`${group.key}.${k}`);
   }
   const outside = (p) => X(value(p.re)) < 48 || X(value(p.re)) > 456 || Y(value(p.im)) < 24;
 

@@ -289,7 +289,7 @@ _ANY = st.recursive(_LEAVES, lambda s: st.lists(s, max_size=4) | st.dictionaries
 _KEYS = st.sampled_from(["want", "problem", "task", "at", "cards", "courses", "detail", "as", "cases", "id", "format"])
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(_ANY | st.dictionaries(_KEYS, _ANY, max_size=6))
 def test_no_request_is_a_bug(request: Any) -> None:
     whole = {"schema": "symobs-live/1", "problem": SERVO, **request} if isinstance(request, dict) else request
@@ -298,7 +298,7 @@ def test_no_request_is_a_bug(request: Any) -> None:
     SCHEMA.validate(json.loads(json.dumps(found, allow_nan=False)))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     st.sampled_from(["A", "B", "C", "control_poles", "observer_poles"]), st.text("01a-+*/^()[];, .i'\"\\", max_size=14)
 )
