@@ -88,6 +88,7 @@ class Children:
             _start_forkserver()
         self.budget, self.target = budget, target or work
         self.idle: list[Child] = []
+        self.busy: set[Child] = set()
         self.free = threading.BoundedSemaphore(2)
         self.lock = threading.Lock()
 
@@ -95,8 +96,11 @@ class Children:
         """Start a child before it is needed."""
         with self.free:
             child = Child(self.context, self.budget.megabytes, self.target)
-            with suppress(TimeoutError, EOFError, OSError):
+            try:
                 child.ask(b'{"schema": "symobs-live/1", "want": "start"}', self.budget.seconds, lambda: False)
+            except (TimeoutError, OSError, EOFError):
+                child.kill()
+                return
             with self.lock:
                 self.idle.append(child)
 
@@ -106,7 +110,8 @@ class Children:
         with self.free:
             with self.lock:
                 child = self.idle.pop() if self.idle else None
-            child = child or Child(self.context, self.budget.megabytes, self.target)
+                child = child or Child(self.context, self.budget.megabytes, self.target)
+                self.busy.add(child)
             try:
                 found = child.ask(body, min(seconds, _MOST_SECONDS), left)
             except TimeoutError:
@@ -118,6 +123,9 @@ class Children:
             except BaseException:
                 child.kill()
                 raise
+            finally:
+                with self.lock:
+                    self.busy.discard(child)
             if child.answers >= MOST_ANSWERS or found[:1] == b"!":
                 child.kill()
             else:
@@ -126,8 +134,10 @@ class Children:
             return found.removeprefix(b"!")
 
     def close(self) -> None:
-        """End all."""
+        """End all, also those at work."""
         with self.lock:
+            for child in self.busy:
+                child.process.kill()
             for child in self.idle:
                 child.kill()
             self.idle.clear()

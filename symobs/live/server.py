@@ -16,6 +16,7 @@ import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from socketserver import TCPServer
 from typing import Any
 
 from symobs.live.process import Budget, Children, Gone
@@ -69,6 +70,11 @@ class Server(ThreadingHTTPServer):
         self.names = frozenset({f"127.0.0.1:{number}", f"localhost:{number}", f"[::1]:{number}"})
         shown = f"[{host}]" if ":" in host else host
         self.url = f"http://{shown}:{number}/#token={self.token}"
+
+    def server_bind(self) -> None:
+        """Bind the address, and ask nobody for its name."""
+        TCPServer.server_bind(self)
+        self.server_name, self.server_port = "localhost", self.server_address[1]
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection, unless there are too many."""

@@ -186,6 +186,21 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
         children.close()
 
 
+def test_a_child_at_work_ends_with_the_server() -> None:
+    children = Children(Budget(600, 300), obedient)
+    process = ask(children)["process"]
+    found: list[dict[str, Any]] = []
+    thread = threading.Thread(target=lambda: found.append(ask(children, do="sleep")))
+    thread.start()
+    while not children.busy:
+        thread.join(0.01)
+    children.close()
+    thread.join(SAFETY)
+    assert [each["status"] for each in found] == ["undecided"]
+    with pytest.raises(ProcessLookupError):
+        os.kill(process, 0)
+
+
 def test_the_command_prints_one_line_and_ends_with_an_interrupt() -> None:
     run = subprocess.Popen(
         [sys.executable, "-m", "symobs", "serve", "--no-browser", str(SERVO)],
