@@ -120,33 +120,31 @@ def region_object(result: Any) -> dict[str, Any]:
     match picture:
         case RegionPicture():
             stable = [mark.place for mark in picture.marks if mark.kind == "stable"]
-            middle = tuple((low + high) / 2 for low, high in picture.window)
+            (left, right), (bottom, top) = picture.window
+            x, y = stable[0] if stable else ((left + right) / 2, (bottom + top) / 2)
             return found | {
                 "kind": "plane",
                 "parameters": list(picture.axes),
                 "window": [[str(low), str(high)] for low, high in picture.window],
-                "handle": [
-                    _near(value, interval)
-                    for value, interval in zip((stable or [middle])[0], picture.window, strict=True)
-                ],
+                "handle": [_near(x, (left, right)), _near(y, (bottom, top))],
             }
         case PoleMap():
-            inside = list(result.fields.get("sample_points", []))
+            samples = list(result.fields.get("sample_points", []))
             low, high = picture.values
             return found | {
                 "kind": "locus",
                 "window": [[str(a), str(b)] for a, b in picture.window],
                 "values": [str(low), str(high)],
-                "handle": [_sample(inside, parameters[0], (low, high))],
+                "handle": [_sample(samples, parameters[0], (low, high))],
             }
         case LinePicture():
             low, high = picture.window
-            stable = [place for place, kind in picture.marks if kind == "stable"]
+            inside = [place for place, kind in picture.marks if kind == "stable"]
             return found | {
                 "kind": "line",
                 "window": [[str(low), str(high)]],
                 "values": [str(low), str(high)],
-                "handle": [_near((stable or [(low + high) / 2])[0], (low, high))],
+                "handle": [_near((inside or [(low + high) / 2])[0], (low, high))],
             }
     return found
 

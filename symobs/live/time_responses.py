@@ -56,16 +56,12 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
     parts = 10**digits
     coarser = _FINE // parts
+    rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
     lines = [
-        {
-            "signal": name,
-            "component": place,
-            "dashed": dashed,
-            "heights": [(height + coarser // 2) // coarser for height in line],
-        }
-        for (name, place, _, dashed), line in zip(signals.rows, heights, strict=True)
+        {"signal": name, "component": place, "dashed": dashed, "heights": line}
+        for (name, place, _, dashed), line in zip(signals.rows, rounded, strict=True)
     ]
-    low, high = min(min(line["heights"]) for line in lines), max(max(line["heights"]) for line in lines)
+    low, high = min(map(min, rounded)), max(map(max, rounded))
     room = Fraction(max(high - low, 1), 20)
     window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
     return {"end": str(end), "parts": parts, "window": window, "discrete": result.plant.is_discrete, "lines": lines}
@@ -81,6 +77,8 @@ def _signals(result: Result, asked: Responses) -> Signals:
     state = _vector(asked.start, order, Fraction(1), "courses.start")
     estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
     error = [a - b for a, b in zip(state, estimate, strict=True)]
+    start: list[Fraction] = []
+    drawn: list[tuple[str, Matrix, bool]] = []
     match result.task:
         case "observer":
             matrix, start, drawn = fields["A"], error, [("e", Matrix.identity(order), False)]

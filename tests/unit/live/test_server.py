@@ -50,7 +50,7 @@ def running_server() -> Iterator[Server]:
 
 def sent(server: Server, raw: bytes) -> tuple[int, dict[str, str], bytes]:
     """What comes back for the bytes of a request: status, headers, content."""
-    with closing(socket.create_connection(server.server_address[:2], SAFETY)) as connection:
+    with closing(socket.create_connection(("127.0.0.1", server.server_address[1]), SAFETY)) as connection:
         connection.sendall(raw)
         stream = connection.makefile("rb")
         line = stream.readline()
@@ -138,7 +138,7 @@ def test_whoever_is_not_the_page_is_refused(server: Server, change: dict[str, An
 
 def test_a_head_that_does_not_come_ends(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("symobs.live.server._TIMEOUT", 0.2)
-    with closing(socket.create_connection(server.server_address[:2], SAFETY)) as connection:
+    with closing(socket.create_connection(("127.0.0.1", server.server_address[1]), SAFETY)) as connection:
         connection.sendall(b"GET / HTTP/1.1\r\nX: ")
         assert connection.makefile("rb").read().startswith(b"HTTP/1.1 408")
 
